@@ -39,6 +39,9 @@ fi
 "$python" -m venv --clear "$work/venv"
 "$work/venv/bin/pip" install --quiet "$work"/wheels/pinhole_rt-*.whl pytest mypy anywidget nbclient ipykernel pillow
 
+# Dask is large, and only tests/cluster/run.sh and one test use it.
+[ -z "${PINHOLE_DASK:-}" ] || "$work/venv/bin/pip" install --quiet "dask[distributed]"
+
 # Away from python/, whose folder pinhole/ has no compiled half.
 cd "$work"
 "$work/venv/bin/pytest" -c "$OLDPWD/python/pyproject.toml" --rootdir "$OLDPWD/python" -p no:cacheprovider -q \

@@ -11,6 +11,7 @@ use super::encoding::EncodingArgs;
 use super::file_info::FileArgs;
 use super::frames::FramesArgs;
 use super::generate::GenerateArgs;
+use super::job::JobArgs;
 use super::light::LightArgs;
 use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
@@ -23,7 +24,7 @@ use pinhole::load::Format;
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
     after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
-    4 a check could not decide; 130 stopped by a signal."
+    4 a check could not decide; 5 the device was lost or did not answer; 130 stopped by a signal."
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -46,6 +47,8 @@ pub(super) enum Command {
     /// Measure how fast an adapter traces rays with different acceleration structures
     #[cfg(feature = "gpu")]
     Bench(BenchArgs),
+    /// Render on many machines: divide pictures into parts, render each, see what is done, and join them
+    Job(JobArgs),
     /// Write an example scene file into the current folder and render it
     Demo(DemoArgs),
     /// Write a file of generated spheres, for tests and measurements

@@ -228,6 +228,9 @@ fn named(headless: &Headless, error: &GpuError, remedy: &str) -> Failure {
     let adapter = &headless.adapter_info().name;
     match error {
         GpuError::Stopped => Failure::Stopped,
+        GpuError::DeviceLost { .. } | GpuError::Timeout { .. } => {
+            Failure::Device(anyhow::anyhow!("{adapter}: {error}{remedy}"))
+        }
         _ => Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}")),
     }
 }

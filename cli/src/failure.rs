@@ -15,6 +15,9 @@ pub(super) const CHECK_FAILED: u8 = 3;
 /// Exit code of a check that found nothing wrong, but could not decide enough.
 pub(super) const UNDECIDED: u8 = 4;
 
+/// Exit code of a job whose device was lost or did not answer in time. Another try may succeed.
+pub(super) const DEVICE: u8 = 5;
+
 /// Exit code of a job that a signal stopped, as shells use it for SIGINT.
 pub(super) const STOPPED: u8 = 130;
 
@@ -32,6 +35,8 @@ pub(super) enum Failure {
     CheckFailed(anyhow::Error),
     /// The job was done, and its check found no violation, but left too much undecided.
     Undecided(anyhow::Error),
+    /// The device was lost or did not answer in time.
+    Device(anyhow::Error),
     /// The user stopped it while a device was at work.
     #[cfg_attr(
         not(feature = "gpu"),
@@ -53,7 +58,8 @@ impl Failure {
             Self::Usage(error)
             | Self::Job(error)
             | Self::CheckFailed(error)
-            | Self::Undecided(error) => {
+            | Self::Undecided(error)
+            | Self::Device(error) => {
                 format!("{error:#}")
             }
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
@@ -67,6 +73,7 @@ impl Failure {
             Self::Job(_) => FAILED.into(),
             Self::CheckFailed(_) => CHECK_FAILED.into(),
             Self::Undecided(_) => UNDECIDED.into(),
+            Self::Device(_) => DEVICE.into(),
             Self::Stopped | Self::StoppedBetween(_) => STOPPED.into(),
         }
     }
@@ -82,10 +89,8 @@ impl fmt::Display for Failure {
     /// Writes the line that the program prints before it ends.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(_) | Self::Job(_) | Self::CheckFailed(_) | Self::Undecided(_) => {
-                write!(f, "error: {}", self.message())
-            }
             Self::Stopped | Self::StoppedBetween(_) => f.write_str(&self.message()),
+            _ => write!(f, "error: {}", self.message()),
         }
     }
 }

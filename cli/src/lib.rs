@@ -46,6 +46,7 @@ mod info;
 mod input;
 mod input_format;
 mod interrupt;
+mod job;
 mod kind_color;
 mod light;
 mod memory;
@@ -98,7 +99,7 @@ use speak::{answer, tell, tell_all};
 /// Runs the program with the arguments of the process. This must be the first thing that the process does.
 ///
 /// Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed, 4 a check
-/// could not decide, 130 stopped.
+/// could not decide, 5 the device was lost or did not answer, 130 stopped.
 #[must_use]
 pub fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
@@ -138,6 +139,7 @@ fn run() -> ExitCode {
         Command::Plan(args) => plan::run(&args),
         #[cfg(feature = "gpu")]
         Command::Bench(args) => bench::run(&args),
+        Command::Job(args) => job::run(&args),
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),

@@ -36,14 +36,15 @@ use super::with_scene::{upload, watch_upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
 use pinhole::camera::View;
+use pinhole::camera::film::Film;
 use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
-use pinhole::render::Picture;
 #[cfg(feature = "gpu")]
 use pinhole::render::Watch;
+use pinhole::render::{Picture, RenderSettings};
 
 /// A render job, checked as far as is possible before the input is read.
 pub(super) struct Job {
@@ -179,6 +180,49 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Renders a part of the picture of each eye: the raw values, before noise is removed and outlines are drawn.
+pub(super) fn render_part(
+    input: &mut Input,
+    part: Film,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Views<Image>, Failure> {
+    let layers = input.settings.layers_for(layers);
+    let unfinished = input.settings.unfinished();
+    let finished = std::mem::replace(&mut input.settings, unfinished);
+    let views = Views::on_film(input, part);
+    let images = render_views(input, &StopRule::default(), &views, layers, opened);
+    input.settings = finished;
+    images
+}
+
+/// Completes the pictures of all eyes that were put together from parts, and puts them beside each other.
+pub(super) fn finish_joined(
+    images: Views<Image>,
+    settings: &RenderSettings,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Image, Failure> {
+    joined(finish_views(images, settings, layers, opened)?)
+}
+
+/// Completes the pictures of all eyes that were put together from parts.
+pub(super) fn finish_views(
+    images: Views<Image>,
+    settings: &RenderSettings,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Views<Image>, Failure> {
+    match opened {
+        #[cfg(feature = "gpu")]
+        Opened::Device { headless, .. } => images.try_each(|image| {
+            let finished = headless.finish(image.clone(), settings, layers);
+            finished.map_err(|error| explained(headless, &error))
+        }),
+        _ => Ok(images.map(|image| cpu::finish(image, settings, layers))),
+    }
+}
+
 /// Says in one line what was rendered, with which look, and how long it took.
 fn said(quiet: bool, input: &Input, started: Instant) {
     if !quiet {
@@ -202,7 +246,11 @@ pub(super) fn render_joined(
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Image, Failure> {
-    Ok(match render_views(input, stop_rule, views, layers, opened)? {
+    joined(render_views(input, stop_rule, views, layers, opened)?)
+}
+
+fn joined(images: Views<Image>) -> Result<Image, Failure> {
+    Ok(match images {
         Views::One(image) => image,
         Views::Two([left, right]) => Image::side_by_side([&left, &right])
             .context("the pictures of both eyes cannot be joined")?,
@@ -250,7 +298,7 @@ fn check_on_cpu(input: &Input, views: &Views<View<'_>>, layers: LayerSet) -> Res
     let is_lit = !input.settings.integrator.is_primary();
     let sums = if is_lit { SampledPicture::BYTES_PER_PIXEL } else { 0 };
     let extra = views.extra_bytes_per_pixel(layers) + sums;
-    memory::check(&input.film, &input.size_from, layers, extra)
+    memory::check(&views.film(), &input.size_from, layers, extra)
 }
 
 fn on_cpu(
@@ -260,7 +308,7 @@ fn on_cpu(
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
     check_on_cpu(input, views, layers)?;
-    let Input { scene, film, settings, .. } = input;
+    let (Input { scene, settings, .. }, film) = (input, views.film());
     let plan = SearchPlan::new(scene);
     let what = format!("a structure of {} spheres needs", scene.len());
     memory::check_bytes(&what, plan.bytes(), "fewer spheres").map_err(anyhow::Error::msg)?;
@@ -309,7 +357,7 @@ fn on_gpu(
     layers: LayerSet,
     choice: AccelChoice,
 ) -> Result<Views<Image>, Failure> {
-    let Input { scene, film, settings, .. } = input;
+    let (Input { scene, settings, .. }, film) = (input, views.film());
     let is_lit = !settings.integrator.is_primary();
     let plan = |choice| plan(headless, input, views, layers, choice);
     let rendered = with_structures(headless, choice, plan, |plan| {
@@ -360,5 +408,6 @@ pub(super) fn plan(
 ) -> RenderPlan {
     let Input { scene, settings, .. } = input;
     let extra = views.extra_bytes_per_pixel(layers);
-    headless.plan(scene, &input.view(), settings, layers, choice, extra)
+    let view = View::new(input.camera.as_ref(), views.film());
+    headless.plan(scene, &view, settings, layers, choice, extra)
 }

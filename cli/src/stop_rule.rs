@@ -24,6 +24,18 @@ pub(super) struct StopArgs {
     pub(super) keep_partial: bool,
 }
 
+impl StopArgs {
+    /// A flag that was given, if there is one.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--time", self.time.is_some()),
+            ("--noise", self.noise.is_some()),
+            ("--keep-partial", self.keep_partial),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+}
+
 /// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StopRule {

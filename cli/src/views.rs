@@ -3,6 +3,7 @@
 use super::input::Input;
 use super::memory;
 use pinhole::camera::View;
+use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
 /// A value for one picture, or two values for the left and the right eye.
@@ -15,6 +16,13 @@ impl<T> Views<T> {
     pub(super) fn as_slice(&self) -> &[T] {
         match self {
             Self::One(one) => std::slice::from_ref(one),
+            Self::Two(two) => two,
+        }
+    }
+
+    pub(super) fn as_mut_slice(&mut self) -> &mut [T] {
+        match self {
+            Self::One(one) => std::slice::from_mut(one),
             Self::Two(two) => two,
         }
     }
@@ -45,12 +53,24 @@ impl<T> Views<T> {
 
 impl<'a> Views<View<'a>> {
     pub(super) fn of(input: &'a Input) -> Self {
+        Self::on_film(input, input.film)
+    }
+
+    /// The same on another film, such as a part of it.
+    pub(super) fn on_film(input: &'a Input, film: Film) -> Self {
         match &input.eyes {
-            None => Self::One(input.view()),
+            None => Self::One(View::new(input.camera.as_ref(), film)),
             Some(eyes) => {
                 let [left, right] = eyes.each_ref();
-                Self::Two([left, right].map(|eye| View::new(eye.as_ref(), input.film)))
+                Self::Two([left, right].map(|eye| View::new(eye.as_ref(), film)))
             }
+        }
+    }
+
+    /// The film, which is the same for both eyes.
+    pub(super) fn film(&self) -> Film {
+        match self {
+            Self::One(view) | Self::Two([view, _]) => view.film,
         }
     }
 

@@ -25,11 +25,17 @@ impl YAxis {
 }
 
 /// The size of a picture: width and height in pixels, and the direction of y. Row 0 is the top row.
+///
+/// A film may be a part of another, see [`Film::part`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Film {
     width: u32,
     height: u32,
     y_axis: YAxis,
+    /// Column and row of the first pixel in the whole film.
+    origin: [u32; 2],
+    /// Width and height of the whole film.
+    whole: [u32; 2],
 }
 
 /// Why a width and height do not make a film.
@@ -52,12 +58,25 @@ pub enum FilmError {
         /// Height in pixels.
         height: u32,
     },
+    /// A part is not inside its film.
+    #[error(
+        "the rectangle of {}x{} pixels at column {} and row {} is not inside a film of {}x{} pixels",
+        size[0], size[1], origin[0], origin[1], film[0], film[1]
+    )]
+    Outside {
+        /// Column and row of the first pixel of the part.
+        origin: [u32; 2],
+        /// Width and height of the part in pixels.
+        size: [u32; 2],
+        /// Width and height of the film in pixels.
+        film: [u32; 2],
+    },
 }
 
 impl Default for Film {
     /// A film of 800 by 600 pixels with y up.
     fn default() -> Self {
-        Self { width: 800, height: 600, y_axis: YAxis::Up }
+        Self { width: 800, height: 600, y_axis: YAxis::Up, origin: [0; 2], whole: [800, 600] }
     }
 }
 
@@ -76,7 +95,55 @@ impl Film {
         if width.max(height) > Self::MAX_SIDE {
             return Err(FilmError::TooLarge { width, height });
         }
-        Ok(Self { width, height, y_axis: YAxis::Up })
+        Ok(Self { width, height, y_axis: YAxis::Up, origin: [0; 2], whole: [width, height] })
+    }
+
+    /// A rectangle of this film, of `size` (width and height) pixels, whose first pixel is at `origin` (column and row).
+    ///
+    /// A picture on it has the pixels that a picture on the whole film has there, to the bit, so that several devices or
+    /// machines can render one picture; [`Image::put`](crate::image::Image::put) joins the parts. What looks at
+    /// neighbours of pixels needs the whole picture, so render parts with
+    /// [`RenderSettings::unfinished`](crate::render::RenderSettings::unfinished).
+    ///
+    /// # Errors
+    /// Returns an error if the rectangle has no pixel or is not inside this film.
+    pub fn part(&self, origin: [u32; 2], size: [u32; 2]) -> Result<Self, FilmError> {
+        let [width, height] = size;
+        if width == 0 || height == 0 {
+            return Err(FilmError::Empty { width, height });
+        }
+        let film = [self.width, self.height];
+        let fits =
+            |axis: usize| origin[axis].checked_add(size[axis]).is_some_and(|end| end <= film[axis]);
+        if !(fits(0) && fits(1)) {
+            return Err(FilmError::Outside { origin, size, film });
+        }
+        let origin = self.in_whole(origin);
+        Ok(Self { width, height, origin, ..*self })
+    }
+
+    /// The film that this is a part of, which is the same film if it is whole.
+    #[must_use]
+    pub fn whole(&self) -> Self {
+        let [width, height] = self.whole;
+        Self { width, height, origin: [0; 2], ..*self }
+    }
+
+    /// Whether this is a whole film and not a part of a larger one.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.whole == [self.width, self.height]
+    }
+
+    /// Column and row of the first pixel in the whole film.
+    #[must_use]
+    pub fn origin(&self) -> [u32; 2] {
+        self.origin
+    }
+
+    /// Column and row in the whole film of a pixel of this film.
+    pub(crate) fn in_whole(&self, [column, row]: [u32; 2]) -> [u32; 2] {
+        [self.origin[0] + column, self.origin[1] + row]
     }
 
     /// The same film with `y_axis` as its direction of y.
@@ -109,18 +176,21 @@ impl Film {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// The aspect ratio: width over height.
+    /// The aspect ratio of the whole film: width over height.
     #[must_use]
     pub fn aspect(&self) -> f64 {
-        f64::from(self.width) / f64::from(self.height)
+        let [width, height] = self.whole.map(f64::from);
+        width / height
     }
 
-    /// The relative location, in [−1, 1]², of a point of the picture that is `column` pixels from the
-    /// left edge and `row` pixels from the top edge. The centre of pixel (i, j) is (i + ½, j + ½).
+    /// The relative location on the whole film, in [−1, 1]², of a point that is `column` pixels from the left edge of
+    /// this film and `row` pixels from its top edge. The centre of pixel (i, j) is (i + ½, j + ½).
     #[must_use]
     pub fn relative_location(&self, column: f64, row: f64) -> DVec2 {
-        let x = column / f64::from(self.width) * 2.0 - 1.0;
-        let y_down = row / f64::from(self.height) * 2.0 - 1.0;
+        let ([left, top], [width, height]) =
+            (self.origin.map(f64::from), self.whole.map(f64::from));
+        let x = (left + column) / width * 2.0 - 1.0;
+        let y_down = (top + row) / height * 2.0 - 1.0;
         match self.y_axis {
             YAxis::Up => DVec2::new(x, -y_down),
             YAxis::Down => DVec2::new(x, y_down),

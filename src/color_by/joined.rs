@@ -35,6 +35,24 @@ pub struct JoinedKeys {
 }
 
 impl JoinedKeys {
+    /// What [`JoinedKeys::range`], [`JoinedKeys::names`] and [`JoinedKeys::missing`] of another process returned.
+    #[must_use]
+    pub fn new(range: Option<[f64; 2]>, names: Vec<String>, missing: Option<[u8; 3]>) -> Self {
+        Self { range, names, missing }
+    }
+
+    /// The lowest and the highest end of the scales of all frames; `None` if no frame has a scale.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        self.range
+    }
+
+    /// The names of the categories of all frames, without a particular order.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// Adds what colours mean in a frame.
     pub fn add(&mut self, key: &ColorKey) {
         self.missing = self.missing.or(key.missing);

@@ -29,7 +29,7 @@ mod trace;
 use pace::Pace;
 
 pub use denoise::denoise;
-pub use light::{Sample, SampledPicture, radiance};
+pub use light::{Sample, SampledPicture, finish, radiance};
 pub use search::{Search, SearchPlan, SearchStructure};
 pub use shade::shade;
 pub use trace::trace;

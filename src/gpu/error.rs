@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::accel::BrickKind;
 use crate::camera::CameraKind;
+use crate::camera::film::Film;
 use crate::gpu::edit::ShaderEdit;
 use crate::image::ImageTooLarge;
 use crate::image::denoise::MissingGuide;
@@ -130,6 +131,12 @@ pub enum GpuError {
         "lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`"
     )]
     NotLit,
+    /// Something that shows or records a whole picture was given a part of a film.
+    #[error(
+        "this is a part of a film; frames, pictures of hosts and recordings have whole films, and only \
+         `Headless::render` and its like render parts"
+    )]
+    PartOfFilm,
     /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded
     /// without.
     #[error(
@@ -243,6 +250,11 @@ impl GpuError {
             other => Self::Device { message: other.to_string() },
         }
     }
+}
+
+/// Returns an error if a film is a part of another.
+pub(super) fn check_whole(film: &Film) -> Result<(), GpuError> {
+    if film.is_whole() { Ok(()) } else { Err(GpuError::PartOfFilm) }
 }
 
 /// Returns an error if the device could not create or bind a buffer of this size.

@@ -6,10 +6,12 @@ pub mod encoding;
 mod join;
 mod layer;
 pub(crate) mod outline;
+mod parts;
 mod rows;
 pub mod tone;
 
 pub use layer::{Layer, LayerSet, UnknownLayer};
+pub use parts::DoesNotFit;
 pub(crate) use rows::{Averages, RowMut};
 
 /// The id of a pixel whose ray hit nothing.

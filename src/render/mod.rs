@@ -176,8 +176,21 @@ impl RenderSettings {
         }
     }
 
-    /// The layers that rendering needs, including those that are wanted in the result.
-    pub(crate) fn layers_for(&self, wanted: LayerSet) -> LayerSet {
+    /// The same settings without what looks at neighbours of pixels: denoising and outlines. For parts of a film, which
+    /// [`cpu::finish`](crate::cpu::finish) or `Headless::finish` completes when they are joined.
+    #[must_use]
+    pub fn unfinished(&self) -> Self {
+        let mut settings = Self { is_denoised: false, ..self.clone() };
+        if let Integrator::Studio(studio) = &mut settings.integrator {
+            studio.outline = None;
+        }
+        settings
+    }
+
+    /// The layers that rendering needs, including those that are wanted in the result: outlines and denoising are guided
+    /// by layers of data.
+    #[must_use]
+    pub fn layers_for(&self, wanted: LayerSet) -> LayerSet {
         let lines = self.studio_parameters().and_then(|studio| studio.outline);
         let for_lines = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
         let for_noise = if self.is_denoised { denoise::GUIDES } else { LayerSet::COLOR };

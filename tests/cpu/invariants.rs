@@ -133,8 +133,15 @@ fn readers_and_writers_touch_no_files() {
     // The crate's documentation shows how a picture is written.
     let but = ["kernels/tests.rs", "kernels/page_tests.rs", "load/source.rs", "src/lib.rs"];
     assert_absent("src", &["std::fs", "fs::File"], &but);
-    let program =
-        ["read_file.rs", "output.rs", "demo.rs", "interrupt.rs", "prices.rs", "process.rs"];
+    let program = [
+        "read_file.rs",
+        "output.rs",
+        "demo.rs",
+        "interrupt.rs",
+        "job/files.rs",
+        "prices.rs",
+        "process.rs",
+    ];
     assert_absent("cli/src", &["std::fs"], &program);
 }
 

@@ -33,6 +33,7 @@ mod conformance;
 mod denoised;
 mod environment;
 mod environment_files;
+mod film_parts;
 mod framing;
 mod fuzz;
 mod generate;

@@ -19,6 +19,7 @@ mod device;
 mod device_shape;
 mod embedding;
 mod faults;
+mod film_parts;
 mod host;
 mod lens;
 mod light;
@@ -54,6 +55,7 @@ fn main() {
             parts::trials(),
             paths::trials(),
             embedding::trials(),
+            film_parts::trials(),
             host::trials(),
             denoised::trials(),
             device::trials(),

@@ -5,8 +5,10 @@ mod gif;
 mod moving;
 mod names;
 mod numbers;
+mod overview;
 mod range;
 mod run;
+mod series;
 mod sink;
 mod status;
 mod target;
@@ -22,11 +24,18 @@ use clap::{Args, ValueEnum};
 use super::args::{RenderArgs, Stereo};
 use super::failure::Failure;
 use moving::WantedPath;
+pub(crate) use overview::Overview;
 use range::FrameRange;
 pub(super) use run::run;
+pub(crate) use run::{Known, Ready, ready};
 use target::Target;
 
 const HEADING: &str = "Frames and movies";
+
+/// Whether a path is that of a movie.
+pub(super) fn is_movie(path: &Path) -> bool {
+    target::movie_of(path).is_some()
+}
 
 #[derive(Debug, Args)]
 pub(super) struct FramesArgs {
@@ -63,8 +72,32 @@ pub(super) struct FramesArgs {
     raw: Option<Raw>,
 }
 
+impl FramesArgs {
+    /// Whether these flags ask for several pictures, whatever the output is.
+    pub(super) fn asks_for_several(&self) -> bool {
+        self.frames.is_some() || self.turntable.is_some() || self.camera_path.is_some()
+    }
+
+    /// The file of a camera path.
+    pub(super) fn camera_path(&self) -> Option<&Path> {
+        self.camera_path.as_deref()
+    }
+
+    /// A flag that says how pictures are written, and not which.
+    pub(super) fn of_writing(&self) -> Option<&'static str> {
+        let given = [("--resume", self.resume), ("--raw", self.raw.is_some())];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
+    /// Replaces what says how pictures are written.
+    pub(super) fn set_writing(&mut self, fps: Option<u32>, raw: Option<Raw>) {
+        self.fps = fps.or(self.fps);
+        self.raw = raw;
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Raw {
+pub(super) enum Raw {
     /// YUV4MPEG2 with full resolution of color (C444), which ffmpeg and most players read
     Y4m,
 }

@@ -2,7 +2,7 @@
 
 use super::moving::WantedPath;
 use super::range::FrameRange;
-use super::run::Notes;
+use super::series::Notes;
 use super::target::Target;
 use super::{Pictures, Wanted};
 use crate::failure::Failure;

@@ -41,12 +41,23 @@ impl Union {
         }
     }
 
-    /// Makes a scene of the spheres that are left.
-    pub(super) fn scene(mut self) -> Result<Scene, SceneError> {
+    /// The spheres that are left, and how many of them, at the end, were added to the data.
+    pub(super) fn into_spheres(mut self) -> (Vec<[f64; 4]>, usize) {
         let added = self.added.len();
         self.spheres.append(&mut self.added);
-        Ok(Scene::from_f64(&self.spheres, LinearRgb::WHITE)?.with_added(added))
+        (self.spheres, added)
     }
+
+    /// Makes a scene of the spheres that are left.
+    pub(super) fn scene(self) -> Result<Scene, SceneError> {
+        let (spheres, added) = self.into_spheres();
+        scene_of(&spheres, added)
+    }
+}
+
+/// A scene of spheres, of which some at the end were added to the data.
+pub(super) fn scene_of(spheres: &[[f64; 4]], added: usize) -> Result<Scene, SceneError> {
+    Ok(Scene::from_f64(spheres, LinearRgb::WHITE)?.with_added(added))
 }
 
 /// Leaves out spheres that lie within the others.

@@ -5,6 +5,7 @@
 
 #[path = "../../../tests/support/harness.rs"]
 mod harness;
+mod job;
 mod light;
 mod plan;
 mod prices;
@@ -32,6 +33,7 @@ fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
 fn main() {
     harness::run(|| {
         let groups = [
+            job::trials(),
             light::trials(),
             plan::trials(),
             prices::trials(),

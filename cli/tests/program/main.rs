@@ -17,6 +17,12 @@ mod frames;
 mod generate;
 mod good_input;
 mod interrupt;
+mod job;
+#[cfg(unix)]
+mod job_faults;
+mod job_input;
+#[cfg(unix)]
+mod job_slurm;
 mod legend_room;
 mod light;
 mod looks;

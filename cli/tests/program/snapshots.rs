@@ -51,12 +51,13 @@ fn compare(name: &str, found: &str) {
 #[cfg_attr(not(feature = "gpu"), ignore = "without the feature `gpu` there are fewer commands")]
 fn help() {
     let folder = Folder::new();
-    for command in ["", "render", "verify", "certify", "plan", "bench", "demo", "generate", "info"]
-    {
+    let jobs = ["job", "job split", "job part", "job status", "job merge", "job submit"];
+    let others = ["", "render", "verify", "certify", "plan", "bench", "demo", "generate", "info"];
+    for command in others.into_iter().chain(jobs) {
         let run = folder.run(&format!("{command} --help")).succeeded();
         assert_eq!(run.stderr, "", "{command}");
-        let name = if command.is_empty() { "help" } else { &format!("help-{command}") };
-        compare(name, &String::from_utf8(run.stdout).unwrap());
+        let name = format!("help-{command}").replace(' ', "-");
+        compare(name.trim_end_matches('-'), &String::from_utf8(run.stdout).unwrap());
     }
 }
 

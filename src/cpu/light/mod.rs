@@ -70,7 +70,7 @@ impl<'a> SampledPicture<'a> {
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
-        let address = Address::new(pixel, sample, sampling.seed);
+        let address = Address::new(self.view.film.in_whole(pixel), sample, sampling.seed);
         let surface_ray = || self.lens.surface_ray(pixel, address);
         let found = match integrator {
             Integrator::Primary(_) => Some(self.primary(pixel)),
@@ -115,17 +115,8 @@ impl<'a> SampledPicture<'a> {
     }
 
     /// Completes a picture of which all means are known.
-    fn finish(&self, mut image: Image, layers: LayerSet) -> Image {
-        let settings = self.context.settings;
-        if settings.is_denoised {
-            // This cannot fail, because `layers_for` includes all guides.
-            image = denoise(&image).unwrap_or(image);
-        }
-        if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
-            outline::draw(&mut image, &lines);
-        }
-        image.keep(layers);
-        image
+    fn finish(&self, image: Image, layers: LayerSet) -> Image {
+        finish(image, self.context.settings, layers)
     }
 
     fn averages(&self, pixel: [u32; 2]) -> Averages {
@@ -139,6 +130,22 @@ impl<'a> SampledPicture<'a> {
     fn data(&self, pixel: [u32; 2]) -> Pixel {
         primary_pixel(self.context.search, &self.view, &PrimarySettings::default(), pixel)
     }
+}
+
+/// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers
+/// [`RenderSettings::layers_for`]: removes noise and draws outlines, as `settings` ask for, and keeps `layers`. The result
+/// is that of [`super::render`] with `settings`, to the bit. A picture that lacks layers for one of the steps is not
+/// changed by it.
+#[must_use]
+pub fn finish(mut image: Image, settings: &RenderSettings, layers: LayerSet) -> Image {
+    if settings.is_denoised {
+        image = denoise(&image).unwrap_or(image);
+    }
+    if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
+        outline::draw(&mut image, &lines);
+    }
+    image.keep(layers);
+    image
 }
 
 /// One sample of a pixel. For many samples, create a [`SampledPicture`] once.

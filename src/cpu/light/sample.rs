@@ -74,9 +74,11 @@ impl<'a> Lens<'a> {
     /// The ray of a sample in the scene's frame; `None` where the camera has no ray.
     pub(super) fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
         let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
-        let [column, row] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
         let View { camera, film } = self.view;
-        let location = film.relative_location(column, row);
+        // In the whole film, so that a part rounds as the whole does.
+        let place = film.in_whole(pixel);
+        let [column, row] = [0, 1].map(|axis| f64::from(place[axis]) + 0.5 + offset[axis]);
+        let location = film.whole().relative_location(column, row);
         if !camera.sees(location) {
             return None;
         }

@@ -109,6 +109,21 @@ impl Headless {
         block_on(self.render_planned_async(scene, plan, view, settings, layers, watches))
     }
 
+    /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers
+    /// [`RenderSettings::layers_for`]: removes noise and draws outlines, as `settings` ask for, and keeps `layers`. The
+    /// result is that of [`Headless::render`] with `settings` on this device, to the bit.
+    ///
+    /// # Errors
+    /// If noise is to be removed and the picture lacks a layer that guides it, or the device fails.
+    pub fn finish(
+        &self,
+        image: Image,
+        settings: &RenderSettings,
+        layers: LayerSet,
+    ) -> Result<Image, GpuError> {
+        block_on(self.finish_async(image, settings, layers))
+    }
+
     /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
     /// submission, and decides how the render continues.
     ///

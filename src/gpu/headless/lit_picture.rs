@@ -44,6 +44,21 @@ impl Headless {
             }
             done => done?,
         };
+        let image = self.finish_async(image, settings, layers).await?;
+        let noise = totals.noise(samples);
+        Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+    }
+
+    /// Completes a picture like [`Headless::finish`], without blocking the thread.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::finish`].
+    pub async fn finish_async(
+        &self,
+        mut image: Image,
+        settings: &RenderSettings,
+        layers: LayerSet,
+    ) -> Result<Image, GpuError> {
         if settings.is_denoised {
             let _phase = self.phase("denoise");
             image = self.denoise_async(&image).await?;
@@ -53,8 +68,7 @@ impl Headless {
             outline::draw(&mut image, &lines);
         }
         image.keep(layers);
-        let noise = totals.noise(samples);
-        Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+        Ok(image)
     }
 
     /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples

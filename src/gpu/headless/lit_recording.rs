@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use crate::camera::View;
 use crate::camera::film::Film;
-use crate::gpu::error::GpuError;
+use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::lit_inputs::inputs;
@@ -53,6 +53,7 @@ impl Headless {
         if settings.integrator.is_primary() {
             return Err(GpuError::NotLit);
         }
+        check_whole(&view.film)?;
         settings.check_with(scene.appearance())?;
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };

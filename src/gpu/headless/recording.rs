@@ -3,7 +3,7 @@
 
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
-use crate::gpu::error::GpuError;
+use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
@@ -72,6 +72,7 @@ impl Headless {
         settings: &RenderSettings,
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
+        check_whole(&view.film)?;
         let primary = scene.primary_settings(settings)?;
         let key = RendererKey {
             data_layers: true,

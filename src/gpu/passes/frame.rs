@@ -6,7 +6,7 @@ use wgpu::{BindGroup, Buffer, Device, Queue};
 
 use crate::camera::{CameraKind, View};
 use crate::gpu::checks::scoped;
-use crate::gpu::error::{GpuError, check_storage_size};
+use crate::gpu::error::{GpuError, check_storage_size, check_whole};
 use crate::gpu::passes::bands::{BandBuffers, rows_per_band};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::{Targets, checked_targets, describe_size};
@@ -241,6 +241,7 @@ impl Frame {
 
     /// Returns an error if the film has another size than the targets.
     pub(in crate::gpu) fn check_film(&self, view: &View<'_>) -> Result<(), GpuError> {
+        check_whole(&view.film)?;
         let film_size = [view.film.width(), view.film.height()];
         if film_size != self.size {
             return Err(GpuError::Target {

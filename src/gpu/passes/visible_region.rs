@@ -30,6 +30,8 @@ impl VisibleRegion {
         if !camera.kind().is_linear() || camera.has_lens() {
             return all;
         }
+        let whole = [film.whole().width(), film.whole().height()].map(f64::from);
+        let origin = film.origin().map(f64::from);
         let mut region = Self { first: size, end: [0.0; 2] };
         for corner in space.corners() {
             let Some(location) = camera.location_of(space.origin + corner) else {
@@ -40,7 +42,7 @@ impl VisibleRegion {
                 YAxis::Down => location.y,
             };
             for (axis, along) in [location.x, down].into_iter().enumerate() {
-                let pixel = (along + 1.0) / 2.0 * size[axis];
+                let pixel = (along + 1.0) / 2.0 * whole[axis] - origin[axis];
                 region.first[axis] = region.first[axis].min(pixel - PIXELS_AROUND);
                 region.end[axis] = region.end[axis].max(pixel + PIXELS_AROUND);
             }
@@ -64,7 +66,8 @@ impl VisibleRegion {
             (part(up, forward), part(forward, right), part(right, up))
         });
         let edge = |pixels: u32| 1.0 + 2.0 * PIXELS_AROUND / f64::from(pixels);
-        let (right, up) = (edge(view.film.width()), edge(view.film.height()));
+        let film = view.film.whole();
+        let (right, up) = (edge(film.width()), edge(film.height()));
         // All corners are on the other side of a plane through the eye, and so is the box.
         let is_outside = corners.iter().all(|(.., depth)| *depth <= 0.0)
             || corners.iter().all(|(x, _, depth)| *x > right * depth)

@@ -160,8 +160,8 @@ impl FrameParameters {
                 Shading::Flat => 0,
                 Shading::Headlight => 1,
             } + if primary.is_transparent { SHADING_TRANSPARENT } else { 0 },
-            film_size: [film.width(), film.height()],
-            tile_origin: tile.origin,
+            film_size: [film.whole().width(), film.whole().height()],
+            tile_origin: film.in_whole(tile.origin),
             tile_size: tile.size,
             target_origin: tile.in_target,
             y_sign: match film.y_axis() {

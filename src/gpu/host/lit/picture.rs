@@ -11,7 +11,7 @@ use super::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::device_shape::DeviceShape;
-use crate::gpu::error::GpuError;
+use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::passes::frame::{BandBrick, Frame, iteration_limit};
 use crate::gpu::passes::lit::{
     AT_ONCE, Frames, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy,
@@ -407,6 +407,7 @@ fn frames_of<'a>(
     settings: &RenderSettings,
     sizes: LitSizes,
 ) -> Result<impl Iterator<Item = (Tile, Frames)> + 'a, GpuError> {
+    check_whole(&view.film)?;
     let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
     let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
     Ok(tiles(&view.film, sizes.tile)

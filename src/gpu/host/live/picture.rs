@@ -8,7 +8,7 @@ use super::view::{SeenFrom, record};
 use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::checks::scoped;
-use crate::gpu::error::{GpuError, check_storage_size};
+use crate::gpu::error::{GpuError, check_storage_size, check_whole};
 use crate::gpu::host::lit::progress::LitState;
 use crate::gpu::host::lit::renderer::{LitRenderer, lit_key};
 use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
@@ -383,6 +383,7 @@ fn frames_of(
     view: &View<'_>,
     settings: &RenderSettings,
 ) -> Result<[FrameParameters; 2], GpuError> {
+    check_whole(&view.film)?;
     let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
     let region = scenes.visible_region(view, settings);
     let size = [view.film.width(), view.film.height()];

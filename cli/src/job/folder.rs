@@ -1,0 +1,152 @@
+//! The folder of a job: its files and their places.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use pinhole::color_by::JoinedKeys;
+use rayon::prelude::*;
+
+use super::digest;
+use super::files;
+use super::manifest::{Manifest, NAME, StoredOverview};
+use super::part_file::{Header, Problem, glance};
+use crate::failure::Failure;
+use crate::frames::Overview;
+
+/// A job and where it is.
+pub(super) struct Folder {
+    path: PathBuf,
+    pub(super) manifest: Manifest,
+}
+
+/// The folders inside.
+pub(super) const PARTS: &str = "parts";
+pub(super) const RUNNING: &str = "running";
+pub(super) const FAILED: &str = "failed";
+pub(super) const OVERVIEW: &str = "overview.bin";
+
+impl Folder {
+    /// Reads the description of a job.
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let absolute = std::path::absolute(path)
+            .with_context(|| format!("{}: this path has no meaning", path.display()))?;
+        let manifest = Manifest::read(&path.join(NAME))?;
+        Ok(Self { path: absolute, manifest })
+    }
+
+    pub(super) fn new(path: PathBuf, manifest: Manifest) -> Self {
+        Self { path, manifest }
+    }
+
+    /// The path, which does not depend on the current folder.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The path of a part.
+    pub(super) fn part(&self, unit: usize) -> PathBuf {
+        self.path.join(PARTS).join(format!("{unit:06}.part"))
+    }
+
+    /// The file that says that a unit is being rendered.
+    pub(super) fn running(&self, unit: usize) -> PathBuf {
+        self.path.join(RUNNING).join(format!("{unit:06}"))
+    }
+
+    /// The file that says why a unit failed.
+    pub(super) fn failed(&self, unit: usize) -> PathBuf {
+        self.path.join(FAILED).join(format!("{unit:06}"))
+    }
+
+    /// Looks at the headers of all parts.
+    pub(super) fn glance(&self) -> Vec<Result<Header, Problem>> {
+        let all = (0..self.manifest.units).into_par_iter();
+        all.map(|unit| glance(&self.part(unit), &self.manifest, unit)).collect()
+    }
+
+    /// Makes the folder current in which the job was split, so that its relative paths mean the same files.
+    pub(super) fn enter(&self) -> Result<(), Failure> {
+        let folder = &self.manifest.folder;
+        Ok(std::env::set_current_dir(folder).with_context(|| {
+            format!("{folder}: the folder in which the job was split cannot be entered; split it again here")
+        })?)
+    }
+
+    /// Refuses inputs that are not those that were split. The current folder must be that of [`Folder::enter`].
+    pub(super) fn check_inputs(&self) -> Result<(), Failure> {
+        for file in &self.manifest.files {
+            let found = digest::of_file(Path::new(&file.path));
+            let found = found.with_context(|| format!("{}: cannot be read", file.path))?;
+            if found != (file.bytes, file.sha256.clone()) {
+                return Err(Failure::Job(anyhow!(
+                    "{}: this file has changed since the job was split; split it again",
+                    file.path
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// What all frames are together, if the pictures are frames.
+    pub(super) fn overview(&self) -> Result<Option<Overview>, Failure> {
+        let Some(stored) = &self.manifest.overview else { return Ok(None) };
+        let path = self.path.join(OVERVIEW);
+        let bytes = files::read(&path)
+            .with_context(|| format!("{}: cannot be read; split the job again", path.display()))?;
+        let overview = (digest::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
+        let damaged = || anyhow!("{}: this file is damaged; split the job again", path.display());
+        Ok(Some(overview.flatten().ok_or_else(damaged)?))
+    }
+}
+
+/// The numbers of what all frames are together, and the description of the rest.
+pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
+    let range = overview.colors.range();
+    let numbers = range.iter().flatten().chain(overview.spheres.as_flattened());
+    let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
+    let stored = StoredOverview {
+        sha256: digest::hex(&bytes),
+        spheres: overview.spheres.len(),
+        added: overview.added,
+        has_range: range.is_some(),
+        categories: overview.colors.names().to_vec(),
+        missing: overview.colors.missing(),
+        kinds_from: overview.kinds_from,
+    };
+    (stored, bytes)
+}
+
+fn unpacked(stored: &StoredOverview, bytes: &[u8]) -> Option<Overview> {
+    let (words, rest) = bytes.as_chunks::<8>();
+    let numbers: Vec<f64> =
+        words.iter().map(|word| f64::from_bits(u64::from_le_bytes(*word))).collect();
+    let (range, numbers) = match stored.has_range {
+        true => numbers.split_first_chunk::<2>().map(|(range, rest)| (Some(*range), rest))?,
+        false => (None, &numbers[..]),
+    };
+    let (spheres, more) = numbers.as_chunks::<4>();
+    let fits = rest.is_empty() && more.is_empty();
+    if !fits || spheres.len() != stored.spheres || stored.added > spheres.len() {
+        return None;
+    }
+    let colors = JoinedKeys::new(range, stored.categories.clone(), stored.missing);
+    Some(Overview::stored(spheres.to_vec(), stored.added, colors, stored.kinds_from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_overview_is_read_back_to_the_bit() {
+        for range in [None, Some([f64::MIN_POSITIVE, 0.1 + 0.2])] {
+            let colors = JoinedKeys::new(range, vec!["a".to_owned()], Some([1, 2, 3]));
+            let overview = Overview::stored(vec![[0.1, -0.0, 1e300, 3.0]; 3], 1, colors, Some(7));
+            let (stored, bytes) = packed(&overview);
+            let read = unpacked(&stored, &bytes).unwrap();
+            assert_eq!(format!("{read:?}"), format!("{overview:?}"));
+            assert!(unpacked(&stored, &bytes[8..]).is_none());
+            assert!(unpacked(&stored, &bytes[1..]).is_none());
+        }
+    }
+}

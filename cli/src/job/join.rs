@@ -1,0 +1,112 @@
+//! Puts the parts of a picture together.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use anyhow::anyhow;
+use rayon::prelude::*;
+
+use super::files;
+use super::folder::{Folder, PARTS};
+use super::part_file::{self, Header, Problem};
+use super::units::ranges;
+use crate::failure::Failure;
+use crate::views::Views;
+use pinhole::image::Image;
+
+/// The time between two looks for parts that are not seen yet.
+const PAUSE: Duration = Duration::from_millis(200);
+
+/// Checks every byte of every part, and returns their headers. Waits for parts that are missing.
+pub(super) fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, Failure> {
+    let end = Instant::now() + wait;
+    loop {
+        // Reading the folder makes a network file system look for new files.
+        let _ = files::names(&folder.path().join(PARTS));
+        let is_missing = |found: &Result<Header, Problem>| matches!(found, Err(Problem::Missing));
+        if Instant::now() >= end || !folder.glance().iter().any(is_missing) {
+            break;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    let manifest = &folder.manifest;
+    let units = (0..manifest.units).into_par_iter();
+    let found: Vec<Result<Header, Problem>> = units
+        .map(|unit| part_file::read(&folder.part(unit), manifest, unit).map(|(header, _)| header))
+        .collect();
+    refuse(folder, &found)?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Refuses parts that are not there, damaged or foreign.
+fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Failure> {
+    let of = |problem: Problem| -> Vec<usize> {
+        let has = |unit: &usize| found[*unit].as_ref().err() == Some(&problem);
+        (0..found.len()).filter(has).collect()
+    };
+    let problems = [Problem::Missing, Problem::Damaged, Problem::Foreign];
+    let words: Vec<String> = problems
+        .into_iter()
+        .map(|problem| (problem, of(problem)))
+        .filter(|(_, units)| !units.is_empty())
+        .map(|(problem, units)| format!("{} {}", problem.word(), ranges(&units)))
+        .collect();
+    if words.is_empty() {
+        return Ok(());
+    }
+    let bad: Vec<usize> = (0..found.len()).filter(|unit| found[*unit].is_err()).collect();
+    Err(Failure::Job(anyhow!(
+        "{}: {} of {} parts cannot be merged: {}; render them again with --array={}",
+        folder.path().display(),
+        bad.len(),
+        found.len(),
+        words.join(", "),
+        ranges(&bad)
+    )))
+}
+
+/// What rendered the parts, and which units each rendered. Refuses more than one unless mixtures are allowed.
+pub(super) fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Failure> {
+    let mut devices: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for header in headers {
+        devices.entry(&header.device).or_default().push(header.unit);
+    }
+    if devices.len() > 1 && !allows_mixed {
+        let words: Vec<String> =
+            devices.iter().map(|(device, units)| format!("{device} {}", ranges(units))).collect();
+        return Err(Failure::Job(anyhow!(
+            "parts were rendered by different devices, whose pixels may differ in the last bits: {}; render some of them \
+             again, or add --allow-mixed-adapters",
+            words.join(", ")
+        )));
+    }
+    Ok(devices.into_keys().map(str::to_owned).collect())
+}
+
+/// The pictures of all eyes at a place among all pictures, from their parts.
+pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Failure> {
+    let manifest = &folder.manifest;
+    let [width, height] = manifest.size;
+    let empty = || {
+        let image = Image::new(width, height, manifest.layer_set());
+        image.map_err(|error| Failure::Job(error.into()))
+    };
+    let mut whole = match manifest.eyes {
+        2 => Views::Two([empty()?, empty()?]),
+        _ => Views::One(empty()?),
+    };
+    let tiles = manifest.tiles_of_picture();
+    for unit in place * tiles..(place + 1) * tiles {
+        let (_, (origin, _)) = manifest.unit(unit);
+        // It was checked, but may have changed since.
+        let part = part_file::read(&folder.part(unit), manifest, unit);
+        let (_, images) = part.map_err(|problem| {
+            let path = folder.part(unit);
+            Failure::Job(anyhow!("{}: this part is {}", path.display(), problem.word()))
+        })?;
+        for (whole, part) in whole.as_mut_slice().iter_mut().zip(images.as_slice()) {
+            whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
+        }
+    }
+    Ok(whole)
+}

@@ -1,0 +1,183 @@
+//! Pictures that many machines render: `split` divides them into units, `part` renders units, `status` says what is
+//! done, `merge` puts parts together, and `submit` hands all that to a scheduler.
+//!
+//! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
+//! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
+
+mod digest;
+mod files;
+mod folder;
+mod join;
+mod manifest;
+mod marks;
+mod merge;
+mod part;
+mod part_file;
+mod recipe;
+mod slurm;
+mod split;
+mod status;
+mod units;
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::args::RenderArgs;
+use super::failure::Failure;
+use super::frames::Raw;
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 the job failed, or parts are missing, damaged or of another job; \
+    2 wrong usage, such as an INDEX that the job has not; 5 the device was lost or did not answer, or the time of \
+    --timeout is over: try again; 130 stopped by a signal.";
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(super) struct JobArgs {
+    #[command(subcommand)]
+    command: JobCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum JobCommand {
+    /// Divide pictures into parts, and write what describes them into a folder
+    Split(Box<SplitArgs>),
+    /// Render parts; those that are there already are left as they are
+    Part(PartArgs),
+    /// Say which parts are done, missing, running or failed, and how much time is left
+    Status(StatusArgs),
+    /// Put the parts together: the same bytes as `render` writes on one machine
+    Merge(MergeArgs),
+    /// Hand the parts to a scheduler, and what puts them together after them
+    Submit(SubmitArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("output", |arg| arg.value_name("JOB/").help("Folder of the job, which is created and must not exist")),
+    mut_arg("layers", |arg| arg.value_name("LAYER").help(
+        "Data layer that `merge` can write in addition: alpha, depth, normal, position, albedo, id, samples or \
+         variance; may be repeated"
+    )),
+    mut_arg("time", |arg| arg.hide(true)),
+    mut_arg("noise", |arg| arg.hide(true)),
+    mut_arg("keep_partial", |arg| arg.hide(true)),
+    mut_arg("resume", |arg| arg.hide(true)),
+    mut_arg("raw", |arg| arg.hide(true)),
+    mut_arg("stereo", |arg| arg.hide(true)),
+    mut_arg("print_scene", |arg| arg.hide(true)),
+    after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture; its INDEX counts \
+    from 0, picture by picture and in each the tiles row by row."
+)]
+#[cfg_attr(feature = "gpu", command(mut_arg("profile", |arg| arg.hide(true))))]
+struct SplitArgs {
+    #[command(flatten)]
+    render: RenderArgs,
+    /// Divide each picture into columns and rows of tiles, such as 4x4
+    #[arg(long, value_name = "CxR", default_value = "1x1")]
+    tiles: String,
+    /// Prepare for EXR pictures, whose cameras leave no room for legends
+    #[arg(long)]
+    exr: bool,
+    /// Refused: the sums of a part of the samples cannot be added to the same bits as on one machine
+    #[arg(long, value_name = "N", hide = true)]
+    samples_per_part: Option<u32>,
+}
+
+#[derive(Debug, Args)]
+struct PartArgs {
+    /// Folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// Indices of the units to render, such as 7, or 0-15,20 as for sbatch --array
+    #[arg(value_name = "INDEX")]
+    units: String,
+    /// End with exit code 5 if a unit takes longer than this, in seconds, for drivers that hang
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    timeout: Option<f64>,
+    /// Say nothing but warnings and errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct StatusArgs {
+    /// Folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// Read every part to its end and check its digest
+    #[arg(long)]
+    check: bool,
+    /// Print the results as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct MergeArgs {
+    /// Folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// File for the picture, a pattern such as f%04d.png, a movie, or -, as for `render`
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Data layer to write in addition, as for `render`; the job must have been split with it
+    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
+    layers: Vec<String>,
+    /// Pictures of a movie for each second, from 1 to 240 [default: that of `split`, or 25]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=240))]
+    fps: Option<u32>,
+    /// Write a movie that is not compressed to standard output, with -o -
+    #[arg(long, value_enum)]
+    raw: Option<Raw>,
+    /// Join parts of different adapters or drivers, whose pixels may differ in the last bits
+    #[arg(long)]
+    allow_mixed_adapters: bool,
+    /// Wait this long, in seconds, for parts that are not seen yet, as on network file systems
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true)]
+    wait: f64,
+    /// Say nothing but warnings and errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct SubmitArgs {
+    /// Folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// Use Slurm: an array for the parts that are missing, and a job that depends on it and merges them
+    #[arg(long, required = true)]
+    slurm: bool,
+    /// What `merge` writes, as its -o; without it nothing is merged
+    #[arg(short, long, value_name = "OUT.png")]
+    output: Option<PathBuf>,
+    /// Data layer that `merge` writes in addition, as its --layer; may be repeated
+    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]", requires = "output")]
+    layers: Vec<String>,
+    /// Let at most this number of tasks of the array run at once
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    array_limit: Option<u32>,
+    /// Units of one task of the array [default: as many as keep the array below 1000 tasks]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    units_per_task: Option<u32>,
+    /// Partition of the cluster
+    #[arg(long, value_name = "NAME")]
+    partition: Option<String>,
+    /// Write the scripts to standard output, and submit nothing
+    #[arg(long)]
+    print: bool,
+    /// Further arguments of sbatch for the array, after --
+    #[arg(last = true, value_name = "SBATCH_ARGS")]
+    sbatch: Vec<String>,
+}
+
+pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
+    match &args.command {
+        JobCommand::Split(args) => split::run(args),
+        JobCommand::Part(args) => part::run(args),
+        JobCommand::Status(args) => status::run(args),
+        JobCommand::Merge(args) => merge::run(args),
+        JobCommand::Submit(args) => slurm::run(args),
+    }
+}

@@ -1,0 +1,168 @@
+//! `pinhole job part`: renders units, each into a file that appears whole or not at all.
+
+use std::io::{BufWriter, Write};
+use std::time::{Duration, Instant};
+
+use super::PartArgs;
+use super::folder::{Folder, PARTS};
+use super::manifest::VERSION;
+use super::marks::{Mark, clear_failed, set_failed};
+use super::part_file::{self, Header, payload};
+use super::recipe::{Recipe, check_same};
+use super::units::parse_list;
+use crate::device::Opened;
+use crate::failure::Failure;
+use crate::frames::{Known, Ready, ready};
+use crate::input::Input;
+use crate::interrupt;
+use crate::output::{name_all, unnamed_with};
+use crate::render::render_part;
+use crate::speak::tell;
+use crate::threads;
+
+/// The message if the program is stopped.
+const STOPPED: &str =
+    "stopped; the parts that were written are complete, and the others can be rendered again";
+
+/// The units of a job that are rendered now.
+struct Work<'a> {
+    folder: &'a Folder,
+    units: Vec<usize>,
+    limit: Option<Duration>,
+    quiet: bool,
+}
+
+pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
+    let started = Instant::now();
+    let folder = Folder::open(&args.job)?;
+    let asked = parse_list(&args.units, folder.manifest.units)?;
+    let limit = args.timeout.map(|seconds| {
+        let limit = Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
+        limit.ok_or_else(|| {
+            Failure::usage(format!("--timeout {seconds}: write a number of seconds greater than 0"))
+        })
+    });
+    let limit = limit.transpose()?;
+    let is_missing =
+        |unit: &usize| part_file::read(&folder.part(*unit), &folder.manifest, *unit).is_err();
+    let units: Vec<usize> = asked.iter().copied().filter(is_missing).collect();
+    if units.is_empty() {
+        return Ok(());
+    }
+    threads::start()?;
+    folder.enter()?;
+    folder.check_inputs()?;
+    interrupt::set_message(STOPPED);
+    let (count, quiet) = (units.len(), args.quiet);
+    let work = Work { folder: &folder, units, limit, quiet };
+    // What fails before a unit is begun, such as a device that cannot be opened, is the failure of the first.
+    let first = work.units[0];
+    work.run().inspect_err(|failure| {
+        if !matches!(failure, Failure::Stopped | Failure::StoppedBetween(_)) {
+            set_failed(&folder, first, &failure.message());
+        }
+    })?;
+    if !quiet {
+        let plural = if count == 1 { "" } else { "s" };
+        let seconds = started.elapsed().as_secs_f64();
+        tell(format_args!("{}: {count} part{plural}; {seconds:.1} s", args.job.display()));
+    }
+    Ok(())
+}
+
+impl Work<'_> {
+    fn run(&self) -> Result<(), Failure> {
+        let manifest = &self.folder.manifest;
+        let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path().join(PARTS), true)?;
+        let Recipe { args, wanted, job } = recipe;
+        let note = |note: &dyn std::fmt::Display| {
+            if !self.quiet {
+                tell(format_args!("note: {note}"));
+            }
+        };
+        let Some(wanted) = wanted else {
+            let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
+            let (_, _) = job.finish(&mut input, note)?;
+            self.check(&input, None)?;
+            return self.units.iter().try_for_each(|unit| self.render(*unit, &mut input, &opened));
+        };
+        let mut numbers: Vec<usize> =
+            self.units.iter().filter_map(|unit| manifest.number(*unit)).collect();
+        numbers.dedup();
+        let known = Known { overview: self.folder.overview()?, only: Some(&numbers) };
+        let Some(Ready { series, opened, all, .. }) = ready(&args, &wanted, job, known)? else {
+            return Ok(());
+        };
+        self.check(&series.input, Some(&all))?;
+        series.for_each(|number, input| {
+            let of_picture = |unit: &&usize| manifest.number(**unit) == Some(number);
+            let mut units = self.units.iter().filter(of_picture);
+            units.try_for_each(|unit| self.render(*unit, input, &opened))?;
+            Ok(true)
+        })
+    }
+
+    fn check(&self, input: &Input, numbers: Option<&[usize]>) -> Result<(), Failure> {
+        let size = [input.film.width(), input.film.height()];
+        let eyes = if input.eyes.is_some() { 2 } else { 1 };
+        check_same(&self.folder.manifest, numbers, size, eyes)
+    }
+
+    /// Renders a unit and writes it. Why it failed is kept.
+    fn render(&self, unit: usize, input: &mut Input, opened: &Opened) -> Result<(), Failure> {
+        let mark = Mark::new(self.folder, unit, self.limit);
+        let done = self.render_marked(unit, input, opened);
+        drop(mark);
+        match &done {
+            Ok(()) => clear_failed(self.folder, unit),
+            Err(Failure::Stopped | Failure::StoppedBetween(_)) => {}
+            Err(failure) => set_failed(self.folder, unit, &failure.message()),
+        }
+        done
+    }
+
+    fn render_marked(
+        &self,
+        unit: usize,
+        input: &mut Input,
+        opened: &Opened,
+    ) -> Result<(), Failure> {
+        let manifest = &self.folder.manifest;
+        let started = Instant::now();
+        let (_, (origin, size)) = manifest.unit(unit);
+        let part = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
+        // The layers that guide outlines and denoising are in the job already.
+        let images = render_part(input, part, manifest.layer_set(), opened)?;
+        let header = Header {
+            version: VERSION.to_owned(),
+            job: manifest.sha256.clone(),
+            unit,
+            device: described(opened),
+            adapter: opened.adapter().map(str::to_owned),
+            milliseconds: started.elapsed().as_millis() as u64,
+            bytes: payload(manifest, unit),
+        };
+        let path = self.folder.part(unit);
+        let file = unnamed_with(&path, |file| {
+            let mut out = BufWriter::new(&mut *file);
+            part_file::write(&header, &images, &mut out)?;
+            out.flush()?;
+            drop(out);
+            // A part that has its name must outlast a crash of the machine.
+            file.as_file().sync_all()
+        })?;
+        Ok(name_all(vec![(&path, file)])?)
+    }
+}
+
+/// What rendered, such that equal words mean equal bits: an adapter with its driver, or the CPU.
+pub(super) fn described(opened: &Opened) -> String {
+    match opened {
+        #[cfg(feature = "gpu")]
+        Opened::Device { headless, .. } => {
+            let info = headless.adapter_info();
+            format!("{} ({} {})", info.name, info.driver, info.driver_info)
+        }
+        _ => format!("CPU ({} {})", std::env::consts::ARCH, std::env::consts::OS),
+    }
+}

@@ -1,0 +1,159 @@
+//! The file of a part: a line that names the format, the length of a header in eight bytes, the header as JSON, the layers
+//! of the pictures of all eyes, and the digest of all bytes before it.
+
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::files;
+use super::manifest::{Manifest, VERSION};
+use crate::views::Views;
+use pinhole::image::Image;
+
+const START: &[u8] = b"pinhole part 1\n";
+
+/// The length of a digest.
+const DIGEST: usize = 32;
+
+/// No header is longer.
+const LONGEST_HEADER: u64 = 1 << 16;
+
+/// What a part says about itself.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Header {
+    /// The version of the program.
+    pub(super) version: String,
+    /// The digest of the job.
+    pub(super) job: String,
+    pub(super) unit: usize,
+    /// What rendered: an adapter with its driver, or the CPU.
+    pub(super) device: String,
+    /// The name of the adapter, as files of pictures have it.
+    pub(super) adapter: Option<String>,
+    pub(super) milliseconds: u64,
+    /// Bytes of the layers that follow.
+    pub(super) bytes: u64,
+}
+
+/// Why a file is not the part that is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Problem {
+    /// There is no file.
+    Missing,
+    /// It is not a part, or it was changed or cut off.
+    Damaged,
+    /// It belongs to another job, another unit or another version.
+    Foreign,
+}
+
+impl Problem {
+    pub(super) const fn word(self) -> &'static str {
+        match self {
+            Self::Missing => "missing",
+            Self::Damaged => "damaged",
+            Self::Foreign => "of another job",
+        }
+    }
+}
+
+/// How many bytes the layers of a unit have.
+pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
+    let (_, (_, [width, height])) = manifest.unit(unit);
+    let pixels = u64::from(width) * u64::from(height) * u64::from(manifest.eyes);
+    pixels * manifest.layer_set().bytes_per_pixel()
+}
+
+/// Writes a part.
+pub(super) fn write(
+    header: &Header,
+    images: &Views<Image>,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let mut digest = Sha256::new();
+    let text = serde_json::to_vec(header)?;
+    let length = (text.len() as u64).to_le_bytes();
+    let mut put = |bytes: &[u8]| {
+        digest.update(bytes);
+        out.write_all(bytes)
+    };
+    put(START)?;
+    put(&length)?;
+    put(&text)?;
+    images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
+    out.write_all(&digest.finalize())
+}
+
+/// Reads the header of a part, and checks that the file is the unit of this job and has its length, but not its bytes.
+pub(super) fn glance(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
+    let mut file = open(path)?;
+    let (header, before) = read_header(&mut file)?;
+    check_header(&header, manifest, unit)?;
+    let expected = before + header.bytes + DIGEST as u64;
+    let length = file.metadata().map_err(|_| Problem::Damaged)?.len();
+    if length == expected { Ok(header) } else { Err(Problem::Damaged) }
+}
+
+/// Reads a part and checks every byte of it.
+pub(super) fn read(
+    path: &Path,
+    manifest: &Manifest,
+    unit: usize,
+) -> Result<(Header, Views<Image>), Problem> {
+    let mut bytes = Vec::new();
+    let file = open(path)?;
+    // A file that is longer than a part can be is not read to its end.
+    let most = payload(manifest, unit) + LONGEST_HEADER + 1024;
+    file.take(most).read_to_end(&mut bytes).map_err(|_| Problem::Damaged)?;
+    let (contents, digest) = bytes.split_last_chunk::<DIGEST>().ok_or(Problem::Damaged)?;
+    if Sha256::digest(contents).as_slice() != digest {
+        return Err(Problem::Damaged);
+    }
+    let mut rest = contents;
+    let (header, _) = read_header(&mut rest)?;
+    check_header(&header, manifest, unit)?;
+    let (_, (_, size)) = manifest.unit(unit);
+    let layers = manifest.layer_set();
+    let of_eye = rest.len() / manifest.eyes.max(1) as usize;
+    let image = |bytes: &[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(Problem::Damaged);
+    let images = if manifest.eyes == 2 {
+        let (left, right) = rest.split_at(of_eye);
+        Views::Two([image(left)?, image(right)?])
+    } else {
+        Views::One(image(rest)?)
+    };
+    Ok((header, images))
+}
+
+fn open(path: &Path) -> Result<files::File, Problem> {
+    files::open(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => Problem::Missing,
+        _ => Problem::Damaged,
+    })
+}
+
+/// Reads the header, and returns how many bytes it takes with what is before it.
+fn read_header(file: &mut impl Read) -> Result<(Header, u64), Problem> {
+    let mut start = [0; START.len()];
+    let mut length = [0; 8];
+    let damaged = |_| Problem::Damaged;
+    file.read_exact(&mut start).map_err(damaged)?;
+    file.read_exact(&mut length).map_err(damaged)?;
+    let length = u64::from_le_bytes(length);
+    if start != START || length > LONGEST_HEADER {
+        return Err(Problem::Damaged);
+    }
+    let mut text = vec![0; length as usize];
+    file.read_exact(&mut text).map_err(damaged)?;
+    let header = serde_json::from_slice(&text).map_err(|_| Problem::Damaged)?;
+    Ok((header, (START.len() + size_of::<u64>()) as u64 + length))
+}
+
+fn check_header(header: &Header, manifest: &Manifest, unit: usize) -> Result<(), Problem> {
+    if header.job != manifest.sha256 || header.unit != unit || header.version != VERSION {
+        return Err(Problem::Foreign);
+    }
+    if header.bytes == payload(manifest, unit) { Ok(()) } else { Err(Problem::Damaged) }
+}

@@ -1,0 +1,251 @@
+//! `pinhole job split`: divides pictures into units and writes what describes them.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+
+use super::SplitArgs;
+use super::digest::{self, InputFile};
+use super::files;
+use super::folder::{FAILED, Folder, OVERVIEW, PARTS, RUNNING, packed};
+use super::manifest::{Manifest, NAME, UnitKind, VERSION, layer_names};
+use super::recipe::Recipe;
+use super::units::{parse_tiles, ranges, tile};
+use crate::args::Stereo;
+use crate::failure::Failure;
+use crate::frames::{Known, Overview, Ready, ready};
+use crate::input::Input;
+use crate::output::{name_all, unnamed};
+use crate::speak::tell;
+use crate::{progress, threads};
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::image::{Layer, LayerSet};
+use pinhole::render::{Integrator, RenderSettings};
+
+/// What is known of the pictures when the first was read.
+struct Found {
+    input: Input,
+    /// The layers that a PNG or an EXR needs.
+    layers: LayerSet,
+    pictures: Option<Vec<usize>>,
+    overview: Option<Overview>,
+}
+
+pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
+    refuse(args)?;
+    let asked = asked_layers(&args.render.layers)?;
+    // Without --print-scene, which is refused, clap requires it.
+    let job = args.render.output.clone().unwrap_or_default();
+    let job: PathBuf = job.components().collect();
+    let above = check_new(&job)?;
+    let arguments = std::env::args_os().map(|word| {
+        word.into_string().map_err(|word| {
+            Failure::usage(format!("{}: this is not UTF-8 text", word.to_string_lossy()))
+        })
+    });
+    let arguments = arguments.collect::<Result<Vec<String>, _>>()?;
+    let folder = std::env::current_dir().context("the current folder is not known")?;
+    let folder = folder.into_os_string().into_string().map_err(|folder| {
+        Failure::usage(format!("{}: this folder has no name in UTF-8", folder.to_string_lossy()))
+    })?;
+    let recipe = Recipe::of_parts(&arguments, &above, args.render.report.quiet)?.without_device();
+    threads::start()?;
+    let Found { input, layers, pictures, overview } = found(recipe)?;
+    let size = [input.film.width(), input.film.height()];
+    let tiles = parse_tiles(&args.tiles, size)?;
+    let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
+    let stored = overview.as_ref().map(packed);
+    let units =
+        pictures.as_ref().map_or(1, Vec::len).checked_mul(tiles[0] as usize * tiles[1] as usize);
+    let units =
+        units.ok_or_else(|| Failure::usage("these are too many units; choose fewer tiles"))?;
+    let (_, [width, height]) = tile(size, tiles, 0);
+    let manifest = Manifest {
+        pinhole_job: 1,
+        version: VERSION.to_owned(),
+        sha256: String::new(),
+        unit: UnitKind::Tile,
+        units,
+        arguments,
+        folder,
+        files: input_files(&input, args)?,
+        pictures,
+        size,
+        eyes: if input.eyes.is_some() { 2 } else { 1 },
+        tiles,
+        layers: layer_names(input.settings.layers_for(merged)),
+        merged_layers: layer_names(merged),
+        integrator: input.settings.integrator.name().to_owned(),
+        samples: input.settings.sampling.samples,
+        seed: input.settings.sampling.seed,
+        denoised: input.settings.is_denoised,
+        expected_milliseconds: expected(&input, u64::from(width) * u64::from(height)),
+        overview: stored.as_ref().map(|(stored, _)| stored.clone()),
+    };
+    let (manifest, text) = manifest.sealed()?;
+    let made = Folder::new(job.clone(), manifest);
+    create(&made, &text, stored.as_ref().map(|(_, bytes)| &bytes[..]))?;
+    progress::clear();
+    if !args.render.report.quiet {
+        said(&made);
+    }
+    Ok(())
+}
+
+/// Refuses flags that have no meaning for parts.
+fn refuse(args: &SplitArgs) -> Result<(), Failure> {
+    let render = &args.render;
+    if args.samples_per_part.is_some() {
+        return Err(Failure::usage(
+            "--samples-per-part: one machine adds the samples of a pixel one after the other, and the sums of parts of \
+             them round differently, so the bytes would not be the same; choose more --tiles",
+        ));
+    }
+    if let Some(flag) = render.stop_rule.given() {
+        return Err(Failure::usage(format!(
+            "{flag}: all parts must have the same samples, so they cannot depend on time or noise; choose --samples N"
+        )));
+    }
+    if let Some(flag) = render.frames.of_writing() {
+        return Err(Failure::usage(format!("{flag} belongs to `pinhole job merge`; remove it")));
+    }
+    if render.stereo == Some(Stereo::TwoFiles) {
+        return Err(Failure::usage(
+            "--stereo two-files: parts are merged into one picture; remove it",
+        ));
+    }
+    if render.report.print_scene {
+        return Err(Failure::usage("--print-scene belongs to `pinhole render`; remove it"));
+    }
+    if render.input.path == Path::new("-") {
+        return Err(Failure::usage("-: parts cannot read standard input again; name a file"));
+    }
+    Ok(())
+}
+
+/// The layers that the flags name; a file after `=` is left to `merge`.
+fn asked_layers(texts: &[String]) -> Result<LayerSet, Failure> {
+    let parsed = texts.iter().map(|text| {
+        let layer = text.parse::<Layer>();
+        layer.map_err(|error| Failure::usage(format!("--layer {text}: {error}")))
+    });
+    parsed.collect()
+}
+
+/// Refuses a folder that exists, and returns the folder that it will be in.
+fn check_new(job: &Path) -> Result<PathBuf, Failure> {
+    if job.symlink_metadata().is_ok() {
+        return Err(Failure::usage(format!(
+            "{}: this exists already; name a new folder for the job",
+            job.display()
+        )));
+    }
+    match job.parent() {
+        None => Err(Failure::usage("-o: name a new folder for the job")),
+        Some(above) if above == Path::new("") => Ok(PathBuf::from(".")),
+        Some(above) => Ok(above.to_path_buf()),
+    }
+}
+
+/// Reads the input of the first picture.
+fn found(recipe: Recipe) -> Result<Found, Failure> {
+    let Recipe { args, wanted, job } = recipe;
+    let note = |note: &dyn std::fmt::Display| {
+        if !args.report.quiet {
+            tell(format_args!("note: {note}"));
+        }
+    };
+    let Some(wanted) = wanted else {
+        let mut input = job.source.load()?;
+        input.notes.iter().for_each(|text| note(text));
+        let (encoding, _) = job.finish(&mut input, note)?;
+        let layers = job.outputs.layers(&encoding);
+        return Ok(Found { input, layers, pictures: None, overview: None });
+    };
+    let none = || anyhow!("no picture is asked for");
+    let Ready { series, writing, overview, all, .. } =
+        ready(&args, &wanted, job, Known::default())?.ok_or_else(none)?;
+    Ok(Found { input: series.input, layers: writing.layers, pictures: Some(all), overview })
+}
+
+/// The files that parts read, with their digests.
+fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failure> {
+    let mut paths: Vec<&Path> = input.files.iter().map(PathBuf::as_path).collect();
+    paths.extend(args.render.frames.camera_path());
+    let mut files: Vec<InputFile> = Vec::new();
+    for path in paths {
+        let cannot = || format!("{}: cannot be read", path.display());
+        let name = path.to_str().ok_or_else(|| anyhow!("{}: this is not UTF-8", path.display()))?;
+        if files.iter().any(|file| file.path == name) {
+            continue;
+        }
+        let (bytes, sha256) = digest::of_file(path).with_context(cannot)?;
+        files.push(InputFile { path: name.to_owned(), bytes, sha256 });
+    }
+    Ok(files)
+}
+
+/// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
+/// each sample has the rays that its integrator traces.
+fn expected(input: &Input, pixels: u64) -> u64 {
+    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings));
+    let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
+    let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
+    // Few spheres need no structure, and a test takes some nanoseconds.
+    let of_list = || 4.0 * rays as f64 * input.scene.len() as f64;
+    let nanoseconds = candidate.map_or_else(of_list, |candidate| candidate.total(rays));
+    ((nanoseconds / 1e6).ceil() as u64).max(1)
+}
+
+/// About how many rays a pixel needs.
+fn rays_of_pixel(settings: &RenderSettings) -> u64 {
+    let lights = settings.lights.len() as u64;
+    let of_sample = match &settings.integrator {
+        Integrator::Primary(_) => return 1,
+        Integrator::Studio(studio) => {
+            let ambient = studio.occlusion.map_or(0, |occlusion| u64::from(occlusion.samples));
+            1 + ambient + if studio.has_shadows { lights } else { 0 }
+        }
+        // What a later version may add, and paths: one of mean length has a ray to a light at each of its surfaces.
+        _ => 8,
+    };
+    of_sample.saturating_mul(settings.sampling.samples.into())
+}
+
+/// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
+fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Failure> {
+    let path = folder.path();
+    let cannot = || format!("{}: cannot be created", path.display());
+    files::create_folder(path).with_context(cannot)?;
+    let fill = || {
+        for inside in [PARTS, RUNNING, FAILED] {
+            files::create_folder(&path.join(inside)).with_context(cannot)?;
+        }
+        if let Some(bytes) = overview {
+            let file = path.join(OVERVIEW);
+            name_all(vec![(&file, unnamed(&file, bytes)?)])?;
+        }
+        let file = path.join(NAME);
+        name_all(vec![(&file, unnamed(&file, text.as_bytes())?)])
+    };
+    Ok(fill().inspect_err(|_| files::remove_folder(path))?)
+}
+
+fn said(folder: &Folder) {
+    let manifest = &folder.manifest;
+    let all: Vec<usize> = (0..manifest.units).collect();
+    let pictures = manifest.pictures.as_ref().map_or(1, Vec::len);
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let [columns, rows] = manifest.tiles;
+    tell(format_args!(
+        "{}: {} unit{}, {pictures} picture{} of {columns}x{rows} tiles, each expected to take {:.1} s on a software \
+         device; render them with `pinhole job part {} {}`",
+        folder.path().display(),
+        manifest.units,
+        plural(manifest.units),
+        plural(pictures),
+        manifest.expected_milliseconds as f64 / 1e3,
+        folder.path().display(),
+        ranges(&all)
+    ));
+}

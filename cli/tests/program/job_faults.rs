@@ -1,0 +1,207 @@
+//! Jobs survive what happens to processes, disks and clocks: submitted again they are completed, with the same bytes.
+
+use std::fs::{self, File};
+use std::process::Stdio;
+use std::time::{Duration, Instant, SystemTime};
+
+use sha2::{Digest, Sha256};
+
+use crate::job::{folder, part, status, through_parts};
+use crate::support::Folder;
+
+const SPLIT: &str = "a.xyz --frames :4 --tiles 2x2 --size 120x90 --samples 6";
+
+/// The bytes of the pictures of one machine.
+fn rendered(folder: &Folder) -> Vec<Vec<u8>> {
+    let flags = SPLIT.replace("--tiles 2x2", "");
+    folder.run(&format!("render {flags} --backend cpu -o r%d.png -q")).succeeded();
+    (0..4).map(|frame| folder.read(&format!("r{frame}.png"))).collect()
+}
+
+fn split(folder: &Folder) {
+    folder.run(&format!("job split {SPLIT} --backend cpu -o job -q")).succeeded();
+}
+
+/// Renders what is left, merges, and compares.
+#[track_caller]
+fn assert_completed(folder: &Folder, wanted: &[Vec<u8>]) {
+    folder.run("job part job 0-15 -q").succeeded();
+    folder.run("job merge job -o m%d.png -q").succeeded();
+    for (frame, wanted) in wanted.iter().enumerate() {
+        assert!(folder.read(&format!("m{frame}.png")) == *wanted, "frame {frame}");
+    }
+}
+
+/// Killed at 100 random moments, a job never has a part that is not whole.
+#[test]
+fn killed_parts_are_rendered_again() {
+    let folder = folder();
+    let wanted = rendered(&folder);
+    split(&folder);
+    let mut random = 7_u64;
+    for _ in 0..100 {
+        random =
+            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // Two parts, so that the first may be whole when the second is not.
+        let first = (random >> 33) % 15;
+        let mut command = folder.command(&format!("job part job {first}-{} -q", first + 1));
+        let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_micros((random >> 40) % 150_000));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if random >> 62 == 0 {
+            let unit = first as usize;
+            // Some are lost again, so that there is always something to do.
+            let _ = fs::remove_file(part(&folder, unit));
+        }
+    }
+    let found = status(&folder);
+    assert_eq!((&found["damaged"], &found["foreign"]), (&"".into(), &"".into()));
+    assert_completed(&folder, &wanted);
+}
+
+/// Wherever the disk is full, there is one line, exit code 1, and no part.
+#[test]
+fn a_full_disk_leaves_no_part() {
+    let folder = folder();
+    let wanted = rendered(&folder);
+    split(&folder);
+    // A part has 3,600 bytes for each number of a pixel; files may have this many blocks of 512 or 1024 bytes.
+    for blocks in [0, 1, 2, 4, 8, 16, 24] {
+        let program = env!("CARGO_BIN_EXE_pinhole");
+        let script = format!("ulimit -f {blocks}; exec {program} job part job 0 -q");
+        let mut shell = std::process::Command::new("sh");
+        let output = shell.args(["-c", &script]).current_dir(folder.path(".")).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{blocks}: {said}");
+        assert!(said.starts_with("error: ") && said.lines().count() == 1, "{blocks}: {said}");
+        let parts: Vec<_> = fs::read_dir(folder.path("job/parts")).unwrap().collect();
+        assert!(parts.is_empty(), "{blocks}: {parts:?}");
+    }
+    assert_eq!(status(&folder)["failed"][0]["unit"], 0);
+    assert_completed(&folder, &wanted);
+    assert_eq!(status(&folder)["failed"], serde_json::json!([]));
+}
+
+#[test]
+fn two_at_once_write_the_same_part() {
+    let folder = folder();
+    let wanted = rendered(&folder);
+    split(&folder);
+    let start = |_| folder.command("job part job 0-15 -q").spawn().unwrap();
+    let mut both: Vec<_> = (0..3).map(start).collect();
+    assert!(both.iter_mut().all(|child| child.wait().unwrap().success()));
+    assert_completed(&folder, &wanted);
+}
+
+/// As on a network file system, a part is seen only after a while.
+#[test]
+fn merge_waits_for_parts_that_are_not_seen_yet() {
+    let folder = folder();
+    let wanted = rendered(&folder);
+    split(&folder);
+    folder.run("job part job 0-15 -q").succeeded();
+    let (seen, hidden) = (part(&folder, 5), folder.path("hidden"));
+    fs::rename(&seen, &hidden).unwrap();
+    let started = Instant::now();
+    let run = folder.run("job merge job -o m%d.png --wait 0.3");
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    assert!(started.elapsed() >= Duration::from_millis(300));
+    let child = folder.command("job merge job -o m%d.png --wait 60 -q").spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    fs::rename(&hidden, &seen).unwrap();
+    assert!(child.wait_with_output().unwrap().status.success());
+    assert_completed(&folder, &wanted);
+}
+
+/// Marks of running units count by the clock of the file system, and one from the future is fresh.
+#[test]
+fn clocks_that_differ_do_no_harm() {
+    let folder = folder();
+    split(&folder);
+    let mark = folder.path("job/running/000003");
+    fs::write(&mark, "process 1 of elsewhere\n").unwrap();
+    let day = Duration::from_secs(86_400);
+    for (time, running) in
+        [(SystemTime::now(), "3"), (SystemTime::now() + day, "3"), (SystemTime::now() - day, "")]
+    {
+        File::options().write(true).open(&mark).unwrap().set_modified(time).unwrap();
+        assert_eq!(status(&folder)["running"], running);
+    }
+    folder.run("job part job 0-15 -q").succeeded();
+    assert_eq!(status(&folder)["running"], "");
+    // Parts of any age are parts.
+    let old = File::options().write(true).open(part(&folder, 0)).unwrap();
+    old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+    assert_eq!(status(&folder)["complete"], true);
+}
+
+#[test]
+fn a_part_that_hangs_ends_with_a_code_of_its_own() {
+    let folder = folder();
+    folder.run("generate random -n 20000 -o many.npy").succeeded();
+    folder
+        .run("job split many.npy --backend cpu --size 3000x3000 --samples 99 -o job -q")
+        .succeeded();
+    let run = folder.run("job part job 0 --timeout 0.5 -q");
+    assert_eq!(run.code, 5, "{}", run.stderr);
+    assert_eq!(
+        run.stderr,
+        "error: unit 0 did not end within 0.5 s; the device may hang: try again\n"
+    );
+    let found = status(&folder);
+    assert_eq!(found["failed"][0]["why"], "unit 0 did not end within 0.5 s");
+    assert_eq!((&found["running"], &found["done"]), (&"".into(), &0.into()));
+    assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
+}
+
+#[test]
+fn a_signal_leaves_whole_parts_alone() {
+    let folder = folder();
+    folder.run("generate random -n 20000 -o many.npy").succeeded();
+    folder
+        .run("job split many.npy --backend cpu --size 2000x2000 --samples 99 -o job -q")
+        .succeeded();
+    let child = folder.command("job part job 0").stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.starts_with("stopped; the parts that were written are complete"), "{said}");
+    assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
+}
+
+/// Gives a part another device, with a digest that fits.
+fn set_device(folder: &Folder, unit: usize, device: &str) {
+    let bytes = fs::read(part(folder, unit)).unwrap();
+    let (start, rest) = bytes.split_at(15);
+    let (length, rest) = rest.split_at(8);
+    let length = u64::from_le_bytes(length.try_into().unwrap()) as usize;
+    let mut header: serde_json::Value = serde_json::from_slice(&rest[..length]).unwrap();
+    header["device"] = device.into();
+    let header = serde_json::to_vec(&header).unwrap();
+    let mut other = start.to_vec();
+    other.extend((header.len() as u64).to_le_bytes());
+    other.extend(&header);
+    other.extend(&rest[length..rest.len() - 32]);
+    let digest = Sha256::digest(&other);
+    other.extend(digest);
+    fs::write(part(folder, unit), other).unwrap();
+}
+
+#[test]
+fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
+    let folder = folder();
+    through_parts(&folder, SPLIT, "-o good%d.png");
+    set_device(&folder, 3, "Another GPU (driver 1.2)");
+    let run = folder.run("job merge job -o m%d.png");
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    assert!(run.stderr.contains("Another GPU (driver 1.2) 3, CPU ("), "{}", run.stderr);
+    assert!(run.stderr.ends_with("add --allow-mixed-adapters\n"), "{}", run.stderr);
+    assert!(!folder.path("m0.png").exists());
+    assert_eq!(status(&folder)["devices"]["Another GPU (driver 1.2)"], 1);
+    folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
+    assert!(folder.read("m0.png") == folder.read("good0.png"));
+}
