@@ -3,7 +3,7 @@
 mod faults;
 mod inputs;
 mod random;
-mod scenes;
+pub(crate) mod scenes;
 
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 mod faults;
 mod inputs;
-mod scenes;
+pub(crate) mod scenes;
 
 use std::path::Path;
 
