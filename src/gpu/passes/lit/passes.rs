@@ -282,14 +282,14 @@ mod tests {
                         several_bricks,
                         one_pass: None,
                     };
-                    block_on(LitPasses::new(&device, key, &[])).unwrap();
+                    block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
                     let structure = Structure::NestedGrid(ListLayout::Balls);
                     for pass in OnePass::ALL {
                         let key = LitKey { structure, one_pass: Some(pass), ..key };
                         if mode == Mode::Studio {
-                            block_on(LitPasses::new(&device, key, &[])).unwrap();
+                            block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
                         }
                     }
                 }
