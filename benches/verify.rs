@@ -7,8 +7,15 @@
 //! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
 //! cargo bench --bench verify -- lit-campaign 500    # light paths of this number of random scenes; ends at a violation
 //! cargo bench --bench verify -- studio-campaign 500    # the same in random studios
+//! cargo bench --bench verify -- adversary 100    # devices that round as they like: all scenes of the campaign in small,
+//!                                                # and this number of random scenes and studios for each
 //! ```
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
+#![allow(
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "a benchmark may panic, and prints"
+)]
 
 use std::time::{Duration, Instant};
 
@@ -31,6 +38,10 @@ mod spheres;
 #[path = "../tests/support/random_light.rs"]
 mod random_light;
 
+#[path = "../tests/support/any_rounding/mod.rs"]
+mod any_rounding;
+
+use any_rounding::{Adversary, Rounding};
 use random_light::RandomView;
 
 /// The random view of a seed.
@@ -53,13 +64,31 @@ fn main() {
     }
     // The campaign runs only if it is named, because it takes minutes.
     if wanted.iter().any(|wanted| wanted == "campaign") {
-        campaign(&headless);
+        campaign(&headless, 1080);
     }
     let campaigns: [(&str, ViewOf); 2] =
         [("lit-campaign", random_light::view), ("studio-campaign", random_light::studio)];
     for (name, view) in campaigns {
         if let Some(at) = wanted.iter().position(|wanted| wanted == name) {
             let count = wanted.get(at + 1).map_or(500, |count| count.parse().unwrap());
+            lit_campaign(&headless, count, view);
+        }
+    }
+    if let Some(at) = wanted.iter().position(|wanted| wanted == "adversary") {
+        let count = wanted.get(at + 1).map_or(100, |count| count.parse().unwrap());
+        adversaries(count);
+    }
+}
+
+/// Checks pictures of devices that conform and round in different ways; ends at a violation.
+fn adversaries(count: u64) {
+    for (seed, rounding) in (1..).zip(Rounding::ALL) {
+        let rewrite = Some(Adversary::new(rounding, seed).rewrite());
+        let options = HeadlessOptions { rewrite, ..HeadlessOptions::default() };
+        let headless = Headless::open(&options).unwrap();
+        println!("{rounding:?}");
+        campaign(&headless, 128);
+        for view in [random_light::view as ViewOf, random_light::studio] {
             lit_campaign(&headless, count, view);
         }
     }
@@ -273,9 +302,9 @@ fn campaign_views(scene: &Scene) -> Vec<(&'static str, Box<dyn Camera>)> {
     ]
 }
 
-fn campaign(headless: &Headless) {
+fn campaign(headless: &Headless, side: u32) {
     heading();
-    let film = Film::new(1080, 1080).unwrap();
+    let film = Film::new(side, side).unwrap();
     let (mut rays, mut pictures) = (0, 0);
     let started = Instant::now();
     for (name, scene) in campaign_scenes() {

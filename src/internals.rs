@@ -14,7 +14,7 @@ pub use crate::accel::wide_node::{WIDE_LEAF, WideNode};
 pub use crate::accel::wide_tree::{WIDE_LEVELS, WideTree};
 pub use crate::cpu::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
-pub use crate::gpu::edit::ShaderEdit;
+pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 pub use crate::verify::lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
 pub use crate::verify::paths::{RecordedSample, RecordedSurface};
 pub use crate::verify::studio::{StudioLight, StudioSample, StudioSurface};

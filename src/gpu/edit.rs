@@ -1,5 +1,8 @@
 //! Edits of the shader source.
 
+use std::fmt;
+use std::sync::Arc;
+
 /// Replacement of text in a shader. It is meant for experiments, and for tests that insert a fault that must be found.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ShaderEdit {
@@ -10,4 +13,42 @@ pub struct ShaderEdit {
     pub find: String,
     /// The text that replaces it.
     pub replace: String,
+}
+
+/// A function that is given each composed kernel, its name and its WGSL, and returns what the device gets in its place.
+/// It is meant for tests that need another device: one that rounds otherwise, but may do so.
+#[derive(Clone)]
+pub struct KernelRewrite(Arc<RewriteKernel>);
+
+type RewriteKernel = dyn Fn(&str, &str) -> String + Send + Sync;
+
+impl KernelRewrite {
+    /// A rewrite by a function of the name of a kernel and its WGSL.
+    pub fn new(rewrite: impl Fn(&str, &str) -> String + Send + Sync + 'static) -> Self {
+        Self(Arc::new(rewrite))
+    }
+
+    pub(in crate::gpu) fn apply(&self, name: &str, source: &str) -> String {
+        (self.0)(name, source)
+    }
+}
+
+impl fmt::Debug for KernelRewrite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("KernelRewrite")
+    }
+}
+
+impl PartialEq for KernelRewrite {
+    /// Whether both are clones of one.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// All edits of the kernels of a device: first the replacements, and then the rewrite of what they are composed to.
+#[derive(Clone, Debug, Default)]
+pub(in crate::gpu) struct Edits {
+    pub(in crate::gpu) replacements: Vec<ShaderEdit>,
+    pub(in crate::gpu) rewrite: Option<KernelRewrite>,
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use wgpu::Limits;
 
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 use crate::gpu::profile::Profile;
 
 /// Options for opening a headless device.
@@ -32,6 +32,8 @@ pub struct HeadlessOptions {
     pub profile: Option<Profile>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
+    /// What is given to the device in place of each kernel. Only tests rewrite any.
+    pub rewrite: Option<KernelRewrite>,
 }
 
 /// The limits that a device is opened with.
@@ -59,6 +61,7 @@ impl Default for HeadlessOptions {
             device_type: None,
             profile: None,
             edits,
+            rewrite: None,
         }
     }
 }

@@ -4,11 +4,14 @@
 //! as ignored.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
+#[path = "../support/any_rounding/mod.rs"]
+mod any_rounding;
 #[path = "../support/harness.rs"]
 mod harness;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod adversary;
 mod agreement;
 mod appearance;
 mod async_forms;
@@ -45,6 +48,7 @@ use harness::{headless, trial};
 fn main() {
     harness::run(|| {
         let groups = [
+            adversary::trials(),
             agreement::trials(),
             appearance::trials(),
             bricks::trials(),

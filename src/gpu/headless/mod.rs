@@ -43,6 +43,7 @@ use crate::accel::{AccelChoice, Prices};
 use crate::camera::View;
 use crate::gpu::adapter;
 use crate::gpu::device_shape::DeviceShape;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
@@ -130,7 +131,10 @@ impl Headless {
         let downlevel = adapter.get_downlevel_capabilities().flags;
         let is_indirect =
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
-        let renderers = Turns::new(Renderers::new(options.edits.clone()));
+        let renderers = Turns::new(Renderers::new(Edits {
+            replacements: options.edits.clone(),
+            rewrite: options.rewrite.clone(),
+        }));
         let is_one_pass = options.one_pass;
         let info =
             AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };

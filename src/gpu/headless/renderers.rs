@@ -11,7 +11,7 @@ use wgpu::Device;
 
 use crate::accel::BrickKind;
 use crate::camera::{Camera, CameraKind};
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{AllLitPasses, LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
@@ -68,12 +68,12 @@ pub(in crate::gpu) struct Renderers {
     ahead: HashMap<RendererKey, JoinHandle<Result<Renderer, GpuError>>>,
     lit: AllLitPasses,
     recolor: Option<Recolor>,
-    edits: Vec<ShaderEdit>,
+    edits: Edits,
 }
 
 impl Renderers {
     /// Creates an empty collection. All renderers will be built with these edits of their shaders.
-    pub(in crate::gpu) fn new(edits: Vec<ShaderEdit>) -> Self {
+    pub(in crate::gpu) fn new(edits: Edits) -> Self {
         Self { edits, ..Self::default() }
     }
 
@@ -92,7 +92,8 @@ impl Renderers {
             keeps_rays,
             indirect: true,
             device_type: Some(device_type),
-            edits: self.edits.clone(),
+            edits: self.edits.replacements.clone(),
+            rewrite: self.edits.rewrite.clone(),
         }
     }
 

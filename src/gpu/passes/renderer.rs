@@ -9,7 +9,7 @@ use crate::accel::{BrickKind, Primitive};
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::device_shape::DeviceShape;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::{Query, RendererOptions};
 use crate::gpu::shader::formats::ColorTarget;
@@ -29,7 +29,7 @@ pub struct Renderer {
     pub(in crate::gpu) is_indirect: bool,
     pub(in crate::gpu) shape: DeviceShape,
     query: Query,
-    pub(in crate::gpu) edits: Vec<ShaderEdit>,
+    pub(in crate::gpu) edits: Edits,
     /// Pipelines that can be recorded.
     built: Vec<(PassKey, ComputePipeline)>,
     /// Pipelines that the device has not yet accepted, and what is known of them. The mutex makes a renderer `Sync`,
@@ -110,7 +110,7 @@ impl Renderer {
             is_indirect: options.indirect,
             shape: DeviceShape::of(device_type),
             query,
-            edits: options.edits.clone(),
+            edits: Edits { replacements: options.edits.clone(), rewrite: options.rewrite.clone() },
             built: Vec::new(),
             building: Mutex::new(VecDeque::new()),
             remaining,
@@ -174,7 +174,7 @@ impl Renderer {
     }
 
     /// The edits of the shader source.
-    pub(in crate::gpu) fn edits(&self) -> &[ShaderEdit] {
+    pub(in crate::gpu) fn edits(&self) -> &Edits {
         &self.edits
     }
 

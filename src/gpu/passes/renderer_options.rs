@@ -2,7 +2,7 @@
 
 use crate::accel::{Primitive, Structure};
 use crate::camera::CameraKind;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 use crate::gpu::shader::formats::ColorTarget;
 
 /// The cameras, structures and targets that a renderer is built for. A renderer with fewer cameras is built more
@@ -34,6 +34,8 @@ pub struct RendererOptions {
     pub device_type: Option<wgpu::DeviceType>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
+    /// What is given to the device in place of each kernel. Only tests rewrite any.
+    pub rewrite: Option<KernelRewrite>,
 }
 
 impl Default for RendererOptions {
@@ -52,6 +54,7 @@ impl Default for RendererOptions {
             indirect: true,
             device_type: None,
             edits: Vec::new(),
+            rewrite: None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::part::Part;
 use crate::camera::CameraKind;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 
 /// An entry point, and the parts that it is composed of.
@@ -46,14 +46,22 @@ impl Kernel {
         self
     }
 
-    /// The kernel after the edits of its parts.
-    pub(in crate::gpu) fn edited(mut self, edits: &[ShaderEdit]) -> Result<Self, GpuError> {
-        for edit in edits {
+    /// The kernel after the edits of its parts, and after it was rewritten as a whole.
+    pub(in crate::gpu) fn edited(mut self, edits: &Edits) -> Result<Self, GpuError> {
+        for edit in &edits.replacements {
             for part in self.parts.iter_mut().filter(|part| part.name == edit.file) {
                 if !part.source.contains(&edit.find) {
                     return Err(GpuError::NoSuchText { edit: edit.clone() });
                 }
                 part.source = part.source.replace(&edit.find, &edit.replace).into();
+            }
+        }
+        if let Some(rewrite) = &edits.rewrite {
+            let source = rewrite.apply(&self.name(), &self.source());
+            // The names of the parts, which name the kernel, stay; the first of them has all of the source.
+            self.parts.iter_mut().for_each(|part| part.source = "".into());
+            if let Some(first) = self.parts.first_mut() {
+                first.source = source.into();
             }
         }
         Ok(self)

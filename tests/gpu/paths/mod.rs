@@ -3,7 +3,7 @@
 mod faults;
 mod inputs;
 mod random;
-mod scenes;
+pub(crate) mod scenes;
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};

@@ -2,7 +2,7 @@
 
 mod faults;
 mod inputs;
-mod scenes;
+pub(crate) mod scenes;
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::LayerSet;

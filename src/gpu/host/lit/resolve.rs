@@ -3,7 +3,7 @@
 use wgpu::{BindGroupLayout, ComputePipeline, Device};
 
 use crate::gpu::checks::Checks;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::LitLayouts;
 use crate::gpu::shader::formats::ColorTarget;
@@ -30,7 +30,7 @@ pub(in crate::gpu) async fn resolve_pipeline(
     device: &Device,
     color: ColorTarget,
     targets: &BindGroupLayout,
-    edits: &[ShaderEdit],
+    edits: &Edits,
 ) -> Result<ComputePipeline, GpuError> {
     let checks = Checks::default();
     let kernel = resolve_kernel(color).edited(edits)?;

@@ -12,7 +12,7 @@ use super::passes::LitLayouts;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::shape_ids::ExcludeBy;
@@ -150,7 +150,7 @@ impl LivePasses {
         device: &Device,
         key: LiveKey,
         (color, has_data, targets): (ColorTarget, bool, &BindGroupLayout),
-        edits: &[ShaderEdit],
+        edits: &Edits,
     ) -> Result<Self, GpuError> {
         let checks = Checks::default();
         let options = RendererOptions {

@@ -6,7 +6,7 @@ use wgpu::{
 };
 
 use crate::gpu::checks::Checks;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::shader::Kernel;
@@ -51,7 +51,7 @@ impl Pass {
         device: &Device,
         kernel: Kernel,
         groups: &[&BindGroupLayout],
-        edits: &[ShaderEdit],
+        edits: &Edits,
         checks: &Checks,
     ) -> Result<Self, GpuError> {
         let name = kernel.entry_point;

@@ -12,7 +12,7 @@ use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEU
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
-use crate::gpu::edit::ShaderEdit;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::shape_ids::ExcludeBy;
@@ -138,7 +138,7 @@ impl LitPasses {
     pub(in crate::gpu) async fn new(
         device: &Device,
         key: LitKey,
-        edits: &[ShaderEdit],
+        edits: &Edits,
     ) -> Result<Self, GpuError> {
         let checks = Checks::default();
         let passes = Self::begin(device, key, edits, &checks)?;
@@ -150,7 +150,7 @@ impl LitPasses {
     fn begin(
         device: &Device,
         key: LitKey,
-        edits: &[ShaderEdit],
+        edits: &Edits,
         checks: &Checks,
     ) -> Result<Self, GpuError> {
         let options = RendererOptions {
@@ -282,14 +282,14 @@ mod tests {
                         several_bricks,
                         one_pass: None,
                     };
-                    block_on(LitPasses::new(&device, key, &[])).unwrap();
+                    block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
                     let structure = Structure::NestedGrid(ListLayout::Balls);
                     for pass in OnePass::ALL {
                         let key = LitKey { structure, one_pass: Some(pass), ..key };
                         if mode == Mode::Studio {
-                            block_on(LitPasses::new(&device, key, &[])).unwrap();
+                            block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
                         }
                     }
                 }
