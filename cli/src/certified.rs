@@ -8,13 +8,14 @@ use super::args::Arguments;
 use super::device::Opened;
 use super::failure::Failure;
 use super::input::Input;
-use super::picture::{Outputs, PictureFormat};
 use super::progress;
 use super::render;
+use super::views::Views;
 use pinhole::image::denoise;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::{Image, LayerSet};
 use pinhole::load::picture::FileSamples;
+use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::means::{Estimates, Means};
 use pinhole::verify::picture_certificate::{
     JudgedBy, PictureCertificate, samples_digest, scene_digest,
@@ -55,8 +56,12 @@ pub(super) struct Written {
 
 /// What was found about a picture.
 pub(super) enum Judged {
+    /// About each sample.
     Intervals(WrittenCertificate),
+    /// About the means of its samples.
     Means(Means),
+    /// About the means of light before it was denoised, and about what was made of it.
+    Denoised(Means, DenoiseCertificate),
 }
 
 impl Written {
@@ -149,31 +154,68 @@ pub(super) fn judge(
             .map_err(anyhow::Error::from)?;
         return Ok(Judged::Intervals(certificate));
     }
-    let ties = checked(&input.scene)?.ties(&input.view());
+    let is_png = matches!(written.samples, FileSamples::Encoded { .. });
+    let per_pixel = written.per_pixel;
+    let reference = other_estimate(input, per_pixel, |input| {
+        let image = render::render(input, layers, &Opened::Cpu)?;
+        Ok(Written::of(&image, encoding, is_png, per_pixel)?.colors())
+    })?;
+    let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
+    Ok(Judged::Means(means(input, (per_pixel, reach), &written.colors(), &reference)?))
+}
+
+/// Judges the light of a picture that is neither denoised nor finished otherwise.
+pub(super) fn means_of_light(
+    input: &mut Input,
+    image: &Image,
+    layers: LayerSet,
+) -> Result<Means, Failure> {
+    progress::stage("checking");
+    let colors = |image: &Image| -> Vec<[f64; 3]> {
+        image.color().iter().map(|rgb| rgb.map(f64::from)).collect()
+    };
+    let per_pixel = image.samples().and_then(|samples| samples.first().copied()).unwrap_or(1);
+    let reference = other_estimate(input, per_pixel, |input| {
+        let film = input.film;
+        match render::render_part(input, film, layers, &Opened::Cpu)? {
+            Views::One(image) | Views::Two([image, _]) => Ok(colors(&image)),
+        }
+    })?;
+    means(input, (per_pixel, 0), &colors(image), &reference)
+}
+
+/// The reference's picture with other random numbers.
+fn other_estimate(
+    input: &mut Input,
+    per_pixel: u32,
+    render: impl FnOnce(&mut Input) -> Result<Vec<[f64; 3]>, Failure>,
+) -> Result<Vec<[f64; 3]>, Failure> {
     let sampling = input.settings.sampling;
     input.settings.sampling.seed = sampling.seed.wrapping_add(OTHER_SEED);
-    input.settings.sampling.samples = written.per_pixel;
-    let reference = render::render(input, layers, &Opened::Cpu);
+    input.settings.sampling.samples = per_pixel;
+    let reference = render(input);
     input.settings.sampling = sampling;
-    let is_png = matches!(written.samples, FileSamples::Encoded { .. });
-    let reference = Written::of(&reference?, encoding, is_png, written.per_pixel)?;
-    let (found, expected) = (written.colors(), reference.colors());
-    let estimates = Estimates {
-        size: written.size,
-        samples: written.per_pixel,
-        reach: if input.settings.is_denoised { denoise::REACH } else { 0 },
-        found: &found,
-        expected: &expected,
-        ties: &ties,
-    };
-    Ok(Judged::Means(estimates.compare()))
+    reference
+}
+
+/// Compares the means of two pictures.
+fn means(
+    input: &Input,
+    (samples, reach): (u32, u32),
+    found: &[[f64; 3]],
+    expected: &[[f64; 3]],
+) -> Result<Means, Failure> {
+    let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
+    let ties = checker.ties(&input.view());
+    let size = [input.film.width(), input.film.height()];
+    Ok(Estimates { size, samples, reach, found, expected, ties: &ties }.compare())
 }
 
 impl Judged {
     pub(super) fn by(&self) -> JudgedBy {
         match self {
             Self::Intervals(_) => JudgedBy::Intervals,
-            Self::Means(_) => JudgedBy::Means,
+            Self::Means(_) | Self::Denoised(..) => JudgedBy::Means,
         }
     }
 
@@ -181,6 +223,7 @@ impl Judged {
         match self {
             Self::Intervals(certificate) => certificate.outcome(),
             Self::Means(means) => means.outcome(),
+            Self::Denoised(means, denoiser) => means.outcome().max(denoiser.outcome()),
         }
     }
 
@@ -192,8 +235,10 @@ impl Judged {
                 certificate.undecided() as u64,
                 certificate.count(Verdict::Violation) as u64,
             ],
-            Self::Means(means) => [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
-                .map(|outcome| means.count(outcome) as u64),
+            Self::Means(means) | Self::Denoised(means, _) => {
+                [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
+                    .map(|outcome| means.count(outcome) as u64)
+            }
         }
     }
 
@@ -201,9 +246,13 @@ impl Judged {
     pub(super) fn violation(&self) -> Option<String> {
         match self {
             Self::Intervals(certificate) => certificate.violations.first().map(ToString::to_string),
-            Self::Means(means) => {
+            Self::Means(means) | Self::Denoised(means, _) => {
                 let worst = means.worst().filter(|worst| worst.outcome == Outcome::Violated);
-                worst.map(ToString::to_string)
+                let denoiser = match self {
+                    Self::Denoised(_, denoiser) => denoiser.violations.first(),
+                    _ => None,
+                };
+                worst.map(ToString::to_string).or(denoiser.map(ToString::to_string))
             }
         }
     }
@@ -212,7 +261,7 @@ impl Judged {
     fn unit(&self) -> &'static str {
         match self {
             Self::Intervals(_) => "pixels",
-            Self::Means(_) => "means of regions",
+            Self::Means(_) | Self::Denoised(..) => "means of regions",
         }
     }
 
@@ -243,7 +292,7 @@ impl Judged {
                 "no violation was found, but {undecided} {unit} are undecided; at most {}",
                 match self {
                     Self::Intervals(_) => format!("{} % may be", 100.0 * MOST_UNDECIDED),
-                    Self::Means(_) =>
+                    Self::Means(_) | Self::Denoised(..) =>
                         "half of them may be; more samples, a larger picture or --denoise=false decide more".to_owned(),
                 }
             ))),
@@ -295,46 +344,6 @@ pub(super) fn compare(
         )),
         _ => Ok(()),
     }
-}
-
-/// A picture that was judged before it is written.
-pub(super) struct Certified {
-    pub(super) text: String,
-    /// Whether too much is undecided.
-    pub(super) verdict: Result<(), Failure>,
-}
-
-/// Judges a picture that was rendered, and returns what it shall carry. A picture that is not legal is an error.
-pub(super) fn of_render(
-    input: &mut Input,
-    outputs: &Outputs,
-    image: &Image,
-    encoding: &Encoding,
-    adapter: Option<&str>,
-) -> Result<Certified, Failure> {
-    let arguments = arguments()?;
-    let per_pixel = samples_per_pixel(image)?;
-    let is_png = outputs.format() == PictureFormat::Png;
-    let written = Written::of(image, encoding, is_png, per_pixel)?;
-    let judged = judge(input, encoding, outputs.layers(encoding), &written)?;
-    let verdict = judged.verdict();
-    if let Err(failure @ Failure::CheckFailed(_)) = verdict {
-        return Err(failure);
-    }
-    let certificate = certificate(input, &written, &judged, adapter, arguments);
-    Ok(Certified { text: certificate.to_text().map_err(anyhow::Error::from)?, verdict })
-}
-
-/// The number of samples of each pixel.
-fn samples_per_pixel(image: &Image) -> Result<u32> {
-    let samples = image.samples().unwrap_or_default();
-    let first = samples.first().copied().unwrap_or(1);
-    if samples.iter().any(|count| *count != first) {
-        return Err(anyhow!(
-            "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
-        ));
-    }
-    Ok(first)
 }
 
 /// The arguments of this process from which the picture follows, apart from the scene.

@@ -66,6 +66,7 @@ mod profile;
 mod progress;
 mod read_file;
 mod render;
+mod render_certified;
 mod report;
 #[cfg(feature = "gpu")]
 mod self_test;

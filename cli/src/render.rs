@@ -9,7 +9,6 @@ use anyhow::Context;
 
 use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
-use super::certified;
 use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
@@ -25,6 +24,7 @@ use super::picture::Outputs;
 use super::print_scene;
 use super::profile;
 use super::progress;
+use super::render_certified;
 use super::speak::tell;
 use super::stop_rule::{StopRule, Watching};
 use super::structure_flags::StructureFlags;
@@ -41,7 +41,7 @@ use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, Layer, LayerSet};
+use pinhole::image::{Image, LayerSet};
 #[cfg(feature = "gpu")]
 use pinhole::render::Watch;
 use pinhole::render::{Picture, RenderSettings};
@@ -165,14 +165,9 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         return Ok(());
     }
     if args.certify {
-        certified::check(&input, !outputs.annotations().is_empty())?;
-        // Means are of as many samples as were taken.
-        let layers = layers.with(Layer::Samples);
-        let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
-        let certified = certified::of_render(&mut input, &outputs, &image, &encoding, adapter)?;
-        outputs.with_certificate(certified.text).write(&image, &encoding, adapter, None)?;
+        let done = render_certified::run(&mut input, &job.stop_rule, outputs, &encoding, &opened);
         said(quiet, &input, started);
-        return certified.verdict;
+        return done;
     }
     let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
     outputs.write(&image, &encoding, adapter, None)?;

@@ -68,6 +68,12 @@ impl StopRule {
     }
 
     /// Whether the picture is written after a signal.
+    /// The flag that ends a picture before all samples are taken.
+    pub(super) fn flag(&self) -> Option<&'static str> {
+        let given = [("--time", self.time.is_some()), ("--noise", self.noise.is_some())];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
     pub(super) fn keeps_partial(&self) -> bool {
         self.keep_partial
     }

@@ -45,7 +45,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             && !fault.file.contains('#')
             && !OF_LAYERS.contains(&fault.name)
     };
-    for fault in faults::all().filter(of_color) {
+    for fault in faults::all().into_iter().filter(of_color) {
         trials.push(Trial::test(format!("written::faults::{}", fault.name), move || {
             let Fault { file, find, replace, view, .. } = fault;
             is_found(&faulty(file, find, replace)?, &view())

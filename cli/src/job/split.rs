@@ -114,6 +114,9 @@ fn refuse(args: &SplitArgs) -> Result<(), Failure> {
             "--stereo two-files: parts are merged into one picture; remove it",
         ));
     }
+    if render.certify {
+        return Err(Failure::usage("--certify: merged pictures carry no certificate; remove it"));
+    }
     if render.report.print_scene {
         return Err(Failure::usage("--print-scene belongs to `pinhole render`; remove it"));
     }

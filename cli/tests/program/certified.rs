@@ -68,11 +68,19 @@ fn a_picture_is_checked_with_the_scene_alone() {
 fn a_lit_picture_is_checked_by_means() {
     let folder = folder();
     let flags = "--style default --samples 24 --size 64x48 --backend cpu --quiet";
-    // The denoiser mixes so many pixels that nothing can be said about a small picture.
-    let run = folder.run(&format!("render data.csv -o a.png --certify {flags}"));
+    // Before it is written, light and denoiser are judged one after the other. Of the file alone nothing can be said about so
+    // small a picture, because the denoiser mixes so many pixels.
+    folder.run(&format!("render data.csv -o a.png --certify {flags}")).succeeded();
+    let run = folder.run("verify a.png --scene data.csv");
     assert_eq!(run.code, 4, "{}", run.stderr);
     assert!(run.stderr.ends_with("or --denoise=false decide more\n"), "{}", run.stderr);
-    assert_eq!(folder.run("verify a.png --scene data.csv").code, 4);
+    let run = folder.run(&format!("render data.csv -o b.png --certify {flags} --noise 0.1"));
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(
+        run.stderr.starts_with("error: --certify: --noise and the denoiser exclude"),
+        "{}",
+        run.stderr
+    );
     let flags = format!("{flags} --denoise=false");
     folder.run(&format!("render data.csv -o a.png --certify {flags}")).succeeded();
     let run = folder.run("verify a.png --scene data.csv").succeeded();

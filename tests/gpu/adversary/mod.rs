@@ -77,7 +77,7 @@ fn lit_views() -> Vec<(String, Lazy<RandomView>)> {
     let name = String::new;
     for (of, view) in paths::scenes::all() {
         let view = move || {
-            let paths::scenes::LitView { scene, camera, film, settings } = view();
+            let crate::light::scenes::LitView { scene, camera, film, settings } = view();
             RandomView { scene, camera, film, settings, name: name() }
         };
         views.push((format!("paths::{of}"), Box::new(view)));
