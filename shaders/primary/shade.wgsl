@@ -2,8 +2,8 @@
 // brick, and that of the first brick also the misses. Twin: src/cpu/shade.rs.
 // dispatched: for each band and each brick, with 8x8 pixels for each workgroup.
 // provides: shade
-// needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit,
-//   shade_entry, shape_normal, shapes, sphere_color, start_fences, surface_color, write_layers, write_with_alpha
+// needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, shade_entry,
+//   shape_normal, shapes, sphere_color, start_fences, surface_color, write_layers, write_with_alpha
 
 @compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {

@@ -69,6 +69,7 @@ impl Headless {
         let bytes = 16 * pixels.len() as u64;
         // These are the width and a part of the height of a film, so they fit into u32.
         let size = [width as u32, rows.len() as u32];
+        let kernel = denoise_kernel().edited(&self.edits)?;
         let phase = self.phase("create pipelines");
         let checks = Checks::default();
         let (filter, passes, result, back) = checks.create(device, || {
@@ -81,7 +82,7 @@ impl Headless {
                 (4, storage::<[f32; 4]>(false)),
             ];
             let layout = layout_of(device, "pinhole denoise", &kinds);
-            let filter = pipeline(device, &denoise_kernel(), &[&layout], &checks);
+            let filter = pipeline(device, &kernel, &[&layout], &checks);
             let buffer = |size, usage| {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("pinhole denoise"),

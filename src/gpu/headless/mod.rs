@@ -77,6 +77,8 @@ pub struct Headless {
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
     /// be attributed to a render.
     renderers: Turns<Renderers>,
+    /// Edits of kernels that are built where they are used.
+    edits: Edits,
 }
 
 impl Headless {
@@ -131,10 +133,8 @@ impl Headless {
         let downlevel = adapter.get_downlevel_capabilities().flags;
         let is_indirect =
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
-        let renderers = Turns::new(Renderers::new(Edits {
-            replacements: options.edits.clone(),
-            rewrite: options.rewrite.clone(),
-        }));
+        let edits = Edits { replacements: options.edits.clone(), rewrite: options.rewrite.clone() };
+        let renderers = Turns::new(Renderers::new(edits.clone()));
         let is_one_pass = options.one_pass;
         let info =
             AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
@@ -152,6 +152,7 @@ impl Headless {
             faults,
             profiler,
             renderers,
+            edits,
         })
     }
 

@@ -389,10 +389,10 @@ mod tests {
         let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
         assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
-        // The ray of each pixel, and the read-back buffers of rays and hits.
-        assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));
+        // Both rays of each pixel, and the read-back buffers of rays and hits.
+        assert_eq!(recording.device_bytes, plan.device_bytes + ((64 + 80) << 20));
         assert_eq!(recording.host_peak, HostPeak::Checking);
-        assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2 + 32) << 20) + 40_000);
+        assert_eq!(recording.host_bytes, plan.host_bytes + ((72 + 2 + 32) << 20) + 40_000);
         assert_eq!(recording.check(&Limits::default(), None), Ok(()));
     }
 

@@ -35,7 +35,7 @@ fn every_kernel_composes_and_validates() {
         kernels.len(),
         CameraKind::ALL.len()
             * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
-                + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
+                + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
             + 5
             + crate::gpu::host::kernels().len()
             + crate::gpu::passes::lit::all_kernels().len()
