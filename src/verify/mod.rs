@@ -78,7 +78,7 @@ pub use recording::{
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
-pub(crate) use rounding::{DIVIDE_ULP, SQRT_ULP, gamma};
+pub(crate) use rounding::{DIVIDE_UNITS, SQRT_ULP, gamma};
 pub use studio::StudioRecording;
 #[cfg(feature = "gpu")]
 pub(crate) use studio::{StudioLight, StudioSample, StudioSurface};
