@@ -2,6 +2,7 @@
 //! those whose results are farther off. For more scenes, run `cargo bench --bench verify -- adversary 100`.
 
 mod operations;
+mod structures;
 
 use std::sync::LazyLock;
 
@@ -66,6 +67,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         }));
     }
     trials.push(Trial::test("adversary::sixty_ulp_are_found", found));
+    trials.push(Trial::test("adversary::structures_agree", structures::agree));
     trials
 }
 
