@@ -36,6 +36,7 @@
 //! ```
 #![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
 
+mod bias;
 mod camera;
 mod candidates;
 mod certificate;
@@ -61,6 +62,7 @@ pub(crate) mod studio;
 mod upload;
 mod violation;
 
+pub use bias::{Deviation, Deviations, LARGEST_MEAN};
 pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;

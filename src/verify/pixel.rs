@@ -1,5 +1,6 @@
 //! The check of one pixel, stage by stage.
 
+use super::bias::{Deviations, deviation};
 use super::camera::{CameraModel, EnteredRay};
 use super::certificate::Verdict;
 use super::checker::Checker;
@@ -51,12 +52,14 @@ impl Layers {
 }
 
 impl PixelCheck<'_> {
-    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused.
+    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused. The
+    /// deviations of a decided hit are added to `measured`.
     pub(super) fn judge(
         &self,
         index: usize,
         pixel: [u32; 2],
         legal: &mut LegalHits,
+        measured: Option<&mut Deviations>,
     ) -> Result<Judged, ViolationKind> {
         let TracedPixel { ray, t, id } = self.recording.pixels[index];
         let layers = Layers::of(&self.recording.image, index);
@@ -102,6 +105,14 @@ impl PixelCheck<'_> {
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
         let normal = self.check_hit(&layers, &entered, &line, depths, id)?;
+        if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
+            for (what, found, legal) in entered.numbers(&ray) {
+                measured.add_if("camera", what, deviation(found, legal));
+            }
+            let t = side.and_then(|crossing| deviation(t.into(), crossing));
+            measured.add_if("trace", "the distance of a hit", t);
+            self.measure_shading(&layers, &line, &entered, measured);
+        }
         Ok(Judged { verdict, depth, normal })
     }
 
@@ -170,6 +181,32 @@ impl PixelCheck<'_> {
         let shading = self.recording.primary.shading;
         check_color(layers.color, legal_color(shading, color, normal, direction))?;
         Ok(fraction)
+    }
+}
+
+impl PixelCheck<'_> {
+    /// Adds the deviations of a legal normal and colour.
+    fn measure_shading(
+        &self,
+        layers: &Layers,
+        line: &Line,
+        entered: &EnteredRay,
+        measured: &mut Deviations,
+    ) {
+        let (scene, id) = (self.checker.scene, layers.id);
+        let normal = wide(layers.normal);
+        let normals = LegalNormals::new(line, scene.spheres()[id as usize], entered.slack());
+        if let Some((exact, error)) = normals.only() {
+            for axis in 0..3 {
+                let legal = Interval::around(exact[axis], error);
+                measured.add_if("shade", "the normal", deviation(normal[axis], legal));
+            }
+        }
+        let shading = self.recording.primary.shading;
+        let legal = legal_color(shading, scene.color(id).to_array(), normal, entered.direction);
+        for (found, legal) in layers.color.into_iter().zip(legal) {
+            measured.add_if("shade", "the color", deviation(found.into(), legal));
+        }
     }
 }
 
