@@ -11,7 +11,7 @@ const WIDE_LEVELS: u32 = 16u;
 // crowd have a margin for rays that start near it. Twin: `NearRays::widening` in src/accel/outliers.rs.
 fn widening(origin: vec3f) -> f32 {
     let farthest = length(max(abs(origin - brick.crowd_min), abs(brick.crowd_max - origin)));
-    return max(0x1p-18 * farthest - brick.crowd_margin, 0.0);
+    return max(0x1p-17 * farthest - brick.crowd_margin, 0.0);
 }
 
 // Counts the iterations of a node: one for the node, and at most four for each leaf, including the loop over leaves.

@@ -26,6 +26,31 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
     return entry;
 }
 
+//// probed
+// The ray of a pixel, computed where it is used. In place of the ray, the sum of two of its numbers is recorded, with
+// its rounding error, for the self-test: whether fences hold in a kernel that traces.
+// provides: entry_of
+// needs: Entry, fence, hit_index, make_entry
+
+// Two vectors for each pixel: a sum, the sum less its first term, the rounding error, and the same without fences; the
+// two terms.
+@group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
+
+fn entry_of(pixel_in_tile: vec2u) -> Entry {
+    let entry = make_entry(pixel_in_tile);
+    let first = 2u * hit_index(pixel_in_tile);
+    // TwoSum, as in self_test/arithmetic.wgsl, with |a| > |b|.
+    let a = fence(4.0 + fence(entry.ray.origin.x));
+    let b = fence(entry.ray.direction.x);
+    let sum = fence(a + b);
+    let back = fence(sum - a);
+    let error = fence(fence(a - fence(sum - back)) + fence(b - back));
+    let unfenced = (a - ((a + b) - ((a + b) - a))) + (b - ((a + b) - a));
+    rays[first] = vec4f(sum, back, error, unfenced);
+    rays[first + 1u] = vec4f(a, b, 0.0, 2.0);
+    return entry;
+}
+
 //// replayed
 // The ray of a pixel as the kernel of the first brick recorded it. Another kernel might compute a ray that differs in
 // the last bit.

@@ -40,8 +40,8 @@ struct FrameParameters {
     first_group: vec2u,
     // Row i of a dispatch is row i * row_step, modulo the number of rows.
     row_step: u32,
-    // Zero; see fence.wgsl.
-    zero: u32,
+    // The same number as `iteration_limit`; see frame.wgsl.
+    iteration_limit_again: u32,
 }
 
 // A part of the scene that fits into bindings.

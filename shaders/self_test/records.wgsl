@@ -4,8 +4,9 @@
 
 // Twin: the struct of the same name in src/gpu/self_test/records.rs. All structs of these kernels have twins there.
 struct SelfTest {
-    // Zero; see fence.wgsl.
-    zero: u32,
+    // Two equal numbers that are not 0, as in scene/frame.wgsl.
+    limit: u32,
+    limit_again: u32,
     // Numbers of iterations for loops.wgsl.
     single: u32,
     outer: u32,
@@ -16,5 +17,5 @@ struct SelfTest {
 @group(0) @binding(0) var<uniform> self_test: SelfTest;
 
 fn runtime_zero() -> u32 {
-    return self_test.zero;
+    return self_test.limit ^ self_test.limit_again;
 }

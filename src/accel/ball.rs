@@ -7,15 +7,17 @@
 //!
 //! # Why no sphere is lost
 //! A ball must be met by every ray that, according to the sphere test, hits its sphere at a distance at which the ray is
-//! in the cell. The terms are those of `slab.rs`: u = 2⁻²⁴ D, and the margin m is 64 u. The point P at that distance is
-//! within r + 28 u of the sphere's centre, in the cell up to 8 u, and on the part of the ray between the distances at
-//! which the walk enters and leaves the cell. The ray's position in the cell, start + t · speed − cell, is off by 10 u, the
-//! length of that part by 3 u, and the builder's position of the centre by 4 u. The distance between the ball's centre and
-//! that part of the ray is therefore at most |ball's centre − sphere's centre| + r + m, which is the ball's radius.
+//! in the cell. The terms are those of `slab.rs`, for a device that rounds as it likes: u = 2⁻²⁴ D, and the margin m is
+//! 128 u. The point P at that distance is within r + 51 u of the sphere's centre, in the cell up to 17 u, and on the part
+//! of the ray between the distances at which the walk enters and leaves the cell. The ray's position in the cell, start +
+//! t · speed − cell, is off by 17 u (two roundings each of start and of t · speed, two of the sum, and the quotient in
+//! `per_cell`), the length of that part by 11 u of a cell's part of D, and the builder's position of the centre by 4 u. The
+//! distance between the ball's centre and that part of the ray is therefore at most |ball's centre − sphere's centre| + r +
+//! m, which is the ball's radius.
 //!
-//! The test itself computes squares of lengths below 2⁹ quanta, since the ray's position is in the cell: v·v − (v·d)² and
-//! the square of what lies beyond the part. Each of its ten roundings, and the direction's length, move the result by
-//! less than 2¹⁸ · 2⁻²³; [`SLACK`] is more than that.
+//! The test itself computes squares of vectors v whose components are below 170 quanta, since the ray's position is in the
+//! cell: v·v − (v·d)² and the square of what lies beyond the part. Its ten roundings, and the direction's length, which may
+//! be off by 11 · 2⁻²³, move the result by less than 32 · 2⁻²³ v·v, which is 0.34; [`SLACK`] is more than that.
 //!
 //! A sphere whose ball would need a larger radius has a ball that contains the whole cell, so that every ray meets it.
 

@@ -12,9 +12,9 @@ use super::grid_geometry::{Cell, Level};
 const LEVELS: RangeInclusive<u32> = 1..=5;
 
 /// Rounding in the builder's f32 may leave out a sphere that is nearer than `margin`, and list one that is farther
-/// away. The arithmetic of a ray needs less than half a margin (see `SceneStatistics::margin`), so a sphere within half
-/// a margin of a cell must be listed; a sphere farther away than two margins must not be listed.
-const MUST_LIST: f64 = 0.5;
+/// away. The arithmetic of a ray needs less than 0.8 of a margin (`slab.rs`, `ball.rs`), so a sphere within that of a cell
+/// must be listed; a sphere farther away than two margins must not be listed.
+const MUST_LIST: f64 = 0.8;
 const MAY_LIST: f64 = 2.0;
 
 /// Why a grid is not valid for kernels.

@@ -6,7 +6,7 @@
 //! that test and of the walk: the test computes a point of the surface, or the quotient of its third case, which is no
 //! earlier than the entry into the widened sphere or the origin, if that lies in it and not in the sphere. `Grid::ray`
 //! accepts only rays for which twice w is at most a quarter of the grid's margin, which is more than 2⁻¹⁹ of the longest
-//! side of all cells ([`LEAST_MARGIN`]): 2⁻¹⁸ of the scene's diagonal, where cells reach less than twice as far. So:
+//! side of all cells ([`LEAST_MARGIN`]): 2⁻¹⁷ of the scene's diagonal, and cells reach less than twice as far. So:
 //!
 //! 1. *Cells.* The walk enters every cell that the ray crosses, up to a rounding of less than 8 u D. The sphere is listed in
 //!    the cell of that point and in all cells within its margin, because lists hold all spheres whose surfaces come within

@@ -1,6 +1,6 @@
 //! Outliers: a few spheres far away from all others, the crowd.
 //!
-//! Outliers make the box of a scene large, and its margin with it: 2⁻¹⁸ of the diagonal is 4 % of a crowd beside which a
+//! Outliers make the box of a scene large, and its margin with it: 2⁻¹⁷ of the diagonal is 8 % of a crowd beside which a
 //! sphere lies ten thousand times as far away. Rays that start near the crowd do not need so much for its spheres,
 //! because errors grow with the distance from a ray's origin to a centre (`slab.rs`). So a tree takes as margin of the
 //! crowd's spheres that of the crowd's box, and widens its boxes for rays that start farther away ([`Crowd::widening`]).
@@ -20,7 +20,7 @@ const MOST: usize = 4096;
 const SEVERAL_TIMES: f32 = 8.0;
 
 /// The number of margins in a side of the smallest cell that is worth its lists.
-const CELL_MARGINS: f32 = 16.0;
+const CELL_MARGINS: f32 = 8.0;
 
 /// The number of spheres in the sample from which the place of the crowd is estimated.
 const SAMPLES: usize = 1 << 14;

@@ -2,43 +2,52 @@
 //!
 //! # The margin
 //! The result of a tree must equal that of testing every sphere, to the bit, although both the sphere test and the box
-//! test have rounding errors. Boxes are therefore those of spheres inflated by a margin m, which the host sets to 2⁻¹⁸
-//! D, where D is the diagonal of the scene's box and every ray starts in that box. In units of u = 2⁻²⁴ D, m is 64. Let
-//! L be the vector from the ray's origin o to the centre, |L| ≤ D, and r the radius, r ≤ D/2:
+//! test have rounding errors. Boxes are therefore those of spheres inflated by a margin m, which the host sets to 2⁻¹⁷
+//! D, where D is the diagonal of the scene's box and every ray starts in that box. In units of u = 2⁻²⁴ D, m is 128. A
+//! device may do what WGSL allows (`src/verify/rounding.rs`): either neighbour is a result, which is off by 2 u if it is a
+//! length of D, a quotient is off by 7 u and a root by 10 u; products and sums may be fused, and sums taken in any order.
+//! Let L be the vector from the ray's origin o to the centre, and r the radius; |L| + r ≤ D, because the sphere is in the
+//! box. Let the direction d be of length 1 + ε; |ε| ≤ 11 · 2⁻²³ (half of three roundings of its square; a root, a
+//! reciprocal and a product). Squares of errors are left out; all of them together are less than 1 u.
 //!
-//! 1. *A ray that hits according to the test comes within r + 11 u of the centre.* The foot vector f is off by at
-//!    most 1 u from L, 4 u from b, 3 u from the direction's length and 2 u from its own product and
-//!    difference; the rounding of its square and of r² moves the decision by 1 u.
-//! 2. *The point P = o + t d that the test reports is as near, or o lies in the box.* From t = b − h, P is at
-//!    √(|f|² + h²) from the centre, and h = √(r² − f²) was computed from the same f: the large error of h near
-//!    a tangent is along the tangent. b adds 5 u. From t = c/(b + h), c is off by δ ≤ 6 u |L|. If o is
-//!    more than m/2 outside the sphere, δ is small compared with c. Either b + h ≥ |L|/2, and t is off by 12 u; or
-//!    r > 0.8 |L|, and |P − centre|², which changes by at most 3 δ, puts P off by 3 δ/(2 r) < 12 u. If not,
-//!    the inflated box contains o with m/2 to spare, and its entry is 0, which is less than any t. The same
-//!    holds for hits from inside, and where rounding alone puts a hit in front of o.
-//! 3. *The box test moves a plane by at most 8 u.* (plane − o) · 1/d has three roundings, q · step + start
-//!    three more, each relative to a length of at most 2 D, and an error of t along the axis i is one
-//!    of `d_i` times that in space. Components of the direction below [`SMALLEST_COMPONENT`] are replaced by
-//!    it, which bends a ray by 2⁻⁴⁰ D at most.
+//! 1. *A ray that hits according to the test comes within r + 9 u of the centre.* Rounding L, b d and their difference
+//!    moves the foot vector f by 2 u and 3 u. The errors of b and ε move it along the ray, across f, so that |f| only
+//!    grows. The sum of four squares decides, and moves the decision by 4 · 2⁻²³ r, which is 4 u.
+//! 2. *The point P that the test reports at the distance t is within r + 51 u, or o lies in the box.* Let h be the half
+//!    chord. The large error of h near a tangent is that of 1. All other errors are along the ray; one of e moves P
+//!    away from the surface by e h/r. They are:
+//!    * From outside, t = c/(b + h): c is off by (6 + 4 r²/|L|²) 2⁻²³ |L|², for L and four squares; b by 4 · 2⁻²³ |L|; h
+//!      by 16 · 2⁻²³ h, for the root and ε; the quotient and its divisor by 4.5 · 2⁻²³ t. Together the most is
+//!      14.5 · 2⁻²³ |L|, towards the centre of a small sphere, which is 29 u; where b + h is small, so is h/r. With 9 u of
+//!      1, less than 39 u. That is so for all o that are more than m/2 outside of the sphere. If o is nearer, the
+//!      inflated box contains it with m/2 to spare, and its entry is 0, which is less than any t.
+//!    * From inside with b ≥ 0, t = b + h: ε(2 b + h) for the length of d, which is 33 u; 4 u for b, 5 u for the root, 2 u
+//!      for the sum, and of 1 no more than 7 u, because |L| ≤ r. Together 51 u.
+//!    * From inside with b < 0, t = c/(b − h): by the same terms as from outside, less than 33 u.
 //!
-//! The sum is less than 40 u: if the sphere test gives t, then the box test of every box around the sphere
-//! gives an entry that is not beyond its exit and not beyond t. A box is left out only if its entry is
-//! *greater* than the nearest distance, so that equal distances are compared by id. The rest of the margin
-//! serves rays that start up to half a diagonal outside the scene's box.
+//!    The sign of c is wrong only if o is within 10 u of the surface, in the box. The same holds where rounding alone puts
+//!    a hit in front of o.
+//! 3. *The box test moves a plane by at most 17 u.* (plane − o) · 1/d has a difference, a product and the reciprocal:
+//!    5.5 · 2⁻²³ of a length of at most D. The planes of wide nodes, q · step + start, have five roundings and the
+//!    reciprocal: 8.5 · 2⁻²³ D. An error of t along the axis i is one of `d_i` times that in space. Components of the
+//!    direction below [`SMALLEST_COMPONENT`] are replaced by it, which bends a ray by 2⁻⁴⁰ D at most.
+//!
+//! The sum is 68 u: if the sphere test gives t, then the box test of every box around the sphere gives an entry that is
+//! not beyond its exit and not beyond t. A box is left out only if its entry is *greater* than the nearest distance, so
+//! that equal distances are compared by id. The rest of the margin serves rays that start up to half a diagonal outside
+//! the scene's box, whose errors are half as large again. `tests/cpu/box_margin.rs` searches for the largest error; it
+//! finds 22 u.
 //!
 //! # Smaller margins
 //! In an 8-wide tree of a scene with outliers (`outliers.rs`), spheres inside the box of the crowd have the margin of that
-//! box, 2⁻¹⁸ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens all boxes
-//! by w = 2⁻¹⁸ F − 2⁻¹⁸ D', if that is more than 0. For such a sphere, |L| ≤ F and r ≤ D'/2, so that 1 and 2 hold with the
-//! larger of F and D' instead of D; what boxes are wider is at least 64 u of it. In 3, a plane is moved by 8 u of that
-//! length, 1 u more for the sum with w, and by the errors that grow with the node: the node's grid starts up to its side
-//! W outside of the crowd's box, and its planes are up to 2 W from there, so that three roundings of W, three of 2 W and
-//! one of 3 W add less than 12 · 2⁻²⁴ W. Children's boxes are wider by [`NODE_PART`] W, which is more. Other spheres have the
-//! scene's margin, and all boxes around them contain it.
-//!
-//! These are the errors of a device that rounds to nearest, as all tested devices do. If a result may be either
-//! neighbour, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u or more, so this is not a proof
-//! for such devices; the largest error that a search of such cases found is 38 u.
+//! box, 2⁻¹⁷ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens all boxes
+//! by w = 2⁻¹⁷ F − 2⁻¹⁷ D', if that is more than 0. For such a sphere, |L| + r ≤ F or r ≤ D'/2, so that 1 and 2 hold with
+//! the larger of F and D' instead of D; what boxes are wider is at least 128 u of it. In 3, a plane is moved by 17 u of
+//! that length, 2 u more for the sum with w, and by the errors that grow with the node. The node's grid starts up to its
+//! side W outside of the crowd's box, its planes are less than 1.01 W from there and up to 1.01 W outside of the box. So
+//! three roundings of W, two of 1.01 W, and one and the reciprocal of 1.01 W add less than 20 · 2⁻²⁴ W. Children's boxes
+//! are wider by [`NODE_PART`] W, which is more. Other spheres have the scene's margin, and all boxes around them contain
+//! it.
 
 use glam::Vec3;
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::bias::Deviations;
 use super::outcome::Outcome;
 use super::upload::UploadError;
 use super::violation::Violation;
@@ -58,6 +59,8 @@ pub struct Certificate {
     pub worst_depth: f64,
     /// The largest deviation of a normal from the exact one, relative to its bound; at most 1 if legal.
     pub worst_normal: f64,
+    /// How far the numbers of decided pixels are from the middle of their bounds.
+    pub deviations: Deviations,
 }
 
 impl Certificate {
@@ -115,6 +118,6 @@ impl fmt::Display for Certificate {
         if let Some(first) = self.violations.first() {
             write!(f, "\nfirst violation: {first}")?;
         }
-        Ok(())
+        self.deviations.biased().try_for_each(|biased| write!(f, "\nbiased: {biased}"))
     }
 }

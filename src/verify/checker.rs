@@ -1,5 +1,6 @@
 //! The checker of recordings of a scene.
 
+use super::bias::Deviations;
 use super::camera::CameraModel;
 use super::candidates::Candidates;
 use super::certificate::{Certificate, KEPT, Verdict};
@@ -30,7 +31,12 @@ struct JudgedPixels {
     rendered_otherwise: usize,
     worst_depth: f64,
     worst_normal: f64,
+    deviations: Deviations,
 }
+
+/// In pictures of more pixels, one in some pixels is measured for biases.
+const ALL_MEASURED: usize = 1 << 16;
+const ONE_IN: usize = 8;
 
 impl Checker<'_> {
     /// The largest number of bytes that the checker needs for each sphere.
@@ -68,6 +74,7 @@ impl<'a> Checker<'a> {
             upload: upload::check(self.scene, &self.candidates, recording).err(),
             worst_depth: 0.0,
             worst_normal: 0.0,
+            deviations: Deviations::default(),
         };
         if certificate.upload.is_some() {
             return certificate;
@@ -89,6 +96,7 @@ impl<'a> Checker<'a> {
             certificate.violations.extend(part.violations.into_iter().take(room));
             certificate.worst_depth = certificate.worst_depth.max(part.worst_depth);
             certificate.worst_normal = certificate.worst_normal.max(part.worst_normal);
+            certificate.deviations.join(&part.deviations);
         }
         certificate
     }
@@ -98,10 +106,12 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> J
     let mut part =
         JudgedPixels { verdicts: Vec::with_capacity(range.len()), ..JudgedPixels::default() };
     let mut legal = LegalHits::default();
+    let one_in = if check.recording.pixels.len() > ALL_MEASURED { ONE_IN } else { 1 };
     for index in range {
         // The sides of a film are u32.
         let pixel = [(index % width as usize) as u32, (index / width as usize) as u32];
-        let judged = check.judge(index, pixel, &mut legal);
+        let measured = (index % one_in == 0).then_some(&mut part.deviations);
+        let judged = check.judge(index, pixel, &mut legal, measured);
         let rendered = check.judge_rendered(index, pixel, &mut legal);
         part.rendered_otherwise += usize::from(rendered.is_some());
         let judged = judged.and_then(|judged| rendered.unwrap_or(Ok(())).map(|()| judged));

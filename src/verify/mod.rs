@@ -36,6 +36,7 @@
 //! ```
 #![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
 
+mod bias;
 mod camera;
 mod candidates;
 mod certificate;
@@ -66,6 +67,7 @@ mod upload;
 mod violation;
 pub mod written;
 
+pub use bias::{Deviation, Deviations, LARGEST_MEAN};
 pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
@@ -83,7 +85,7 @@ pub use recording::{
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
-pub(crate) use rounding::{DIVIDE_ULP, SQRT_ULP, gamma};
+pub(crate) use rounding::{DIVIDE_UNITS, SQRT_ULP, gamma};
 pub use studio::StudioRecording;
 #[cfg(feature = "gpu")]
 pub(crate) use studio::{StudioLight, StudioSample, StudioSurface};

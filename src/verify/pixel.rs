@@ -1,5 +1,6 @@
 //! The check of one pixel, stage by stage.
 
+use super::bias::{Deviations, deviation};
 use super::camera::{CameraModel, EnteredRay};
 use super::certificate::Verdict;
 use super::checker::Checker;
@@ -29,6 +30,13 @@ pub(super) struct Judged {
     pub(super) normal: f64,
 }
 
+/// The ray with which a hit is shaded, and how far the device's may be from it.
+struct Shaded {
+    line: Line,
+    slack: Slack,
+    direction: [Interval; 3],
+}
+
 /// The layers of a pixel.
 #[derive(PartialEq)]
 pub(super) struct Layers {
@@ -51,12 +59,14 @@ impl Layers {
 }
 
 impl PixelCheck<'_> {
-    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused.
+    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused. The
+    /// deviations of a decided hit are added to `measured`.
     pub(super) fn judge(
         &self,
         index: usize,
         pixel: [u32; 2],
         legal: &mut LegalHits,
+        measured: Option<&mut Deviations>,
     ) -> Result<Judged, ViolationKind> {
         let TracedPixel { ray, t, id, shading_ray } = self.recording.pixels[index];
         let layers = Layers::of(&self.recording.image, index);
@@ -101,19 +111,23 @@ impl PixelCheck<'_> {
         let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
-        let normal = match shading_ray {
-            // Shading is known only as well as the ray that it must have had.
-            None => {
-                let shading = (&line, entered.slack(), entered.direction);
-                self.check_hit(&layers, depths, id, shading)?
+        // Without the ray of shading, it is known only as well as the ray that it must have had.
+        let mut shading = Shaded { line, slack: entered.slack(), direction: entered.direction };
+        if let Some(ray) = shading_ray {
+            let line = Line::new(ray.origin, ray.direction);
+            check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
+            let direction = ray.direction.map(exactly);
+            shading = Shaded { line, slack: Slack::default(), direction };
+        }
+        let normal = self.check_hit(&layers, depths, id, &shading)?;
+        if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
+            for (what, found, legal) in entered.numbers(&ray) {
+                measured.add_if("camera", what, deviation(found, legal));
             }
-            Some(ray) => {
-                let line = Line::new(ray.origin, ray.direction);
-                check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
-                let direction = ray.direction.map(exactly);
-                self.check_hit(&layers, depths, id, (&line, Slack::default(), direction))?
-            }
-        };
+            let t = side.and_then(|crossing| deviation(t.into(), crossing));
+            measured.add_if("trace", "the distance of a hit", t);
+            self.measure_shading(&layers, &shading, measured);
+        }
         Ok(Judged { verdict, depth, normal })
     }
 
@@ -146,7 +160,7 @@ impl PixelCheck<'_> {
         layers: &Layers,
         depths: Interval,
         id: u32,
-        (line, slack, direction): (&Line, Slack, [Interval; 3]),
+        shading: &Shaded,
     ) -> Result<f64, ViolationKind> {
         if layers.id != id {
             return Err(ViolationKind::Id { found: layers.id, traced: id });
@@ -154,7 +168,7 @@ impl PixelCheck<'_> {
         if !depths.contains(layers.depth.into()) {
             return Err(ViolationKind::Depth { found: layers.depth, legal: depths });
         }
-        self.check_shading(layers, line, slack, direction)
+        self.check_shading(layers, &shading.line, shading.slack, shading.direction)
     }
 
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
@@ -181,6 +195,26 @@ impl PixelCheck<'_> {
         let shading = self.recording.primary.shading;
         check_color(layers.color, legal_color(shading, color, normal, direction))?;
         Ok(fraction)
+    }
+}
+
+impl PixelCheck<'_> {
+    /// Adds the deviations of a legal normal and colour.
+    fn measure_shading(&self, layers: &Layers, ray: &Shaded, measured: &mut Deviations) {
+        let (scene, id) = (self.checker.scene, layers.id);
+        let normal = wide(layers.normal);
+        let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
+        if let Some((exact, error)) = normals.only() {
+            for axis in 0..3 {
+                let legal = Interval::around(exact[axis], error);
+                measured.add_if("shade", "the normal", deviation(normal[axis], legal));
+            }
+        }
+        let shading = self.recording.primary.shading;
+        let legal = legal_color(shading, scene.color(id).to_array(), normal, ray.direction);
+        for (found, legal) in layers.color.into_iter().zip(legal) {
+            measured.add_if("shade", "the color", deviation(found.into(), legal));
+        }
     }
 }
 

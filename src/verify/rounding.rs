@@ -2,7 +2,8 @@
 //!
 //! From the accuracy table of the WGSL specification ("Floating point accuracy"): sums, differences and products are
 //! rounded to either neighbour; a quotient is within 2.5 ULP, an inverse square root within 2 ULP, and a square root
-//! within the error of 1 divided by an inverse square root. Subnormal numbers may be flushed to zero. Products and sums
+//! within the error of 1 divided by an inverse square root. A quotient x/y may also be the product of x and 1/y, as
+//! compilers make it, although the table does not say so: then it has the errors of both. Subnormal numbers may be flushed to zero. Products and sums
 //! may be fused, and the terms of a sum may be added in any order. Therefore the error of an expression between two
 //! fences (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms' magnitudes, if no term passes through
 //! more than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
@@ -13,15 +14,16 @@ pub(super) const U: f64 = 1.0 / (1 << 23) as f64;
 /// The largest error if a subnormal number is flushed to zero: 2⁻¹²⁶.
 pub(super) const FLUSH: f64 = f32::MIN_POSITIVE as f64;
 
-/// The error of a quotient, in ULP.
-pub(crate) const DIVIDE_ULP: f64 = 2.5;
+/// The error of a quotient, in units of 2⁻²³ of it: 2.5 ULP of 1/y and one rounding of the product x · (1/y). That is
+/// not the same number of ULP, because an ULP of 1/y may be twice as large, relative to it, as one of the quotient.
+pub(crate) const DIVIDE_UNITS: f64 = 3.5;
 
-/// The error of a square root, in ULP: 2 of an inverse square root, 2.5 of the division, and the remainder of their
+/// The error of a square root, in ULP: 2 of an inverse square root, 2.5 of 1 divided by it, and the remainder of their
 /// product.
 pub(crate) const SQRT_ULP: f64 = 5.0;
 
-/// The relative error of a quotient.
-pub(super) const DIVIDE: f64 = DIVIDE_ULP * U;
+/// The relative error of a quotient, with the product of both errors.
+pub(super) const DIVIDE: f64 = DIVIDE_UNITS * U * (1.0 + U);
 
 /// The relative error of a square root.
 pub(super) const SQRT: f64 = SQRT_ULP * U;

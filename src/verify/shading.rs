@@ -40,6 +40,12 @@ impl LegalNormals {
         fractions.reduce(|a, b| if a < b { a } else { b }).unwrap_or(f64::INFINITY)
     }
 
+    /// The exact normal and the bound of its error, if there is only one.
+    pub(super) fn only(&self) -> Option<(DVec3, f64)> {
+        let mut all = self.crossings();
+        all.next().filter(|_| all.next().is_none())
+    }
+
     /// The exact normals, and the bounds of their errors.
     pub(super) fn crossings(&self) -> impl Iterator<Item = (DVec3, f64)> {
         self.sides.into_iter().flatten()

@@ -455,7 +455,7 @@ fn a_budget_is_kept_for_spheres_in_step_with_the_cells() {
     }
 }
 
-/// What `SceneStatistics::margin` derives: 2⁻¹⁸ of the diagonal, and two neighbours in f32 of the farthest
+/// What `SceneStatistics::margin` derives: 2⁻¹⁷ of the diagonal, and two neighbours in f32 of the farthest
 /// coordinate.
 #[test]
 fn the_margin_is_what_rounding_needs() {
@@ -463,7 +463,7 @@ fn the_margin_is_what_rounding_needs() {
         let statistics = SceneStatistics::of(&input);
         let margin = f64::from(statistics.margin());
         let diagonal = f64::from((statistics.max - statistics.min).length());
-        assert!(margin >= diagonal / 262_145.0, "{margin}");
+        assert!(margin >= diagonal / 131_073.0, "{margin}");
         let farthest = statistics.min.abs().max(statistics.max.abs()).max_element();
         assert!(margin >= f64::from(farthest) / 4_194_305.0, "{margin}");
     }

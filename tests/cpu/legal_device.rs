@@ -16,6 +16,8 @@ pub(crate) enum Habit {
     /// Always up, or always down: errors add up.
     Up,
     Down,
+    /// Up where a bit is set, from the lowest bit on, and else down; quotients and roots by all that they may be.
+    Chosen(u64),
     /// Either neighbour, each time anew; fused or not; sums in any order; quotients and roots off by what
     /// they may be; small numbers become zero.
     Random,
@@ -39,6 +41,13 @@ impl LegalDevice {
             Habit::Nearest => nearest,
             Habit::Up => up,
             Habit::Down => down,
+            Habit::Chosen(_) => {
+                if self.next_bit() {
+                    up
+                } else {
+                    down
+                }
+            }
             Habit::Random => {
                 if self.random.bool() {
                     up
@@ -54,6 +63,13 @@ impl LegalDevice {
         }
     }
 
+    /// Which way the next operation of a device rounds that was told so.
+    fn next_bit(&mut self) -> bool {
+        let Habit::Chosen(bits) = self.habit else { return false };
+        self.habit = Habit::Chosen(bits.rotate_right(1));
+        bits & 1 != 0
+    }
+
     /// Off by up to so many ULP.
     pub(crate) fn off(&mut self, exact: f64, ulps: f64) -> f32 {
         let rounded = self.round(exact);
@@ -64,6 +80,13 @@ impl LegalDevice {
         let part = match self.habit {
             Habit::Up => 1.0,
             Habit::Down => -1.0,
+            Habit::Chosen(_) => {
+                if self.next_bit() {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
             _ => self.random.f64() * 2.0 - 1.0,
         };
         // Truncated, so that it is off by no more.
@@ -89,7 +112,14 @@ impl LegalDevice {
         }
     }
 
+    /// The quotient, or the product with the inverse, which compilers put in its place.
     pub(crate) fn divide(&mut self, a: f32, b: f32) -> f32 {
+        if matches!(self.habit, Habit::Chosen(_))
+            || self.habit != Habit::Nearest && self.random.bool()
+        {
+            let inverse = self.off(1.0 / f64::from(b), 2.5);
+            return self.mul(a, inverse);
+        }
         self.off(f64::from(a) / f64::from(b), 2.5)
     }
 

@@ -24,6 +24,7 @@ mod seeds;
 
 mod basis;
 mod binary;
+mod box_margin;
 mod camera;
 mod camera_path;
 mod camera_tables;

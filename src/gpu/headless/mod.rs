@@ -7,6 +7,7 @@ mod blocking;
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
 pub(in crate::gpu) mod device_limits;
+mod fence_probe;
 pub(in crate::gpu) mod hidden_bricks;
 pub(in crate::gpu) mod lit_flow;
 mod lit_inputs;
@@ -214,14 +215,19 @@ impl Headless {
         &self,
         extent: SelfTestExtent,
     ) -> Result<SelfTestReport, GpuError> {
-        self.alone(async |_: &mut Renderers| {
-            let run = SelfTestRun::new(&self.device, extent).await?;
-            let mut encoder = self.encoder();
-            run.record(&mut encoder);
-            self.run(encoder, &run.buffers()).await?;
-            run.judge()
+        let report = self
+            .alone(async |_: &mut Renderers| {
+                let run = SelfTestRun::new(&self.device, extent).await?;
+                let mut encoder = self.encoder();
+                run.record(&mut encoder);
+                self.run(encoder, &run.buffers()).await?;
+                run.judge()
+            })
+            .await?;
+        Ok(match extent {
+            SelfTestExtent::Quick => report,
+            SelfTestExtent::Full => report.with(self.probe_fences().await?),
         })
-        .await
     }
 
     /// Renders a picture like [`Headless::render`], without blocking the thread while the device works. Other work of

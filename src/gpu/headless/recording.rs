@@ -40,7 +40,7 @@ pub(in crate::gpu) fn requested_view(
 }
 
 /// Creates a recording in which no pixel has been traced.
-fn new_recording(
+pub(super) fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
     primary: PrimarySettings,

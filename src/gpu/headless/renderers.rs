@@ -20,6 +20,7 @@ use crate::gpu::passes::renderer_options::{Query, RendererOptions};
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::self_test::fence_probe;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::image::LayerSet;
 
@@ -33,6 +34,8 @@ pub(in crate::gpu) struct RendererKey {
     pub(in crate::gpu) query: Query,
     pub(in crate::gpu) data_layers: bool,
     pub(in crate::gpu) keeps_rays: bool,
+    /// Whether it records sums in place of rays, for the self-test.
+    pub(in crate::gpu) probes_fences: bool,
 }
 
 impl RendererKey {
@@ -55,6 +58,7 @@ impl RendererKey {
             query: Query::Nearest,
             data_layers: layers != LayerSet::COLOR,
             keeps_rays: false,
+            probes_fences: false,
         }
     }
 }
@@ -81,6 +85,7 @@ impl Renderers {
         let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = *key;
         let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
         let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
+        let probe = key.probes_fences.then(fence_probe::edit);
         RendererOptions {
             color: ColorTarget::Linear32,
             data_layers,
@@ -92,7 +97,7 @@ impl Renderers {
             keeps_rays,
             indirect: true,
             device_type: Some(device_type),
-            edits: self.edits.replacements.clone(),
+            edits: probe.into_iter().chain(self.edits.replacements.clone()).collect(),
             rewrite: self.edits.rewrite.clone(),
         }
     }

@@ -6,7 +6,8 @@ use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::{
-    BrickPass, Kernel, Probe, occluded_kernel, self_test_kernel, shade_kernel, trace_kernel,
+    BrickPass, Kernel, Probe, occluded_kernel, probe_kernel, self_test_kernel, shade_kernel,
+    trace_kernel,
 };
 
 #[cfg(test)]
@@ -58,6 +59,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
             }
         }
     }
+    kernels.push(probe_kernel());
     kernels.extend(crate::gpu::passes::lit::all_kernels());
     kernels.push(crate::gpu::headless::denoise::denoise_kernel());
     kernels.push(crate::gpu::scene::recolor::recolor_kernel());

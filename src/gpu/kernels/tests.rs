@@ -36,7 +36,7 @@ fn every_kernel_composes_and_validates() {
         CameraKind::ALL.len()
             * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
                 + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
-            + 5
+            + 6
             + crate::gpu::host::kernels().len()
             + crate::gpu::passes::lit::all_kernels().len()
     );

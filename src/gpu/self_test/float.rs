@@ -40,6 +40,11 @@ pub(super) fn error_in_ulp(got: f32, exact: f64) -> f64 {
     (f64::from(got) - exact).abs() / ulp(exact)
 }
 
+/// The error of `got`, in units of 2⁻²³ of the exact value, which is not zero.
+pub(super) fn relative_error(got: f32, exact: f64) -> f64 {
+    (f64::from(got) - exact).abs() / (exact.abs() * f64::from(f32::EPSILON))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +76,8 @@ mod tests {
         let ulp = f64::from(f32::EPSILON);
         assert!((error_in_ulp(1.0, 1.0 + 2.5 * ulp) - 2.5).abs() < TINY);
         assert!((error_in_ulp(-6.0, -6.0 + 4.0 * ulp) - 1.0).abs() < TINY);
+        assert!((relative_error(-6.0, -6.0 * (1.0 + 2.5 * ulp)) - 2.5).abs() < 1e-5);
+        assert!(relative_error(f32::NAN, 1.0).is_nan());
         let least = f64::from(f32::from_bits(1));
         assert!((error_in_ulp(0.0, least) - 1.0).abs() < TINY);
         assert!(error_in_ulp(f32::NAN, 1.0).is_nan());

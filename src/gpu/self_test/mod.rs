@@ -9,6 +9,7 @@
 mod exactness;
 #[cfg(test)]
 mod fault_tests;
+pub(super) mod fence_probe;
 mod float;
 mod inputs;
 mod loops;

@@ -4,12 +4,21 @@
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct SelfTest {
-    pub(in crate::gpu) zero: u32,
+    pub(in crate::gpu) limit: u32,
+    pub(in crate::gpu) limit_again: u32,
     pub(in crate::gpu) single: u32,
     pub(in crate::gpu) outer: u32,
     pub(in crate::gpu) inner: u32,
+}
+
+impl Default for SelfTest {
+    /// No loops, and numbers for fences like those of a frame.
+    fn default() -> Self {
+        let limit = 64_000;
+        Self { limit, limit_again: limit, single: 0, outer: 0, inner: 0 }
+    }
 }
 
 #[repr(C)]

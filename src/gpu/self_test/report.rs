@@ -63,6 +63,13 @@ impl SelfTestReport {
         Self { properties }
     }
 
+    /// The report with one more property.
+    #[must_use]
+    pub(in crate::gpu) fn with(mut self, property: TestedProperty) -> Self {
+        self.properties.push(property);
+        self
+    }
+
     /// Returns all tested properties, in a fixed order.
     #[must_use]
     pub fn properties(&self) -> &[TestedProperty] {

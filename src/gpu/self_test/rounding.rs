@@ -1,9 +1,9 @@
 //! Judging operations whose results may be rounded.
 
-use super::float::{PAD, error_in_ulp, is_neighbour, neighbours};
+use super::float::{PAD, error_in_ulp, is_neighbour, neighbours, relative_error};
 use super::records::{Arithmetic, Operands};
 use super::report::{Tally, TestedProperty, percent};
-use crate::verify::{DIVIDE_ULP, SQRT_ULP, gamma};
+use crate::verify::{DIVIDE_UNITS, SQRT_ULP, gamma};
 
 /// Maximum allowed error of 1/√x in ULP. The bounds of other operations are those of the checker.
 const INVERSE_SQRT: f64 = 2.0;
@@ -95,11 +95,29 @@ fn add_multiply(pairs: &[Pair<'_>]) -> TestedProperty {
     tally.property("add_multiply", words, vec![("nearest_percent", nearest)])
 }
 
-/// Judges results whose errors are bounded in ULP. Each has a description, the result of the device and the exact
-/// value.
-fn in_ulp(
+/// How the error of a result is measured.
+struct Measure {
+    of: fn(f32, f64) -> f64,
+    /// In words, after the number.
+    unit: &'static str,
+    /// The names of figures: the largest that was found, and the largest that is allowed.
+    figures: [&'static str; 2],
+}
+
+const IN_ULP: Measure =
+    Measure { of: error_in_ulp, unit: "ULP", figures: ["worst_ulp", "allowed_ulp"] };
+
+/// Errors of quotients, which may be products of two rounded numbers.
+const RELATIVE: Measure =
+    Measure {
+        of: relative_error, unit: "· 2⁻²³ of it", figures: ["worst_units", "allowed_units"]
+    };
+
+/// Judges results whose errors are bounded. Each has a description, the result of the device and the exact value.
+fn within(
     name: &'static str,
     bound: f64,
+    Measure { of, unit, figures: [found, allowed] }: Measure,
     results: impl Iterator<Item = (String, f32, f64)>,
 ) -> TestedProperty {
     let mut tally = Tally::default();
@@ -108,15 +126,15 @@ fn in_ulp(
         let error = if exact == 0.0 {
             if got == 0.0 { 0.0 } else { f64::INFINITY }
         } else {
-            error_in_ulp(got, exact)
+            of(got, exact)
         };
         // A NaN fails this comparison.
-        tally.check(error <= bound + PAD, || format!("{what} = {got:e}, off by {error:.2} ULP"));
+        tally.check(error <= bound + PAD, || format!("{what} = {got:e}, off by {error:.2} {unit}"));
         worst = worst.max(error);
     }
     let words =
-        format!("the worst of {} is off by {worst:.2} ULP; {bound} are allowed", tally.tested());
-    tally.property(name, words, vec![("worst_ulp", worst), ("allowed_ulp", bound)])
+        format!("the worst of {} is off by {worst:.2} {unit}; {bound} are allowed", tally.tested());
+    tally.property(name, words, vec![(found, worst), (allowed, bound)])
 }
 
 fn divide(pairs: &[Pair<'_>]) -> TestedProperty {
@@ -124,14 +142,14 @@ fn divide(pairs: &[Pair<'_>]) -> TestedProperty {
         let exact = f64::from(o.dividend) / f64::from(o.divisor);
         (format!("{:e} / {:e}", o.dividend, o.divisor), answer.quotient, exact)
     });
-    in_ulp("divide", DIVIDE_ULP, results)
+    within("divide", DIVIDE_UNITS, RELATIVE, results)
 }
 
 fn sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
     let results = pairs.iter().map(|(o, answer)| {
         (format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt())
     });
-    in_ulp("sqrt", SQRT_ULP, results)
+    within("sqrt", SQRT_ULP, IN_ULP, results)
 }
 
 fn inverse_sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
@@ -140,7 +158,7 @@ fn inverse_sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
         let exact = 1.0 / f64::from(o.radicand).sqrt();
         (format!("inverseSqrt({:e})", o.radicand), answer.inverse_root, exact)
     });
-    in_ulp("inverse_sqrt", INVERSE_SQRT, results)
+    within("inverse_sqrt", INVERSE_SQRT, IN_ULP, results)
 }
 
 fn dot(pairs: &[Pair<'_>]) -> TestedProperty {

@@ -41,6 +41,16 @@ pub(in crate::gpu) fn trace_kernel(
     Kernel { entry_point: "trace", parts }
 }
 
+/// The kernel that finds the nearest sphere of every ray and probes fences, which the self-test makes of the one that
+/// records rays (`gpu/self_test/fence_probe.rs`).
+pub(in crate::gpu) fn probe_kernel() -> Kernel {
+    let kind =
+        BrickKind { structure: Structure::Grid(ListLayout::Balls), primitive: Primitive::Sphere };
+    let mut parts = walk_parts(CameraKind::Pinhole, kind, BrickPass::First);
+    parts.extend([part!("primary/entry.wgsl", "probed"), part!("primary/trace.wgsl")]);
+    Kernel { entry_point: "trace", parts }
+}
+
 /// The kernel that finds whether each ray hits anything.
 pub(in crate::gpu) fn occluded_kernel(
     camera: CameraKind,

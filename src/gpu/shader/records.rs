@@ -43,7 +43,7 @@ pub(in crate::gpu) struct FrameParameters {
     pub(in crate::gpu) traced_size: [u32; 2],
     pub(in crate::gpu) first_group: [u32; 2],
     row_step: u32,
-    zero: u32,
+    iteration_limit_again: u32,
 }
 
 #[repr(C)]
@@ -154,7 +154,7 @@ impl FrameParameters {
             traced_size: traced.size,
             first_group: [0, 0],
             row_step: row_step(traced.size[1]),
-            zero: 0,
+            iteration_limit_again: iteration_limit,
             background: primary.background.to_array(),
             shading: match primary.shading {
                 Shading::Flat => 0,
@@ -260,7 +260,7 @@ mod tests {
                 traced_size,
                 first_group,
                 row_step,
-                zero
+                iteration_limit_again
             }),
             layout!(Brick {
                 min,
@@ -280,7 +280,7 @@ mod tests {
                 crowd_max,
                 unused
             }),
-            layout!(SelfTest { zero, single, outer, inner }),
+            layout!(SelfTest { limit, limit_again, single, outer, inner }),
             layout!(Operands { a, b, p, q, factor, dividend, divisor, radicand, u, v }),
             layout!(Arithmetic {
                 sum,

@@ -135,6 +135,23 @@ impl EnteredRay {
         Ok(())
     }
 
+    /// The numbers of a legal ray, with their names and bounds.
+    pub(in crate::verify) fn numbers(
+        &self,
+        ray: &TracedRay,
+    ) -> impl Iterator<Item = (&'static str, f64, Interval)> {
+        let [direction, origin] = [ray.direction, ray.origin].map(|v| v.map(f64::from));
+        let axes = (0..3).flat_map(move |axis| {
+            [
+                ("the direction of a ray", direction[axis], self.direction[axis]),
+                ("the start of a ray", origin[axis], self.origin(axis, self.enter)),
+            ]
+        });
+        let distance =
+            ("the distance of a start", f64::from(ray.distance), self.distance(self.enter));
+        axes.chain([distance])
+    }
+
     /// The error of a component of the start: a product and a sum; the distance may be multiplied out.
     fn origin_error(&self, axis: usize) -> f64 {
         let (d, start) = (self.recorded_direction[axis].abs(), self.exact.line.origin[axis].abs());

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::upload::LitUploadError;
+use crate::verify::bias::Deviations;
 use crate::verify::outcome::Outcome;
 
 /// A stage of a sample, along a path or in a studio: a kernel, or a part of its work.
@@ -132,6 +133,8 @@ pub struct LitCertificate {
     pub violations: Vec<LitViolation>,
     /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
     pub upload: Option<LitUploadError>,
+    /// How far the numbers of decided stages are from the middle of their bounds.
+    pub deviations: Deviations,
     /// Whether the picture is that of a studio.
     pub is_studio: bool,
 }
@@ -217,6 +220,6 @@ impl fmt::Display for LitCertificate {
         if let Some(first) = self.violations.first() {
             write!(f, "; first: {first}")?;
         }
-        Ok(())
+        self.deviations.biased().try_for_each(|biased| write!(f, "; biased: {biased}"))
     }
 }

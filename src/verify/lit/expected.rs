@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::certificate::LitStage;
 use super::recording::PathState;
+use crate::verify::bias::deviation;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
@@ -44,6 +45,8 @@ pub(in crate::verify) struct Expected {
     passed: u32,
     /// Whether some bound was too wide to say anything.
     pub(in crate::verify) is_wide: bool,
+    /// How far numbers are from the middle of their bounds.
+    pub(in crate::verify) deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
 impl Expected {
@@ -77,6 +80,8 @@ impl Expected {
             return Err(self.mismatch(stage, what, Answer::Number { found, legal }));
         }
         self.passed += 1;
+        let deviation = deviation(found.into(), legal);
+        self.deviations.extend(deviation.map(|deviation| (stage, what, deviation)));
         self.is_wide |= legal.high - legal.low > WIDE * scale + f64::from(f32::MIN_POSITIVE) * 4.0;
         Ok(())
     }

@@ -19,6 +19,29 @@ pub(in crate::verify) enum StageOutcome {
     Undecided,
 }
 
+/// A stage without an illegal result.
+pub(in crate::verify) struct Judged {
+    verdict: StageOutcome,
+    /// How far numbers are from the middle of their bounds, if these say something.
+    deviations: Vec<(LitStage, &'static str, f64)>,
+}
+
+impl From<StageOutcome> for Judged {
+    fn from(verdict: StageOutcome) -> Self {
+        Self { verdict, deviations: Vec::new() }
+    }
+}
+
+impl From<Expected> for Judged {
+    /// A stage without open decisions.
+    fn from(expected: Expected) -> Self {
+        if expected.is_wide {
+            return StageOutcome::Undecided.into();
+        }
+        Self { verdict: StageOutcome::Decided, deviations: expected.deviations }
+    }
+}
+
 impl LitCertificate {
     /// Adds the results for other samples.
     pub fn join(&mut self, part: Self) {
@@ -33,6 +56,7 @@ impl LitCertificate {
         self.ambient = self.ambient.plus(part.ambient);
         self.gather = self.gather.plus(part.gather);
         self.accumulate = self.accumulate.plus(part.accumulate);
+        self.deviations.join(&part.deviations);
         self.is_studio |= part.is_studio;
         self.violation_count += part.violation_count;
         self.upload = self.upload.take().or(part.upload);
@@ -52,19 +76,29 @@ impl StageCounts {
     }
 }
 
-/// Records the verdict about a stage.
-pub(in crate::verify) fn note(
-    counts: &mut StageCounts,
-    violations: &mut Vec<LitViolation>,
-    Address { pixel, sample, surface }: Address,
-    result: Result<StageOutcome, Mismatch>,
-) {
-    match result {
-        Ok(verdict) => counts.count(&verdict),
-        Err(mismatch) => {
-            counts.checked += 1;
-            let (stage, message) = (mismatch.stage, mismatch.to_string());
-            violations.push(LitViolation { pixel, sample, surface, stage, message });
+/// The counts of one kind of stages.
+pub(in crate::verify) type CountsOf = fn(&mut LitCertificate) -> &mut StageCounts;
+
+impl LitCertificate {
+    /// Records the verdict about a stage.
+    pub(in crate::verify) fn note(
+        &mut self,
+        counts: CountsOf,
+        Address { pixel, sample, surface }: Address,
+        result: Result<Judged, Mismatch>,
+    ) {
+        match result {
+            Ok(Judged { verdict, deviations }) => {
+                counts(self).count(&verdict);
+                for (stage, what, deviation) in deviations {
+                    self.deviations.add(stage.name(), what, deviation);
+                }
+            }
+            Err(mismatch) => {
+                counts(self).checked += 1;
+                let (stage, message) = (mismatch.stage, mismatch.to_string());
+                self.violations.push(LitViolation { pixel, sample, surface, stage, message });
+            }
         }
     }
 }
@@ -72,14 +106,14 @@ pub(in crate::verify) fn note(
 /// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
 pub(in crate::verify) fn along_choices(
     mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
-) -> Result<StageOutcome, Mismatch> {
+) -> Result<Judged, Mismatch> {
     let mut choices = Choices::default();
     let mut nearest: Option<Mismatch> = None;
     loop {
         match follow(&mut choices) {
-            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided),
-            Ok(_) if choices.were_open() => return Ok(StageOutcome::Open),
-            Ok(_) => return Ok(StageOutcome::Decided),
+            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided.into()),
+            Ok(_) if choices.were_open() => return Ok(StageOutcome::Open.into()),
+            Ok(expected) => return Ok(expected.into()),
             Err(mismatch) => {
                 if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
                     nearest = Some(mismatch);
@@ -92,7 +126,7 @@ pub(in crate::verify) fn along_choices(
     }
     match nearest {
         Some(mismatch) if !choices.were_too_many() => Err(mismatch),
-        _ => Ok(StageOutcome::Undecided),
+        _ => Ok(StageOutcome::Undecided.into()),
     }
 }
 
@@ -126,6 +160,6 @@ pub(in crate::verify) fn unchanged(
     (0..PathState::SLOTS).try_for_each(|slot| expected.same(name, [before, after], slot))
 }
 
-pub(in crate::verify) fn simple(is_open: bool) -> StageOutcome {
-    if is_open { StageOutcome::Open } else { StageOutcome::Decided }
+pub(in crate::verify) fn simple(is_open: bool) -> Judged {
+    if is_open { StageOutcome::Open } else { StageOutcome::Decided }.into()
 }

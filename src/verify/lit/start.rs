@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
-use super::judge::{StageOutcome, along_choices};
+use super::judge::{Judged, along_choices};
 use super::kernel::Address;
 use super::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::camera::film::{Film, YAxis};
@@ -27,7 +27,7 @@ pub(in crate::verify) fn judge(
     model: &CameraModel,
     address: Address,
     found: &PathState,
-) -> Result<StageOutcome, Mismatch> {
+) -> Result<Judged, Mismatch> {
     along_choices(|choices| {
         let mut expected = Expected::default();
         check(inputs, model, address, found, &mut expected, choices)?;

@@ -6,7 +6,7 @@ use fastrand::Rng;
 
 use super::*;
 use crate::verify::choices::Choices;
-use crate::verify::rounding::{DIVIDE_ULP, SQRT_ULP};
+use crate::verify::rounding::SQRT_ULP;
 
 type Exact = FBig<mode::HalfEven, 2>;
 
@@ -119,7 +119,7 @@ impl Formula {
                 if b == 0.0 {
                     return f32::NAN;
                 }
-                off(random, wide(a) / wide(b), DIVIDE_ULP)
+                quotient(random, a, b)
             }
             Self::Root(part) => {
                 let part = part.device(random);
@@ -179,6 +179,15 @@ fn round(random: &mut Rng, exact: f64) -> f32 {
     };
     let rounded = if random.bool() { nearest } else { other };
     if rounded.is_subnormal() && random.bool() { 0.0 } else { rounded }
+}
+
+/// A quotient within 2.5 ULP, or the product with such an inverse, if that is a normal number.
+fn quotient(random: &mut Rng, a: f32, b: f32) -> f32 {
+    let inverse = off(random, 1.0 / wide(b), 2.5);
+    if inverse.is_normal() && random.bool() {
+        return round(random, wide(a) * wide(inverse));
+    }
+    off(random, wide(a) / wide(b), 2.5)
 }
 
 fn off(random: &mut Rng, exact: f64, ulps: f64) -> f32 {

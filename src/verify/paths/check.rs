@@ -9,9 +9,7 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::film;
-use crate::verify::lit::judge::{
-    StageOutcome, along_choices, judge_pixels, note, simple, unchanged,
-};
+use crate::verify::lit::judge::{Judged, along_choices, judge_pixels, simple, unchanged};
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
@@ -70,28 +68,30 @@ impl PathCheck<'_> {
         let pixel = self.inputs.pixel(index);
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
-        let LitCertificate {
-            violations, start: started, extend, scatter, occlude, accumulate, ..
-        } = part;
-        note(started, violations, address, start::judge(self.inputs, &self.model, address, &state));
+        let started = start::judge(self.inputs, &self.model, address, &state);
+        part.note(|part| &mut part.start, address, started);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
             let mut after = stage.scattered[index];
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
-                note(extend, violations, address, self.extend(&state, last, hit, legal));
-                note(scatter, violations, address, self.scatter(address, &state, hit, &after));
+                part.note(|part| &mut part.extend, address, self.extend(&state, last, hit, legal));
+                part.note(
+                    |part| &mut part.scatter,
+                    address,
+                    self.scatter(address, &state, hit, &after),
+                );
                 last = Some(hit);
             } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
-                note(scatter, violations, address, Err(mismatch));
+                part.note(|part| &mut part.scatter, address, Err(mismatch));
             }
             let open = f32::from_bits(stage.open[index]);
             let is_searched = surface < self.inputs.max_surfaces
                 && self.inputs.lighting.source_count > 0
                 && after.number(slot::SHADOW) > 0.0;
             if is_searched {
-                note(occlude, violations, address, self.occlude(&after, open));
+                part.note(|part| &mut part.occlude, address, self.occlude(&after, open));
             } else if stage.open[index] != after.bits(slot::PENDING) {
                 let words = format!("{open:?}, without a search");
                 let fail = Expected::default().fail(
@@ -99,7 +99,7 @@ impl PathCheck<'_> {
                     "the visibility of the light",
                     words,
                 );
-                note(occlude, violations, address, Err(fail));
+                part.note(|part| &mut part.occlude, address, Err(fail));
             }
             if stage.open[index] != after.bits(slot::PENDING) {
                 // A light that is occluded is not searched again.
@@ -111,11 +111,10 @@ impl PathCheck<'_> {
         if state.has(flag::ALIVE) {
             let words = "the path was not followed to its end".to_owned();
             let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
-            note(extend, violations, address, Err(fail));
+            part.note(|part| &mut part.extend, address, Err(fail));
         }
-        note(
-            accumulate,
-            violations,
+        part.note(
+            |part| &mut part.accumulate,
             address,
             film::check(radiance_so_far(&state), &state, &recorded.film, index),
         );
@@ -132,7 +131,7 @@ impl PathCheck<'_> {
         last: Option<Hit>,
         hit: Hit,
         legal: &mut LegalHits,
-    ) -> Result<StageOutcome, Mismatch> {
+    ) -> Result<Judged, Mismatch> {
         let mut expected = Expected::default();
         search::check_hit(self.searched(), state, last, hit, &mut expected, legal).map(simple)
     }
@@ -143,7 +142,7 @@ impl PathCheck<'_> {
         before: &PathState,
         hit: Hit,
         after: &PathState,
-    ) -> Result<StageOutcome, Mismatch> {
+    ) -> Result<Judged, Mismatch> {
         along_choices(|choices| {
             let mut kernel = Kernel {
                 scene: self.checker.scene,
@@ -161,7 +160,7 @@ impl PathCheck<'_> {
         })
     }
 
-    fn occlude(&self, state: &PathState, open: f32) -> Result<StageOutcome, Mismatch> {
+    fn occlude(&self, state: &PathState, open: f32) -> Result<Judged, Mismatch> {
         let mut expected = Expected::default();
         let LitInputs { emitters, .. } = self.inputs;
         let emitter = state.departure().emitter;

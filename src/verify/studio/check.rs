@@ -11,7 +11,7 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::judge::{
-    StageOutcome, along_choices, judge_pixels, note, simple, unchanged,
+    CountsOf, Judged, StageOutcome, along_choices, judge_pixels, simple, unchanged,
 };
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
@@ -71,7 +71,7 @@ impl StudioCheck<'_> {
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
         let started = start::judge(self.inputs, &self.model, address, &state);
-        note(&mut part.start, &mut part.violations, address, started);
+        part.note(|part| &mut part.start, address, started);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -80,12 +80,12 @@ impl StudioCheck<'_> {
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
                 let result = self.extend(&state, last, hit, legal);
-                note(&mut part.extend, &mut part.violations, address, result);
+                part.note(|part| &mut part.extend, address, result);
                 let (result, found) = self.surface(address, &state, hit, &after);
-                note(&mut part.surface, &mut part.violations, address, result);
+                part.note(|part| &mut part.surface, address, result);
                 (met, last) = (found, Some(hit));
             } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
-                note(&mut part.surface, &mut part.violations, address, Err(mismatch));
+                part.note(|part| &mut part.surface, address, Err(mismatch));
             }
             for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
                 for (batch, light) in (0..).zip(lights) {
@@ -100,11 +100,11 @@ impl StudioCheck<'_> {
         if state.has(flag::ALIVE) {
             let words = "the ray was not followed to its end".to_owned();
             let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
-            note(&mut part.extend, &mut part.violations, address, Err(fail));
+            part.note(|part| &mut part.extend, address, Err(fail));
         }
         let color = Vector::recorded(state.vector(slot::RADIANCE));
         let sums = film::check(color, &state, &recorded.film, index);
-        note(&mut part.accumulate, &mut part.violations, address, sums);
+        part.note(|part| &mut part.accumulate, address, sums);
     }
 
     fn extend(
@@ -113,7 +113,7 @@ impl StudioCheck<'_> {
         last: Option<Hit>,
         hit: Hit,
         legal: &mut LegalHits,
-    ) -> Result<StageOutcome, Mismatch> {
+    ) -> Result<Judged, Mismatch> {
         let Checker { scene, candidates, .. } = self.checker;
         let searched = Searched { model: &self.model, scene, candidates };
         let mut expected = Expected::default();
@@ -127,7 +127,7 @@ impl StudioCheck<'_> {
         before: &PathState,
         hit: Hit,
         after: &PathState,
-    ) -> (Result<StageOutcome, Mismatch>, Option<Met>) {
+    ) -> (Result<Judged, Mismatch>, Option<Met>) {
         let mut met = None;
         let is_last = address.surface + 1 >= self.inputs.max_surfaces;
         let result = along_choices(|choices| {
@@ -168,27 +168,26 @@ impl StudioCheck<'_> {
         found: Light<'_>,
         part: &mut LitCertificate,
     ) {
-        let violations = &mut part.violations;
         match met {
             // What the ray met is not legal, so that nothing can be said about its light.
             None => {}
             Some(Met::Nothing | Met::Emitter) => {
                 if let Err(mismatch) = found.unlit(state) {
-                    note(&mut part.illuminate, violations, address, Err(mismatch));
+                    part.note(|part| &mut part.illuminate, address, Err(mismatch));
                 }
             }
             Some(Met::Surface) => {
-                let (searches, sums) = match found.kind {
-                    Kind::Lights => (&mut part.shadow, &mut part.illuminate),
-                    Kind::Ambient => (&mut part.ambient, &mut part.gather),
+                let (searches, sums): (CountsOf, CountsOf) = match found.kind {
+                    Kind::Lights => (|part| &mut part.shadow, |part| &mut part.illuminate),
+                    Kind::Ambient => (|part| &mut part.ambient, |part| &mut part.gather),
                 };
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);
                     if let Some(result) = result.transpose() {
-                        note(searches, violations, address, result);
+                        part.note(searches, address, result);
                     }
                 }
-                note(sums, violations, address, self.added(address, state, found));
+                part.note(sums, address, self.added(address, state, found));
             }
         }
     }
@@ -200,7 +199,7 @@ impl StudioCheck<'_> {
         state: &PathState,
         found: Light<'_>,
         offset: u32,
-    ) -> Result<Option<StageOutcome>, Mismatch> {
+    ) -> Result<Option<Judged>, Mismatch> {
         let is_hidden = found.bits() & (1 << offset) != 0;
         let index = found.first + offset;
         let candidates = &self.checker.candidates;
@@ -215,7 +214,9 @@ impl StudioCheck<'_> {
         } else {
             Some(Hidden { may: false, must: false })
         };
-        let Some(Hidden { may, must }) = legal else { return Ok(Some(StageOutcome::Undecided)) };
+        let Some(Hidden { may, must }) = legal else {
+            return Ok(Some(StageOutcome::Undecided.into()));
+        };
         let answer = match (is_hidden, may, must) {
             (true, false, _) if !is_searched => "hidden, but it is not searched for",
             (true, false, _) => "hidden, but nothing is in between",
@@ -260,10 +261,10 @@ impl StudioCheck<'_> {
         address: Address,
         state: &PathState,
         found: Light<'_>,
-    ) -> Result<StageOutcome, Mismatch> {
+    ) -> Result<Judged, Mismatch> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
-        let Some(sum) = sum else { return Ok(StageOutcome::Undecided) };
+        let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
         let names = match found.kind {
             Kind::Lights => [
                 (LitStage::Illuminate, "the radiance with these lights"),
@@ -285,7 +286,7 @@ impl StudioCheck<'_> {
         let alpha = Number::recorded(state.number(slot::RADIANCE)) + sum.opacity;
         expected.number(names[1], opacity, alpha)?;
         expected.bits(names[2], found.light.left[found.index], 0)?;
-        Ok(if expected.is_wide { StageOutcome::Undecided } else { StageOutcome::Decided })
+        Ok(expected.into())
     }
 
     /// The sum of all light of a batch, given which lights are hidden. Where decisions of a light are open, its part is

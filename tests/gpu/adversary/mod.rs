@@ -1,7 +1,9 @@
 //! Tests that the checker never accuses devices that conform to WGSL and yet round as they like, and that it accuses
 //! those whose results are farther off. For more scenes, run `cargo bench --bench verify -- adversary 100`.
 
+mod bias;
 mod operations;
+mod structures;
 
 use std::sync::LazyLock;
 
@@ -66,6 +68,12 @@ pub(crate) fn trials() -> Vec<Trial> {
         }));
     }
     trials.push(Trial::test("adversary::sixty_ulp_are_found", found));
+    trials.push(Trial::test("adversary::structures_agree", structures::agree));
+    trials.push(Trial::test("bias::none_without_a_fault", bias::clean));
+    for fault in bias::SMALL {
+        let name = format!("bias::{}", fault.0);
+        trials.push(Trial::test(name, || bias::is_noted(fault)));
+    }
     trials
 }
 
@@ -130,13 +138,23 @@ fn certify(
     is_rendered: bool,
 ) -> Result<Certificate, Failed> {
     let headless = device.as_ref()?;
-    let support::View { scene, camera, film, settings } = view;
-    let film =
-        Film::new(film.width().min(SIDE), film.height().min(SIDE))?.with_y_axis(film.y_axis());
-    let seen = View::new(camera.as_ref(), film);
-    if is_rendered {
-        return Ok(headless.verify(scene, &seen, settings)?);
+    if !is_rendered {
+        return certify_on(headless, view, SIDE);
     }
+    let support::View { scene, camera, film, settings } = view;
+    let film = cut(film, SIDE)?;
+    Ok(headless.verify(scene, &View::new(camera.as_ref(), film), settings)?)
+}
+
+fn cut(film: &Film, side: u32) -> Result<Film, Failed> {
+    let film =
+        Film::new(film.width().min(side), film.height().min(side))?.with_y_axis(film.y_axis());
+    Ok(film)
+}
+
+fn certify_on(headless: &Headless, view: &support::View, side: u32) -> Result<Certificate, Failed> {
+    let support::View { scene, camera, film, settings } = view;
+    let seen = View::new(camera.as_ref(), cut(film, side)?);
     let buffers = upload(headless, scene, &seen, settings)?;
     let recording = headless.record(&buffers, &seen, settings, &mut go_on())?;
     Ok(Checker::new(scene)?.certify(&recording))
@@ -153,14 +171,21 @@ fn upload(
 }
 
 fn certify_lit(device: &Device, view: &RandomView) -> Result<LitCertificate, Failed> {
-    let headless = device.as_ref()?;
+    certify_lit_on(device.as_ref()?, view, &[0, 1])
+}
+
+fn certify_lit_on(
+    headless: &Headless,
+    view: &RandomView,
+    samples: &[u32],
+) -> Result<LitCertificate, Failed> {
     let RandomView { scene, camera, film, settings, .. } = view;
     let seen = View::new(camera.as_ref(), *film);
     let buffers = upload(headless, scene, &seen, settings)?;
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
-    headless.record_lit(&buffers, &seen, settings, &[0, 1], (each, &mut go_on()))?;
+    headless.record_lit(&buffers, &seen, settings, samples, (each, &mut go_on()))?;
     Ok(certificate)
 }
 

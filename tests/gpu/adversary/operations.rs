@@ -83,7 +83,7 @@ fn answers(
     };
     [
         of("adv_add(a, b), adv_mul(a, b), adv_div(a, b), adv_fma(a, b, c)"),
-        of("adv_sqrt(abs(a)), adv_sub(a, c), adv_mul(b, c), 0.0"),
+        of("adv_sqrt(abs(a)), adv_sub(a, c), adv_mul(b, c), adv_div_inverse(a, b)"),
     ]
 }
 
@@ -91,7 +91,7 @@ pub(super) fn are_legal(headless: &Headless, rounding: Rounding) {
     let questions = operands(1 << 14);
     let [first, second] = answers(headless, Adversary::new(rounding, 7), &questions);
     let (mut otherwise, mut inexact) = ([0; 2], [0; 2]);
-    let mut farthest = [0.0_f64; 2];
+    let mut farthest = [0.0_f64; 3];
     for ((question, first), second) in questions.iter().zip(&first).zip(&second) {
         let [a, b, c, _] = question.map(f32::from_bits);
         let [wide_a, wide_b] = [a, b].map(f64::from);
@@ -118,18 +118,21 @@ pub(super) fn are_legal(headless: &Headless, rounding: Rounding) {
             "{rounding:?}: fma of {a:e}, {b:e}, {c:e}: {:e}",
             first[3]
         );
-        let errors =
-            [error_in_ulp(first[2], wide_a / wide_b), error_in_ulp(second[0], wide_a.abs().sqrt())];
+        let errors = [
+            error_in_ulp(first[2], wide_a / wide_b),
+            error_in_ulp(second[0], wide_a.abs().sqrt()),
+            (f64::from(second[3]) / (wide_a / wide_b) - 1.0).abs() / f64::from(f32::EPSILON),
+        ];
         for (farthest, error) in farthest.iter_mut().zip(errors) {
             *farthest = farthest.max(error);
         }
     }
     let share = [0, 1].map(|at| f64::from(otherwise[at]) / f64::from(inexact[at]));
     println!(
-        "{rounding:?}: {share:.2?} of inexact sums and products are not the nearest, ÷ and √: {farthest:.2?} ULP"
+        "{rounding:?}: {share:.2?} of inexact sums and products are not the nearest, ÷, √ and · 1/: {farthest:.2?} ULP"
     );
     assert!(share.iter().all(|share| (0.4..0.6).contains(share)), "{share:?}");
-    let limits = [(2.4, 2.5), (4.4, 5.0)];
+    let limits = [(2.4, 2.5), (4.4, 5.0), (2.4, 3.5)];
     for (error, (least, most)) in farthest.into_iter().zip(limits) {
         assert!(least <= error && error <= most, "{farthest:?}");
     }

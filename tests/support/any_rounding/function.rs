@@ -261,6 +261,7 @@ impl<'a> Rewriter<'a> {
             BinaryOperator::Add => "add",
             BinaryOperator::Subtract => "sub",
             BinaryOperator::Multiply => "mul",
+            BinaryOperator::Divide if self.random.bool() => "div_inverse",
             BinaryOperator::Divide => "div",
             _ => return None,
         };

@@ -43,13 +43,15 @@ pub(crate) struct Adversary {
     pub(crate) seed: u32,
     /// The share of operations that round so, by their places in kernels; compilers take long for many of them.
     pub(crate) share: f64,
+    /// Whether equal operands have equal results in all kernels, and not only in each.
+    pub(crate) is_alike: bool,
     /// By how many ULP all results are off instead, if not by 0: that is not legal.
     pub(crate) fault: u32,
 }
 
 impl Adversary {
     pub(crate) const fn new(rounding: Rounding, seed: u32) -> Self {
-        Self { rounding, seed, share: 1.0, fault: 0 }
+        Self { rounding, seed, share: 1.0, is_alike: false, fault: 0 }
     }
 
     /// What makes a device with this arithmetic.
@@ -62,12 +64,12 @@ impl Adversary {
         if !source.contains("fn fence(") {
             return source.to_owned();
         }
-        let seed = seed_of(name, self.seed.into());
+        let seed = seed_of(if self.is_alike { "" } else { name }, self.seed.into());
         let source = self.operations(seed as u32) + &begun(source);
         rewrite(&source, seed, self.share).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The text of the operations. Kernels of different names have different results of the same operands.
+    /// The text of the operations. Those of another seed have other results of the same operands.
     pub(crate) fn operations(self, seed: u32) -> String {
         let Self { rounding, fault, .. } = self;
         let mode = Rounding::ALL.iter().position(|other| *other == rounding).unwrap();

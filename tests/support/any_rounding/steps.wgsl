@@ -20,6 +20,11 @@ fn adv_div(a: f32, b: f32) -> f32 {
     return adv_steps(a / b, DIVIDE_STEPS, adv_hash(bitcast<u32>(a), bitcast<u32>(b) ^ 1u));
 }
 
+// The product with the inverse, which compilers put in place of a quotient.
+fn adv_div_inverse(a: f32, b: f32) -> f32 {
+    return adv_mul(a, adv_div(1.0, b));
+}
+
 fn adv_sqrt(a: f32) -> f32 {
     return adv_steps(sqrt(a), ROOT_STEPS, adv_hash(bitcast<u32>(a), 2u));
 }

@@ -53,7 +53,7 @@ pub(super) fn source() -> String {
         return adv_add(a, adv_mul(adv_sub(b, a), t));
     }\n";
     for (size, orders) in ORDERS.iter().enumerate().skip(2) {
-        for name in ["add", "sub", "mul", "div", "pow"] {
+        for name in ["add", "sub", "mul", "div", "div_inverse", "pow"] {
             source += &componentwise(name, &["a", "b"], size);
         }
         for name in ["sqrt", "exp"] {

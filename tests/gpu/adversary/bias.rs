@@ -1,0 +1,99 @@
+//! Tests that results of a device without a fault are not to one side of the middle of their bounds, and that faults
+//! which stay within the bounds are noted.
+
+use libtest_mimic::Failed;
+use pinhole::gpu::{Headless, HeadlessOptions};
+use pinhole::internals::ShaderEdit;
+use pinhole::verify::{Deviations, LARGEST_MEAN};
+
+use super::{certify_lit_on, certify_on};
+use crate::{headless, scenes};
+
+/// The mean deviations of a device without a fault are below this, where there are this many results.
+const CLEAN: f64 = LARGEST_MEAN / 2.0;
+const MANY: u64 = 20_000;
+
+fn device(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
+    let [file, find, replace] = [file, find, replace].map(str::to_owned);
+    let edits = vec![ShaderEdit { file, find, replace }];
+    Ok(Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() })?)
+}
+
+/// The deviations of a picture of primary rays.
+fn of_picture(headless: &Headless) -> Result<Deviations, Failed> {
+    let mut scenes = scenes::all().into_iter();
+    let (_, view) = scenes.find(|(name, _)| *name == "random_pinhole_y_up").unwrap();
+    let certificate = certify_on(headless, &view, 160)?;
+    println!("{certificate}");
+    Ok(certificate.deviations)
+}
+
+/// The deviations of paths between mirrors, and of studios.
+fn of_light(headless: &Headless) -> Result<Deviations, Failed> {
+    let mut all = pinhole::verify::LitCertificate::default();
+    for (name, view) in super::lit_views() {
+        if ["paths::lobes", "paths::metals", "paths::matt", "studio::lamps_of_all_kinds"]
+            .contains(&name.as_str())
+        {
+            all.join(certify_lit_on(headless, &view(), &(0..8).collect::<Vec<_>>())?);
+        }
+    }
+    println!("{all}");
+    Ok(all.deviations)
+}
+
+pub(super) fn clean() -> Result<(), Failed> {
+    let headless = headless()?;
+    let mut failed = Vec::new();
+    for deviations in [of_picture(headless)?, of_light(headless)?] {
+        for one in deviations.iter() {
+            println!("{one}");
+            if one.is_biased() || (one.count() >= MANY && one.mean().abs() > CLEAN) {
+                failed.push(one.to_string());
+            }
+        }
+    }
+    if failed.is_empty() { Ok(()) } else { Err(failed.join("\n").into()) }
+}
+
+/// A fault that is smaller than its bound, and whose quantity must be noted.
+type Small = (&'static str, &'static str, &'static str, &'static str, bool);
+
+pub(super) const SMALL: &[Small] = &[
+    (
+        "a_lobe_larger_by_a_part_in_5000",
+        "path/microfacet.wgsl",
+        "return both * ggx_density(alpha, half) / (4.0 * out.z);",
+        "return 1.0002 * both * ggx_density(alpha, half) / (4.0 * out.z);",
+        true,
+    ),
+    (
+        "colors_larger_by_a_part_in_300000",
+        "primary/shading.wgsl",
+        "return color * abs(dot(normal, ray.direction));",
+        "return color * (abs(dot(normal, ray.direction)) * 1.000003);",
+        false,
+    ),
+    (
+        "distances_16_ulp_longer",
+        "scene/sphere.wgsl",
+        "return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);",
+        "return SphereHit(select(NO_HIT, bitcast<f32>(bitcast<u32>(t) + 16u), is_hit), from_foot, foot_to_center);",
+        false,
+    ),
+    (
+        "radii_larger_by_a_part_in_two_million",
+        "scene/sphere.wgsl",
+        "let radius = sphere.w;",
+        "let radius = 1.0000005 * sphere.w;",
+        false,
+    ),
+];
+
+pub(super) fn is_noted(&(_, file, find, replace, is_lit): &Small) -> Result<(), Failed> {
+    let headless = device(file, find, replace)?;
+    let deviations = if is_lit { of_light(&headless)? } else { of_picture(&headless)? };
+    let biased: Vec<_> = deviations.biased().map(ToString::to_string).collect();
+    println!("{}", biased.join("\n"));
+    if biased.is_empty() { Err("nothing is biased".into()) } else { Ok(()) }
+}
