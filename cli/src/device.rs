@@ -226,11 +226,41 @@ pub(super) fn explained_alone(headless: &Headless, error: &GpuError) -> Failure 
 #[cfg(feature = "gpu")]
 fn named(headless: &Headless, error: &GpuError, remedy: &str) -> Failure {
     let adapter = &headless.adapter_info().name;
+    of_kind(error, anyhow::anyhow!("{adapter}: {error}{remedy}"))
+}
+
+/// The failure with a message that an error of a device is for the program.
+#[cfg(feature = "gpu")]
+fn of_kind(error: &GpuError, message: anyhow::Error) -> Failure {
     match error {
         GpuError::Stopped => Failure::Stopped,
-        GpuError::DeviceLost { .. } | GpuError::Timeout { .. } => {
-            Failure::Device(anyhow::anyhow!("{adapter}: {error}{remedy}"))
+        GpuError::DeviceLost { .. } | GpuError::Timeout { .. } => Failure::Device(message),
+        GpuError::OutOfMemory | GpuError::Limit { .. } | GpuError::HostMemory { .. } => {
+            Failure::Memory(message)
         }
-        _ => Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}")),
+        _ => Failure::Job(message),
+    }
+}
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use std::process::ExitCode;
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn errors_after_which_another_try_may_succeed_have_a_code_of_their_own() {
+        let code = |error: GpuError| {
+            let failure = of_kind(&error, anyhow::anyhow!("{error}"));
+            format!("{:?}", failure.exit_code())
+        };
+        let five = format!("{:?}", ExitCode::from(5));
+        assert_eq!(code(GpuError::DeviceLost { message: "gone".to_owned() }), five);
+        assert_eq!(code(GpuError::Timeout { waited: Duration::from_secs(600) }), five);
+        let one = format!("{:?}", ExitCode::from(1));
+        assert_eq!(code(GpuError::OutOfMemory), one);
+        assert_eq!(code(GpuError::NoAdapter), one);
+        assert!(matches!(of_kind(&GpuError::Stopped, anyhow::anyhow!("")), Failure::Stopped));
     }
 }

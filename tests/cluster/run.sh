@@ -134,6 +134,39 @@ else
     skip "Dask: $python has no package dask or pinhole; pip install 'dask[distributed]' and the wheel"
 fi
 
+# The recipes of docs/scale.md, for the number of units that this job has.
+page=$OLDPWD/../../docs/scale.md
+mkdir bin
+ln -s "$program" bin/pinhole
+# shellcheck disable=SC2086
+"$program" job split a.xyz ${flags/--frames :/--frames :5} --tiles 2x2 -o recipe -q
+# shellcheck disable=SC2086
+"$program" render a.xyz ${flags/--frames :/--frames :5} -o recipe.apng -q
+recipe() {
+    rm -f recipe/parts/* movie.apng
+    rm -rf JOB
+    ln -s recipe JOB
+    PATH=$work/bin:$PATH "$@"
+    cmp recipe.apng movie.apng
+    echo "the same bytes"
+}
+if command -v parallel >/dev/null; then
+    echo "== GNU parallel =="
+    line=$(grep '^parallel ' "$page" | sed 's/--sshlogin [^ ]* //; s/seq 0 39/seq 0 19/; s/f%04d.png/movie.apng/')
+    recipe bash -c "$line" 2>/dev/null
+else
+    skip "GNU parallel: apt-get install parallel"
+fi
+snakemake=$(dirname "$(command -v "$python" || echo .)")/snakemake
+[ -x "$snakemake" ] || snakemake=$(command -v snakemake || true)
+if [ -n "$snakemake" ]; then
+    echo "== Snakemake =="
+    sed -n '/^# Snakefile/,/^```/p' "$page" | grep -v '^```' | sed 's/range(40)/range(20)/' >Snakefile
+    recipe "$snakemake" --cores 2 --quiet all
+else
+    skip "Snakemake: pip install snakemake"
+fi
+
 if [ ${#skipped[@]} -gt 0 ]; then
     printf '%s\n' "${skipped[@]}" >&2
     exit 3

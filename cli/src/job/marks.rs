@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 use super::files;
-use super::folder::{FAILED, Folder, RUNNING};
+use super::folder::{FAILED, Folder, PARTS, RUNNING};
 use super::units;
 use crate::failure::DEVICE;
 use crate::progress;
@@ -73,6 +73,26 @@ fn write(path: &Path) {
     let host = std::env::var("SLURMD_NODENAME").or_else(|_| std::env::var("HOSTNAME"));
     let host = host.unwrap_or_else(|_| "this machine".to_owned());
     files::mark(path, &format!("process {} of {host}\n", std::process::id()));
+}
+
+/// What a process that was killed leaves is removed after this time.
+const LEFT: Duration = Duration::from_secs(3600);
+
+/// Removes files that were never given their names, because the processes that wrote them were killed.
+pub(super) fn sweep(folder: &Folder) {
+    let parts = folder.path().join(PARTS);
+    let names = files::names(&parts);
+    let unnamed: Vec<_> = names.iter().filter(|name| name.starts_with(".pinhole-")).collect();
+    if unnamed.is_empty() {
+        return;
+    }
+    let now = now_there(folder);
+    for path in unnamed.into_iter().map(|name| parts.join(name)) {
+        let age = files::modified(&path).and_then(|time| now.duration_since(time).ok());
+        if age.is_some_and(|age| age > LEFT) {
+            files::unmark(&path);
+        }
+    }
 }
 
 /// Says why a unit failed.

@@ -13,6 +13,7 @@ mod marks;
 mod merge;
 mod part;
 mod part_file;
+mod pieces;
 mod recipe;
 mod slurm;
 mod split;

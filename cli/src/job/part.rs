@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 use super::PartArgs;
 use super::folder::{Folder, PARTS};
 use super::manifest::VERSION;
-use super::marks::{Mark, clear_failed, set_failed};
+use super::marks::{Mark, clear_failed, set_failed, sweep};
 use super::part_file::{self, Header, payload};
+use super::pieces;
 use super::recipe::{Recipe, check_same};
 use super::units::parse_list;
 use crate::device::Opened;
@@ -53,6 +54,7 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     folder.enter()?;
     folder.check_inputs()?;
     interrupt::set_message(STOPPED);
+    sweep(&folder);
     let (count, quiet) = (units.len(), args.quiet);
     let work = Work { folder: &folder, units, limit, quiet };
     // What fails before a unit is begun, such as a device that cannot be opened, is the failure of the first.
@@ -129,10 +131,13 @@ impl Work<'_> {
     ) -> Result<(), Failure> {
         let manifest = &self.folder.manifest;
         let started = Instant::now();
-        let (_, (origin, size)) = manifest.unit(unit);
-        let part = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
+        let (_, rectangle) = manifest.unit(unit);
         // The layers that guide outlines and denoising are in the job already.
-        let images = render_part(input, part, manifest.layer_set(), opened)?;
+        let layers = manifest.layer_set();
+        let images = pieces::render(rectangle, layers, &mut |(origin, size)| {
+            let part = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
+            render_part(input, part, layers, opened)
+        })?;
         let header = Header {
             version: VERSION.to_owned(),
             job: manifest.sha256.clone(),
@@ -144,12 +149,10 @@ impl Work<'_> {
         };
         let path = self.folder.part(unit);
         let file = unnamed_with(&path, |file| {
-            let mut out = BufWriter::new(&mut *file);
+            let mut out = BufWriter::new(file);
             part_file::write(&header, &images, &mut out)?;
-            out.flush()?;
-            drop(out);
-            // A part that has its name must outlast a crash of the machine.
-            file.as_file().sync_all()
+            // Nothing waits for the disk: a part that a crash of the machine cut off is known by its digest.
+            out.flush()
         })?;
         Ok(name_all(vec![(&path, file)])?)
     }

@@ -110,7 +110,7 @@ fn single_pictures_are_the_same_bytes() {
     assert_same("path.toml", "3x4", &format!("-o @-.png {layers}"));
     assert_same("path.toml", "2x2", "-o @-.exr --layer normal --layer samples");
     assert_same("stereo.toml --samples 2", "3x2", "-o @-.png --layer position=@-p.npy");
-    let legend = "--color-by charge --legend right --scale-bar nm --samples 2 --size 120x90";
+    let legend = "--color-by charge --legend=right --scale-bar=nm --samples 2 --size 120x90";
     assert_same(&format!("a.xyz {legend}"), "2x2", "-o @-.png");
 }
 

@@ -128,7 +128,12 @@ fn clocks_that_differ_do_no_harm() {
         File::options().write(true).open(&mark).unwrap().set_modified(time).unwrap();
         assert_eq!(status(&folder)["running"], running);
     }
+    // What a process left that was killed long ago is removed.
+    let [old, new] = ["old", "new"].map(|name| folder.path(&format!("job/parts/.pinhole-{name}")));
+    File::create(&old).unwrap().set_modified(SystemTime::now() - day).unwrap();
+    File::create(&new).unwrap();
     folder.run("job part job 0-15 -q").succeeded();
+    assert!(!old.exists() && new.exists());
     assert_eq!(status(&folder)["running"], "");
     // Parts of any age are parts.
     let old = File::options().write(true).open(part(&folder, 0)).unwrap();
