@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(deviation(1.0, around(1.0, 0.0)), None);
         assert_eq!(deviation(0.1, around(0.0, 1.0)), None);
         assert_eq!(deviation(1.1, around(1.0, 0.2)), None);
-        assert_eq!(deviation(1.05, around(1.0, 0.1)).map(|d| (d * 8.0).round()), Some(4.0));
-        assert_eq!(deviation(-1.05, around(-1.0, 0.1)).map(|d| (d * 8.0).round()), Some(4.0));
+        assert_eq!(deviation(1.04, around(1.0, 0.08)).map(|d| (d * 8.0).round()), Some(4.0));
+        assert_eq!(deviation(-1.04, around(-1.0, 0.08)).map(|d| (d * 8.0).round()), Some(4.0));
     }
 }
