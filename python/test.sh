@@ -44,7 +44,7 @@ fi
 
 # Away from python/, whose folder pinhole/ has no compiled half.
 cd "$work"
-"$work/venv/bin/pytest" -c "$OLDPWD/python/pyproject.toml" --rootdir "$OLDPWD/python" -p no:cacheprovider -q \
+"$work/venv/bin/pytest" -c "$OLDPWD/python/pyproject.toml" --rootdir "$OLDPWD/python" -p no:cacheprovider -q -rs \
     "$OLDPWD/python/tests" "$@"
 "$work/venv/bin/python" -W ignore -c '
 import doctest, importlib, pkgutil, sys

@@ -48,6 +48,11 @@ impl Mark {
                     files::unmark(&marked);
                     progress::close();
                     tell(format_args!("error: {why}; the device may hang: try again"));
+                    // What a driver does at the end of a process may hang as well.
+                    let _ = std::thread::Builder::new().spawn(|| {
+                        std::thread::sleep(BEAT);
+                        std::process::abort();
+                    });
                     // The lock of signals is not held, so a file that is being renamed is renamed or not.
                     std::process::exit(DEVICE.into());
                 }

@@ -65,16 +65,24 @@ fn killed_parts_are_rendered_again() {
 fn a_full_disk_leaves_no_part() {
     let folder = folder();
     let wanted = rendered(&folder);
-    split(&folder);
-    // A part has 3,600 bytes for each number of a pixel; files may have this many blocks of 512 or 1024 bytes.
-    for blocks in [0, 1, 2, 4, 8, 16, 24] {
+    let limited = |blocks: u32, arguments: &str| {
         let program = env!("CARGO_BIN_EXE_pinhole");
-        let script = format!("ulimit -f {blocks}; exec {program} job part job 0 -q");
+        let script = format!("ulimit -f {blocks}; exec {program} {arguments}");
         let mut shell = std::process::Command::new("sh");
         let output = shell.args(["-c", &script]).current_dir(folder.path(".")).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{blocks}: {said}");
         assert!(said.starts_with("error: ") && said.lines().count() == 1, "{blocks}: {said}");
+    };
+    // A job is split as a whole or not at all.
+    for blocks in [0, 1] {
+        limited(blocks, &format!("job split {SPLIT} --backend cpu -o job -q"));
+        assert!(!folder.path("job").exists());
+    }
+    split(&folder);
+    // A part has 3,600 bytes for each number of a pixel; files may have this many blocks of 512 or 1024 bytes.
+    for blocks in [0, 1, 2, 4, 8, 16, 24] {
+        limited(blocks, "job part job 0 -q");
         let parts: Vec<_> = fs::read_dir(folder.path("job/parts")).unwrap().collect();
         assert!(parts.is_empty(), "{blocks}: {parts:?}");
     }
