@@ -165,9 +165,10 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         return Ok(());
     }
     if args.certify {
-        let done = render_certified::run(&mut input, &job.stop_rule, outputs, &encoding, &opened);
+        let verdict =
+            render_certified::run(&mut input, &job.stop_rule, outputs, &encoding, &opened)?;
         said(quiet, &input, started);
-        return done;
+        return verdict;
     }
     let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
     outputs.write(&image, &encoding, adapter, None)?;

@@ -24,15 +24,15 @@ struct Made {
     judged: Judged,
 }
 
-/// Renders, judges and writes a picture. A picture that is not legal is not written; one of which too much is undecided is, and
-/// its certificate says so.
+/// Renders, judges and writes a picture, and returns whether enough is decided. A picture that is not legal is an error
+/// and is not written; the certificate of one of which too much is undecided says so.
 pub(super) fn run(
     input: &mut Input,
     stop_rule: &StopRule,
     outputs: Outputs,
     encoding: &Encoding,
     opened: &Opened,
-) -> Result<(), Failure> {
+) -> Result<Result<(), Failure>, Failure> {
     let arguments = certified::arguments()?;
     certified::check(input, !outputs.annotations().is_empty())?;
     let Made { image, written, judged } = match input.settings.is_denoised {
@@ -47,7 +47,7 @@ pub(super) fn run(
     let certificate = certified::certificate(input, &written, &judged, adapter, arguments);
     let text = certificate.to_text().map_err(anyhow::Error::from)?;
     outputs.with_certificate(text).write(&image, encoding, adapter, None)?;
-    verdict
+    Ok(verdict)
 }
 
 fn plain(
