@@ -10,7 +10,7 @@ use super::verify_light::LightReport;
 use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{Run, scene_sha256};
-use pinhole::verify::{Certificate, LitCertificate, Outcome, Verdict, Violation};
+use pinhole::verify::{Certificate, Deviations, LitCertificate, Outcome, Verdict, Violation};
 
 /// The largest number of violations in the JSON document.
 pub(super) const LISTED: usize = 100;
@@ -39,6 +39,8 @@ pub(super) struct Report {
     /// The check of the denoiser, for a scene whose picture is denoised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) denoiser: Option<DenoiserReport>,
+    /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
+    pub(super) biased: Vec<String>,
     pub(super) outcome: &'static str,
     pub(super) legal: bool,
     pub(super) command: String,
@@ -121,6 +123,12 @@ impl Report {
             paths: light.filter(|light| !light.is_studio).map(LightReport::from),
             studio: light.filter(|light| light.is_studio).map(LightReport::from),
             denoiser: denoiser.map(DenoiserReport::from),
+            biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
+                .into_iter()
+                .flatten()
+                .flat_map(Deviations::biased)
+                .map(ToString::to_string)
+                .collect(),
             outcome: outcome.name(),
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),

@@ -68,10 +68,10 @@ pub(super) const SMALL: &[Small] = &[
         true,
     ),
     (
-        "colors_larger_by_a_part_in_300000",
+        "colors_larger_by_a_part_in_4_million",
         "primary/shading.wgsl",
         "return color * abs(dot(normal, ray.direction));",
-        "return color * (abs(dot(normal, ray.direction)) * 1.000003);",
+        "return color * (abs(dot(normal, ray.direction)) * 1.00000024);",
         false,
     ),
     (

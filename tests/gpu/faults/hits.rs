@@ -224,6 +224,14 @@ pub(super) const SHADE: &[Row] = &[
         "max(dot(normal, -ray.direction), 0.0)",
     ),
     (
+        "colors_larger_by_a_part_in_300000",
+        views::balls,
+        LIST,
+        "primary/shading.wgsl",
+        "return color * abs(dot(normal, ray.direction));",
+        "return color * (abs(dot(normal, ray.direction)) * 1.000003);",
+    ),
+    (
         "background_dimmed",
         views::balls,
         LIST,
