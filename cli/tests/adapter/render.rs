@@ -92,7 +92,7 @@ fn self_test(headless: &'static Headless) {
         (&name.as_str().into(), &true.into())
     );
     let properties = tested["properties"].as_array().unwrap();
-    assert_eq!(properties.len(), 9);
+    assert_eq!(properties.len(), 10);
     let output = succeed(&mut command(&folder, "info --self-test"));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains(name), "{text}");
