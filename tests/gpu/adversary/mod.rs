@@ -18,7 +18,7 @@ use crate::support::random_light::{self, RandomView};
 use crate::{headless, light, paths, scenes, studio, support};
 
 /// The seeds of random lit scenes, and of random studios.
-const SEEDS: std::ops::Range<u64> = 0..24;
+const SEEDS: std::ops::Range<u64> = 0..10;
 
 /// The longest side of pictures, which are cut to it.
 const SIDE: u32 = 64;
