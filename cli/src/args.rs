@@ -274,8 +274,9 @@ const RENDERING: [&str; 12] = [
     wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
     stages, upload, violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
      stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
-     outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
-    of the program that rendered. New versions may add keys, but do not change these."
+     outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
+    (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program that rendered. New versions may add \
+    keys, but do not change these."
 )]
 pub(super) struct VerifyArgs {
     /// File to check: a scene file or a data file, as for `render`; or with --scene a picture

@@ -12,7 +12,7 @@ use super::progress;
 use super::render;
 use super::views::Views;
 use pinhole::image::denoise;
-use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 use pinhole::load::picture::FileSamples;
 use pinhole::verify::denoised::DenoiseCertificate;
@@ -75,7 +75,7 @@ impl Written {
         let size = [image.width(), image.height()];
         let samples = if is_png {
             FileSamples::Encoded {
-                bits: if encoding.bits() == Bits::Eight { 8 } else { 16 },
+                bits: encoding.bits(),
                 has_alpha: encoding.transparent(),
                 bytes: png::samples(image, encoding)?,
             }
@@ -101,24 +101,18 @@ impl Written {
         }
     }
 
+    /// The picture for the checker.
+    fn picture<'a>(&'a self, encoding: &'a Encoding) -> WrittenPicture<'a> {
+        let samples = match &self.samples {
+            FileSamples::Encoded { bytes, .. } => Samples::Encoded(bytes),
+            FileSamples::Linear(pixels) => Samples::Linear(pixels),
+        };
+        WrittenPicture { size: self.size, samples, encoding }
+    }
+
     /// Red, green and blue of each pixel, such that white is 1.
-    fn colors(&self) -> Vec<[f64; 3]> {
-        match &self.samples {
-            FileSamples::Linear(pixels) => {
-                pixels.iter().map(|[r, g, b, _]| [r, g, b].map(|c| f64::from(*c))).collect()
-            }
-            FileSamples::Encoded { bits, has_alpha, bytes } => {
-                let channels = if *has_alpha { 4 } else { 3 };
-                let (size, white) = if *bits == 8 { (1, 255.0) } else { (2, 65535.0) };
-                let number = |sample: &[u8]| {
-                    sample.iter().fold(0.0, |sum, byte| 256.0 * sum + f64::from(*byte)) / white
-                };
-                bytes
-                    .chunks_exact(channels * size)
-                    .map(|pixel| [0, 1, 2].map(|i| number(&pixel[i * size..][..size])))
-                    .collect()
-            }
-        }
+    fn colors(&self, encoding: &Encoding) -> Result<Vec<[f64; 3]>> {
+        Ok(self.picture(encoding).colors()?)
     }
 }
 
@@ -144,13 +138,8 @@ pub(super) fn judge(
     progress::stage("checking");
     let checked = |scene| Checker::new(scene).context("the checker cannot be prepared");
     if let Some(primary) = input.settings.primary() {
-        let samples = match &written.samples {
-            FileSamples::Encoded { bytes, .. } => Samples::Encoded(bytes),
-            FileSamples::Linear(pixels) => Samples::Linear(pixels),
-        };
-        let picture = WrittenPicture { size: written.size, samples, encoding };
         let certificate = checked(&input.scene)?
-            .certify_written(&input.view(), &primary, &picture)
+            .certify_written(&input.view(), &primary, &written.picture(encoding))
             .map_err(anyhow::Error::from)?;
         return Ok(Judged::Intervals(certificate));
     }
@@ -158,10 +147,11 @@ pub(super) fn judge(
     let per_pixel = written.per_pixel;
     let reference = other_estimate(input, per_pixel, |input| {
         let image = render::render(input, layers, &Opened::Cpu)?;
-        Ok(Written::of(&image, encoding, is_png, per_pixel)?.colors())
+        Ok(Written::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
     })?;
     let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
-    Ok(Judged::Means(means(input, (per_pixel, reach), &written.colors(), &reference)?))
+    let found = written.colors(encoding)?;
+    Ok(Judged::Means(means(input, (per_pixel, reach), &found, &reference)?))
 }
 
 /// Judges the light of a picture that is neither denoised nor finished otherwise.
@@ -326,24 +316,25 @@ pub(super) fn certificate(
     }
 }
 
-/// Compares a certificate with the picture and the scene that it is said to be of.
-pub(super) fn compare(
-    certificate: &PictureCertificate,
-    written: &Written,
-    scene: Option<&Input>,
-) -> Result<()> {
-    if certificate.samples != written.digest() {
-        return Err(anyhow!(
-            "the certificate is of other samples; the picture was changed after it was certified"
-        ));
+/// Refuses a certificate of other samples.
+pub(super) fn check_samples(certificate: &PictureCertificate, written: &Written) -> Result<()> {
+    if certificate.samples == written.digest() {
+        return Ok(());
     }
-    match scene {
-        Some(input) if certificate.scene != scene_digest(&input.scene) => Err(anyhow!(
-            "the certificate is of other data than {}, or the data were changed since; render the picture again",
-            input.report.path
-        )),
-        _ => Ok(()),
+    Err(anyhow!(
+        "the certificate is of other samples; the picture was changed after it was certified"
+    ))
+}
+
+/// Refuses a certificate of another scene.
+pub(super) fn check_scene(certificate: &PictureCertificate, input: &Input) -> Result<()> {
+    if certificate.scene == scene_digest(&input.scene) {
+        return Ok(());
     }
+    Err(anyhow!(
+        "the certificate is of other data than {}, or the data were changed since; render the picture again",
+        input.report.path
+    ))
 }
 
 /// The arguments of this process from which the picture follows, apart from the scene.

@@ -70,6 +70,7 @@ mod render_certified;
 mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
+mod shell;
 mod speak;
 mod stop_rule;
 mod structure_flags;

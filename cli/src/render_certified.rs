@@ -13,15 +13,26 @@ use super::stop_rule::StopRule;
 use super::views::Views;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, Layer};
-use pinhole::render::Integrator;
+use pinhole::image::{Image, Layer, LayerSet};
+use pinhole::render::RenderSettings;
 use pinhole::verify::denoised;
+
+/// Means are of as many samples as were taken.
+const COUNTED: Layer = Layer::Samples;
 
 /// A picture and what was found about it.
 struct Made {
     image: Image,
     written: Written,
     judged: Judged,
+}
+
+/// How a picture is made.
+struct Making<'a> {
+    stop_rule: &'a StopRule,
+    outputs: &'a Outputs,
+    encoding: &'a Encoding,
+    opened: &'a Opened,
 }
 
 /// Renders, judges and writes a picture, and returns whether enough is decided. A picture that is not legal is an error
@@ -35,9 +46,10 @@ pub(super) fn run(
 ) -> Result<Result<(), Failure>, Failure> {
     let arguments = certified::arguments()?;
     certified::check(input, !outputs.annotations().is_empty())?;
+    let making = Making { stop_rule, outputs: &outputs, encoding, opened };
     let Made { image, written, judged } = match input.settings.is_denoised {
-        true => denoised(input, stop_rule, &outputs, encoding, opened)?,
-        false => plain(input, stop_rule, &outputs, encoding, opened)?,
+        true => making.denoised(input)?,
+        false => making.plain(input)?,
     };
     let verdict = judged.verdict();
     if let Err(failure @ Failure::CheckFailed(_)) = verdict {
@@ -50,66 +62,62 @@ pub(super) fn run(
     Ok(verdict)
 }
 
-fn plain(
-    input: &mut Input,
-    stop_rule: &StopRule,
-    outputs: &Outputs,
-    encoding: &Encoding,
-    opened: &Opened,
-) -> Result<Made, Failure> {
-    // Means are of as many samples as were taken.
-    let layers = outputs.layers(encoding).with(Layer::Samples);
-    let views = Views::of(input);
-    let image = render_joined(input, stop_rule, &views, layers, opened)?;
-    let written = written(&image, outputs, encoding)?;
-    let judged = certified::judge(input, encoding, outputs.layers(encoding), &written)?;
-    Ok(Made { image, written, judged })
-}
+impl Making<'_> {
+    fn plain(&self, input: &mut Input) -> Result<Made, Failure> {
+        let wanted = self.outputs.layers(self.encoding);
+        let views = Views::of(input);
+        let layers = wanted.with(COUNTED);
+        let image = render_joined(input, self.stop_rule, &views, layers, self.opened)?;
+        let written = self.written(&image)?;
+        let judged = certified::judge(input, self.encoding, wanted, &written)?;
+        Ok(Made { image, written, judged })
+    }
 
-/// Judges the light before the denoiser, and the denoiser by itself.
-fn denoised(
-    input: &mut Input,
-    stop_rule: &StopRule,
-    outputs: &Outputs,
-    encoding: &Encoding,
-    opened: &Opened,
-) -> Result<Made, Failure> {
-    if let Some(flag) = stop_rule.flag() {
-        return Err(Failure::usage(format!(
-            "--certify: {flag} and the denoiser exclude each other here; add --denoise=false, or choose --samples N"
-        )));
+    /// Judges the light before the denoiser, and the denoiser by itself.
+    fn denoised(&self, input: &mut Input) -> Result<Made, Failure> {
+        if let Some(flag) = self.stop_rule.open_end() {
+            return Err(Failure::usage(format!(
+                "--certify: {flag} and the denoiser exclude each other here; add --denoise=false, or choose --samples N"
+            )));
+        }
+        let layers = self.outputs.layers(self.encoding).with(COUNTED);
+        let noisy = one(render_part(input, input.film, layers, self.opened)?);
+        let with_guides = input.settings.layers_for(layers);
+        let without_noise = RenderSettings { is_denoised: true, ..input.settings.unfinished() };
+        let quiet = self.finish(noisy.clone(), &without_noise, with_guides)?;
+        progress::stage("checking the denoiser");
+        let denoiser = denoised::certify(&noisy, &quiet).map_err(anyhow::Error::from)?;
+        let with_lines = RenderSettings { is_denoised: false, ..input.settings.clone() };
+        let image = self.finish(quiet, &with_lines, layers)?;
+        let written = self.written(&image)?;
+        let means = certified::means_of_light(input, &noisy, GUIDES)?;
+        Ok(Made { image, written, judged: Judged::Denoised(means, denoiser) })
     }
-    let layers = outputs.layers(encoding).with(Layer::Samples);
-    let noisy = one(render_part(input, input.film, layers, opened)?);
-    let finish =
-        |settings| finish_views(Views::One(noisy.clone()), settings, layers, opened).map(one);
-    let image = finish(&input.settings)?;
-    let mut without_lines = input.settings.clone();
-    if let Integrator::Studio(studio) = &mut without_lines.integrator {
-        studio.outline = None;
+
+    fn finish(
+        &self,
+        image: Image,
+        settings: &RenderSettings,
+        layers: LayerSet,
+    ) -> Result<Image, Failure> {
+        finish_views(Views::One(image), settings, layers, self.opened).map(one)
     }
-    let quiet = finish(&without_lines)?;
-    progress::stage("checking the denoiser");
-    let denoiser = denoised::certify(&noisy, &quiet).map_err(anyhow::Error::from)?;
-    let written = written(&image, outputs, encoding)?;
-    let means = certified::means_of_light(input, &noisy, GUIDES)?;
-    Ok(Made { image, written, judged: Judged::Denoised(means, denoiser) })
+
+    /// The samples that are written of an image.
+    fn written(&self, image: &Image) -> Result<Written> {
+        let samples = image.samples().unwrap_or_default();
+        let first = samples.first().copied().unwrap_or(1);
+        if samples.iter().any(|count| *count != first) {
+            return Err(anyhow!(
+                "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
+            ));
+        }
+        Written::of(image, self.encoding, self.outputs.format() == PictureFormat::Png, first)
+    }
 }
 
 fn one(images: Views<Image>) -> Image {
     match images {
         Views::One(image) | Views::Two([image, _]) => image,
     }
-}
-
-/// The samples that are written of an image.
-fn written(image: &Image, outputs: &Outputs, encoding: &Encoding) -> Result<Written> {
-    let samples = image.samples().unwrap_or_default();
-    let first = samples.first().copied().unwrap_or(1);
-    if samples.iter().any(|count| *count != first) {
-        return Err(anyhow!(
-            "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
-        ));
-    }
-    Written::of(image, encoding, outputs.format() == PictureFormat::Png, first)
 }

@@ -27,13 +27,14 @@ pub(super) struct StopArgs {
 impl StopArgs {
     /// A flag that was given, if there is one.
     pub(super) fn given(&self) -> Option<&'static str> {
-        let given = [
-            ("--time", self.time.is_some()),
-            ("--noise", self.noise.is_some()),
-            ("--keep-partial", self.keep_partial),
-        ];
-        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+        let open_end = open_end(self.time.as_ref(), self.noise);
+        open_end.or(self.keep_partial.then_some("--keep-partial"))
     }
+}
+
+/// The flag that leaves the number of samples open, if there is one.
+fn open_end<T>(time: Option<T>, noise: Option<f64>) -> Option<&'static str> {
+    time.map(|_| "--time").or(noise.map(|_| "--noise"))
 }
 
 /// The flags that were given, checked.
@@ -63,17 +64,10 @@ impl StopRule {
 
     /// Returns the flag that leaves the number of samples open, if there is one.
     pub(super) fn open_end(&self) -> Option<&'static str> {
-        let by_noise = self.noise.map(|_| "--noise");
-        self.time.map(|_| "--time").or(by_noise)
+        open_end(self.time, self.noise)
     }
 
     /// Whether the picture is written after a signal.
-    /// The flag that ends a picture before all samples are taken.
-    pub(super) fn flag(&self) -> Option<&'static str> {
-        let given = [("--time", self.time.is_some()), ("--noise", self.noise.is_some())];
-        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
-    }
-
     pub(super) fn keeps_partial(&self) -> bool {
         self.keep_partial
     }

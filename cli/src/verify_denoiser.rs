@@ -58,7 +58,6 @@ mod rendered {
     use pinhole::camera::film::Film;
     use pinhole::gpu::Headless;
     use pinhole::image::denoise::GUIDES;
-    use pinhole::render::Integrator;
     use pinhole::verify::denoised;
 
     /// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
@@ -71,12 +70,8 @@ mod rendered {
         input: &Input,
         choice: AccelChoice,
     ) -> Result<DenoiseCertificate, Failure> {
-        let mut settings = input.settings.clone();
-        settings.is_denoised = false;
+        let mut settings = input.settings.unfinished();
         settings.sampling.samples = settings.sampling.samples.min(SAMPLES);
-        if let Integrator::Studio(studio) = &mut settings.integrator {
-            studio.outline = None;
-        }
         let (width, height) = (input.film.width(), input.film.height());
         let shrink = |side: u32| {
             let side = u64::from(side) * u64::from(SIDE) / u64::from(width.max(height).max(SIDE));

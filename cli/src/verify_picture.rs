@@ -6,7 +6,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use serde::Serialize;
 
-use super::args::{Arguments, Command, RenderArgs, VerifyArgs};
+use super::args::{Arguments, Command, VerifyArgs};
 use super::certified::{self, Judged, Written};
 use super::failure::Failure;
 use super::input::read;
@@ -16,6 +16,7 @@ use super::render::Job;
 use super::speak::{answer, tell};
 use super::verify_report::command_line;
 use super::{progress, threads};
+use pinhole::image::encoding::Encoding;
 use pinhole::load::picture::{self, FileSamples, PictureFile};
 use pinhole::verify::picture_certificate::PictureCertificate;
 
@@ -48,14 +49,14 @@ pub(super) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
         per_pixel: certificate.samples_per_pixel,
     };
     let of_picture = || path.display().to_string();
-    certified::compare(&certificate, &written, None).with_context(of_picture)?;
+    certified::check_samples(&certificate, &written).with_context(of_picture)?;
     let (job, flags) = job(path, scene, &certificate, &written.samples)?;
     let mut input = job.source.load()?;
     let files: Vec<_> = input.files.iter().cloned().chain([path.to_path_buf()]).collect();
     check_not_inputs(args.json.iter(), &files)?;
     let note = |note: &dyn std::fmt::Display| tell(format_args!("note: {note}"));
     input.notes.iter().for_each(|text| note(text));
-    certified::compare(&certificate, &written, Some(&input)).with_context(of_picture)?;
+    certified::check_scene(&certificate, &input).with_context(of_picture)?;
     let (encoding, _) = job.finish(&mut input, note)?;
     check_kind(path, &written.samples, &encoding)?;
     let layers = job.outputs.layers(&encoding);
@@ -99,8 +100,7 @@ fn job(
     let Ok(Arguments { command: Command::Render(args) }) = parsed else {
         return Err(refused().into());
     };
-    let RenderArgs { layers, .. } = &*args;
-    if !layers.is_empty() {
+    if !args.layers.is_empty() {
         return Err(refused().into());
     }
     let format = match samples {
@@ -113,21 +113,17 @@ fn job(
 }
 
 /// Refuses a picture whose samples are of another kind than the arguments ask for.
-fn check_kind(
-    path: &Path,
-    samples: &FileSamples,
-    encoding: &pinhole::image::encoding::Encoding,
-) -> Result<()> {
-    use pinhole::image::encoding::Bits;
+fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result<()> {
     let FileSamples::Encoded { bits, has_alpha, .. } = samples else { return Ok(()) };
-    let wanted = if encoding.bits() == Bits::Eight { 8 } else { 16 };
-    if (*bits, *has_alpha) == (wanted, encoding.transparent()) {
+    if (*bits, *has_alpha) == (encoding.bits(), encoding.transparent()) {
         return Ok(());
     }
     Err(anyhow!(
-        "{}: the samples have {bits} bits {} alpha, but the certificate's arguments ask for {wanted} {}",
+        "{}: the samples have {} bits {} alpha, but the certificate's arguments ask for {} {}",
         path.display(),
+        bits.count(),
         if *has_alpha { "with" } else { "without" },
+        encoding.bits().count(),
         if encoding.transparent() { "with it" } else { "without it" }
     ))
 }

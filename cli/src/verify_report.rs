@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
+use super::shell::in_quotes;
 use super::verify_denoiser::DenoiserReport;
 use super::verify_light::LightReport;
 use pinhole::internals::text::one_line;
@@ -202,14 +203,7 @@ impl Report {
 
 /// Returns the command line of this program, quoted for a shell.
 pub(super) fn command_line() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| {
-        let argument = one_line(&argument.to_string_lossy());
-        let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
-        if !argument.is_empty() && argument.chars().all(is_plain) {
-            argument
-        } else {
-            format!("'{}'", argument.replace('\'', r"'\''"))
-        }
-    });
+    let arguments = std::env::args_os().skip(1);
+    let arguments = arguments.map(|word| in_quotes(&one_line(&word.to_string_lossy())));
     std::iter::once("pinhole".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }

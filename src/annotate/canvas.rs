@@ -17,7 +17,7 @@ impl<'a> Canvas<'a> {
     #[must_use]
     pub fn new(size: [u32; 2], channels: usize, bits: Bits, samples: &'a mut [u8]) -> Option<Self> {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let bytes = pixels * channels as u64 * sample_bytes(bits) as u64;
+        let bytes = pixels * channels as u64 * bits.bytes() as u64;
         let is_right = matches!(channels, 3 | 4) && bytes == samples.len() as u64;
         is_right.then_some(Self { size, channels, bits, samples })
     }
@@ -62,7 +62,7 @@ impl<'a> Canvas<'a> {
         let [width, height] = self.size.map(i64::from);
         let is_inside = (0..width).contains(&x) && (0..height).contains(&y);
         let pixel = usize::try_from(y * width + x).ok().filter(|_| is_inside)?;
-        Some(pixel * self.channels * sample_bytes(self.bits))
+        Some(pixel * self.channels * self.bits.bytes())
     }
 
     /// A sample on a scale from 0 to 255.
@@ -85,13 +85,6 @@ impl<'a> Canvas<'a> {
                 self.samples[at..at + 2].copy_from_slice(&bytes);
             }
         }
-    }
-}
-
-fn sample_bytes(bits: Bits) -> usize {
-    match bits {
-        Bits::Eight => 1,
-        Bits::Sixteen => 2,
     }
 }
 

@@ -27,6 +27,27 @@ impl Bits {
             _ => Err(EncodingError::Bits { bits }),
         }
     }
+
+    /// The number of bits.
+    #[must_use]
+    pub const fn count(self) -> u32 {
+        8 * self.bytes() as u32
+    }
+
+    /// The number of bytes of a sample.
+    #[must_use]
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Eight => 1,
+            Self::Sixteen => 2,
+        }
+    }
+
+    /// The sample of full light.
+    #[must_use]
+    pub const fn white(self) -> u32 {
+        (1 << self.count()) - 1
+    }
 }
 
 /// How a picture is encoded in a file. Exposure, tone curve and bits apply to PNG; EXR stores the light as it is.

@@ -6,6 +6,7 @@ mod exr;
 #[cfg(feature = "png")]
 mod png;
 
+use crate::image::encoding::Bits;
 use crate::text::one_line;
 
 /// A picture as it stands in a file.
@@ -25,8 +26,8 @@ pub struct PictureFile {
 pub enum FileSamples {
     /// Those of a PNG: RGB, or RGBA, each of one byte or of two with the higher first.
     Encoded {
-        /// 8 or 16.
-        bits: u32,
+        /// The bits of each sample.
+        bits: Bits,
         /// Whether there is an alpha channel.
         has_alpha: bool,
         /// The samples.

@@ -12,7 +12,7 @@ use super::write_values::{color, degrees_of, string};
 use crate::annotate::AnnotationPlan;
 use crate::camera::CameraParameters;
 use crate::camera::film::Film;
-use crate::image::encoding::{Bits, Encoding};
+use crate::image::encoding::Encoding;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use crate::scene::material::SurfaceProperties;
@@ -242,14 +242,4 @@ fn ground(ground: &Ground) -> String {
     format!(
         "\n[ground]\npoint = {point:?}\nnormal = {normal:?}\ncolor = {color}\nshadow_catcher = {catcher}"
     )
-}
-
-impl Bits {
-    /// The number of bits.
-    const fn count(self) -> u32 {
-        match self {
-            Self::Eight => 8,
-            Self::Sixteen => 16,
-        }
-    }
 }

@@ -13,6 +13,7 @@
 
 use super::outcome::Outcome;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use super::violation::channel_name;
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
 use crate::image::denoise::{Guided, MissingGuide, PASSES};
@@ -75,7 +76,7 @@ impl DenoiseCertificate {
 impl std::fmt::Display for DenoiseViolation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { pixel: [i, j], channel, found, legal: Interval { low, high } } = self;
-        let name = ["red", "green", "blue"].get(*channel).copied().unwrap_or("a channel");
+        let name = channel_name(*channel);
         write!(f, "pixel ({i}, {j}): {name} is {found:e}, but {low:e} to {high:e} are legal")
     }
 }

@@ -27,6 +27,7 @@
 use std::fmt;
 
 use super::outcome::Outcome;
+use super::violation::channel_name;
 
 /// The probability with which a correct device is accused.
 pub const ERROR_PROBABILITY: f64 = 1e-9;
@@ -215,7 +216,7 @@ impl RegionMean {
 impl fmt::Display for RegionMean {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { region, channel, found, expected, bound, .. } = self;
-        let name = ["red", "green", "blue"].get(*channel).copied().unwrap_or("a channel");
+        let name = channel_name(*channel);
         match region {
             Some([i, j]) => write!(f, "region ({i}, {j}): ")?,
             None => f.write_str("the whole picture: ")?,

@@ -25,6 +25,7 @@ use std::fmt::Write;
 use sha2::{Digest, Sha256};
 
 use super::outcome::Outcome;
+use super::run_file::hex;
 use crate::scene::Scene;
 use crate::text::{one_line, shortened};
 
@@ -157,7 +158,7 @@ impl PictureCertificate {
         line("outcome", self.outcome.name());
         line("proved", &self.counts[0].to_string());
         line("undecided", &self.counts[1].to_string());
-        let digest = hex(&Sha256::digest(text.as_bytes()));
+        let digest = hex(Sha256::new_with_prefix(&text));
         let _ = writeln!(text, "{DIGEST} {digest}");
         Ok(text)
     }
@@ -177,7 +178,8 @@ impl PictureCertificate {
             _ => return Err(missing(FIRST)),
         }
         let before = text.rfind(&format!("\n{DIGEST} ")).ok_or(missing(DIGEST))? + 1;
-        let digest = format!("{DIGEST} {}\n", hex(&Sha256::digest(&text.as_bytes()[..before])));
+        let digest =
+            format!("{DIGEST} {}\n", hex(Sha256::new_with_prefix(&text.as_bytes()[..before])));
         if text[before..] != digest {
             return Err(CertificateError::Edited);
         }
@@ -258,7 +260,7 @@ pub fn scene_digest(scene: &Scene) -> String {
         add(&mut digest, &index.to_le_bytes());
     }
     add(&mut digest, &[]);
-    hex(&digest.finalize())
+    hex(digest)
 }
 
 /// The digest of the samples of a picture: width and height in four bytes each, the lowest first, and the samples as
@@ -268,11 +270,7 @@ pub fn samples_digest(size: [u32; 2], samples: &[u8]) -> String {
     let mut digest = Sha256::new();
     size.iter().for_each(|side| digest.update(side.to_le_bytes()));
     digest.update(samples);
-    hex(&digest.finalize())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    data_encoding::HEXLOWER.encode(bytes)
+    hex(digest)
 }
 
 #[cfg(test)]

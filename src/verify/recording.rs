@@ -91,8 +91,8 @@ pub struct UploadedView {
 }
 
 impl UploadedView {
-    /// The numbers that a device is given for a camera, if the spheres lie between two corners: rays start where the nearest corner of the scene's box lies, if
-    /// the camera has a plane.
+    /// The numbers that a device is given for a camera, if the spheres lie between two corners: rays start where the
+    /// nearest corner of the scene's box lies, if the camera has a plane.
     pub(super) fn expected(
         camera: &RequestedCamera,
         scene_origin: DVec3,

@@ -3,10 +3,10 @@
 //! From the accuracy table of the WGSL specification ("Floating point accuracy"): sums, differences and products are
 //! rounded to either neighbour; a quotient is within 2.5 ULP, an inverse square root within 2 ULP, and a square root
 //! within the error of 1 divided by an inverse square root. A quotient x/y may also be the product of x and 1/y, as
-//! compilers make it, although the table does not say so: then it has the errors of both. Subnormal numbers may be flushed to zero. Products and sums
-//! may be fused, and the terms of a sum may be added in any order. Therefore the error of an expression between two
-//! fences (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms' magnitudes, if no term passes through
-//! more than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
+//! compilers make it, although the table does not say so: then it has the errors of both. Subnormal numbers may be
+//! flushed to zero. Products and sums may be fused, and the terms of a sum may be added in any order. Therefore the error
+//! of an expression between two fences (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms'
+//! magnitudes, if no term passes through more than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
 
 /// The relative error of one rounding to either neighbour: 2⁻²³. An ULP is at most this.
 pub(super) const U: f64 = 1.0 / (1 << 23) as f64;

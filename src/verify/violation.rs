@@ -123,10 +123,14 @@ impl fmt::Display for Violation {
     }
 }
 
+/// The name of a channel of a colour, from 0 for red to 3 for alpha.
+pub(super) fn channel_name(channel: usize) -> &'static str {
+    ["red", "green", "blue", "alpha"].get(channel).copied().unwrap_or("a channel")
+}
+
 impl fmt::Display for ViolationKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const AXES: [&str; 3] = ["x", "y", "z"];
-        const CHANNELS: [&str; 3] = ["red", "green", "blue"];
         match self {
             Self::NotTraced => f.write_str("no ray was traced, although it hits the scene's box"),
             Self::Direction { axis, found, legal } => {
@@ -154,7 +158,7 @@ impl fmt::Display for ViolationKind {
                 )
             }
             Self::Color { channel, found, legal } => {
-                write!(f, "{} is {found:?}; legal is {legal}", CHANNELS[*channel])
+                write!(f, "{} is {found:?}; legal is {legal}", channel_name(*channel))
             }
             Self::Rendered(kind) => write!(f, "{}: {kind}", kind.stage()),
         }

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 
-use super::MergeArgs;
 use super::folder::Folder;
 use super::join::{check_all, device_of, picture};
 use super::manifest::layer_set;
 use super::part::described;
 use super::recipe::{Recipe, check_same, split_args};
+use super::{MergeArgs, SplitArgs};
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, is_movie, ready};
@@ -38,8 +38,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
         ))
     })?;
     let folder = Folder::open(&args.job)?;
-    let mut render = split_args(&folder.manifest.arguments)?.render;
-    let exr = split_args(&folder.manifest.arguments)?.exr;
+    let SplitArgs { mut render, exr, .. } = split_args(&folder.manifest.arguments)?;
     render.output = Some(absolute(&args.output)?);
     render.layers =
         args.layers.iter().map(|text| absolute_layer(text)).collect::<Result<_, _>>()?;
@@ -90,8 +89,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
         devices.check(&opened)?;
         let (encoding, annotations) = job.finish(&mut input, quietly)?;
-        let eyes = if input.eyes.is_some() { 2 } else { 1 };
-        check_same(&folder.manifest, None, [input.film.width(), input.film.height()], eyes)?;
+        check_same(&folder.manifest, None, &input)?;
         let outputs = job.outputs.with_annotations(annotations);
         outputs.check_not_inputs(&input.files)?;
         let layers = outputs.layers(&encoding);
@@ -107,8 +105,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
     };
     devices.check(&opened)?;
     let input = &series.input;
-    let eyes = if input.eyes.is_some() { 2 } else { 1 };
-    check_same(&folder.manifest, Some(&all), [input.film.width(), input.film.height()], eyes)?;
+    check_same(&folder.manifest, Some(&all), input)?;
     check_layers(folder, writing.layers)?;
     writing.write(&wanted, all.len(), adapter, |written| {
         for (place, number) in all.iter().enumerate() {
@@ -173,7 +170,8 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     Ok(if ends_with_separator { absolute.join("") } else { absolute })
 }
 
-fn absolute_layer(text: &str) -> Result<String, Failure> {
+/// The value of `--layer`, with an absolute path.
+pub(super) fn absolute_layer(text: &str) -> Result<String, Failure> {
     let Some((layer, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
         return Ok(text.to_owned());
     };

@@ -85,7 +85,7 @@ impl Work<'_> {
         let Some(wanted) = wanted else {
             let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
             let (_, _) = job.finish(&mut input, note)?;
-            self.check(&input, None)?;
+            check_same(manifest, None, &input)?;
             return self.units.iter().try_for_each(|unit| self.render(*unit, &mut input, &opened));
         };
         let mut numbers: Vec<usize> =
@@ -95,19 +95,13 @@ impl Work<'_> {
         let Some(Ready { series, opened, all, .. }) = ready(&args, &wanted, job, known)? else {
             return Ok(());
         };
-        self.check(&series.input, Some(&all))?;
+        check_same(manifest, Some(&all), &series.input)?;
         series.for_each(|number, input| {
             let of_picture = |unit: &&usize| manifest.number(**unit) == Some(number);
             let mut units = self.units.iter().filter(of_picture);
             units.try_for_each(|unit| self.render(*unit, input, &opened))?;
             Ok(true)
         })
-    }
-
-    fn check(&self, input: &Input, numbers: Option<&[usize]>) -> Result<(), Failure> {
-        let size = [input.film.width(), input.film.height()];
-        let eyes = if input.eyes.is_some() { 2 } else { 1 };
-        check_same(&self.folder.manifest, numbers, size, eyes)
     }
 
     /// Renders a unit and writes it. Why it failed is kept.

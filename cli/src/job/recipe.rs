@@ -11,6 +11,7 @@ use crate::args::{Arguments, Command, RenderArgs};
 use crate::device::Device;
 use crate::failure::Failure;
 use crate::frames::Wanted;
+use crate::input::Input;
 use crate::render::Job;
 
 /// The flags of `split` that a job keeps.
@@ -68,9 +69,10 @@ impl Recipe {
 pub(super) fn check_same(
     manifest: &Manifest,
     numbers: Option<&[usize]>,
-    size: [u32; 2],
-    eyes: u32,
+    input: &Input,
 ) -> Result<(), Failure> {
+    let size = [input.film.width(), input.film.height()];
+    let eyes = if input.eyes.is_some() { 2 } else { 1 };
     let is_same =
         manifest.pictures.as_deref() == numbers && manifest.size == size && manifest.eyes == eyes;
     let changed = "the input makes other pictures than those that were split; split the job again";

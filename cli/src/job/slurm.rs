@@ -9,9 +9,11 @@ use anyhow::{Context, anyhow};
 use super::SubmitArgs;
 use super::files;
 use super::folder::Folder;
+use super::merge::absolute_layer;
 use super::units::ranges;
 use crate::failure::Failure;
 use crate::output::{name_all, unnamed};
+use crate::shell::in_quotes;
 use crate::speak::{answer, tell};
 
 /// The folder of the scripts in the folder of a job.
@@ -159,26 +161,9 @@ fn quoted(path: &Path) -> Result<String, Failure> {
     Ok(in_quotes(text))
 }
 
-/// A word for a shell, which is left as it is if it has no meaning of its own there.
-fn in_quotes(text: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-=+,%:".contains(c);
-    match !text.is_empty() && text.chars().all(is_plain) {
-        true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', r"'\''")),
-    }
-}
-
 /// The flag for a layer, with an absolute path.
 fn layer(text: &str) -> Result<String, Failure> {
-    let text = match text.split_once('=') {
-        Some((layer, path)) if !path.is_empty() => {
-            let path = std::path::absolute(path).context("--layer: this path has no meaning")?;
-            let path = path.to_str().context("--layer: this is not UTF-8")?.to_owned();
-            format!("{layer}={path}")
-        }
-        _ => text.to_owned(),
-    };
-    Ok(format!(" --layer {}", in_quotes(&text)))
+    Ok(format!(" --layer {}", in_quotes(&absolute_layer(text)?)))
 }
 
 fn check_sbatch() -> Result<(), Failure> {
@@ -206,18 +191,4 @@ fn sbatch<S: AsRef<OsStr>>(arguments: Vec<S>, script: &Path) -> Result<String, F
     let why =
         said.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it says nothing");
     Err(Failure::Job(anyhow!("{}: sbatch refused it: {why}", script.display())))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_where_a_shell_needs_it() {
-        assert_eq!(in_quotes("/a/b-1_2.png"), "/a/b-1_2.png");
-        assert_eq!(in_quotes("/a b/f%04d.png"), "'/a b/f%04d.png'");
-        assert_eq!(in_quotes("it's"), r"'it'\''s'");
-        assert_eq!(in_quotes(""), "''");
-        assert_eq!(in_quotes("$(rm)"), "'$(rm)'");
-    }
 }

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
 use super::{FileSamples, PictureFile, PictureFileError, damaged};
+use crate::image::encoding::Bits;
 use crate::write::png::CERTIFICATE;
 
 const FORMAT: &str = "PNG";
@@ -17,8 +18,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
     let info = reader.info();
     let (width, height) = (info.width, info.height);
     let bits = match info.bit_depth {
-        BitDepth::Eight => 8,
-        BitDepth::Sixteen => 16,
+        BitDepth::Eight => Bits::Eight,
+        BitDepth::Sixteen => Bits::Sixteen,
         other => return Err(kind(format!("samples of {} bits", other as u8))),
     };
     let has_alpha = match info.color_type {

@@ -127,7 +127,8 @@ pub enum RunFileError {
     },
     /// The file has another version of the format.
     #[error(
-        "this is a run file of version {found}, and this program reads the versions 2 and {VERSION}; use the program that wrote it"
+        "this is a run file of version {found}, and this program reads the versions 2 and {VERSION}; \
+         use the program that wrote it"
     )]
     Version {
         /// The version of the file.
@@ -163,6 +164,7 @@ pub fn scene_sha256(scene: &Scene) -> String {
     hex(digest)
 }
 
-fn hex(digest: Sha256) -> String {
+/// A finished digest in hexadecimal digits.
+pub(super) fn hex(digest: Sha256) -> String {
     data_encoding::HEXLOWER.encode(&digest.finalize())
 }

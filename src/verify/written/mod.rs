@@ -23,15 +23,13 @@ use super::certificate::{KEPT, Verdict};
 use super::checker::Checker;
 use super::hit::LegalHits;
 use super::outcome::Outcome;
+use super::violation::channel_name;
 use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::render::PrimarySettings;
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 12;
-
-/// Names of the channels of a pixel.
-const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// Why a picture cannot be judged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,7 +70,7 @@ pub struct WrittenViolation {
 impl fmt::Display for WrittenViolation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], channel, found, legal: [low, high] } = self;
-        let name = CHANNELS.get(*channel).copied().unwrap_or("a channel");
+        let name = channel_name(*channel);
         write!(f, "pixel ({i}, {j}): {name} is {found}, but ")?;
         if low >= high {
             write!(f, "{low} is expected")
@@ -171,6 +169,7 @@ impl Checker<'_> {
         }
         Ok(certificate)
     }
+
     /// Whether surfaces of several spheres coincide where the middle ray of each pixel meets them, so that rounding
     /// decides which one is seen.
     #[must_use]

@@ -30,7 +30,7 @@ pub struct WrittenPicture<'a> {
 impl Picture<'_> {
     /// The number of bytes of a sample, and of channels of a pixel.
     fn layout(&self) -> [usize; 2] {
-        let bytes = if self.encoding.bits() == Bits::Eight { 1 } else { 2 };
+        let bytes = self.encoding.bits().bytes();
         match self.samples {
             Samples::Encoded(_) => [bytes, if self.encoding.transparent() { 4 } else { 3 }],
             Samples::Linear(_) => [1, 4],
@@ -50,6 +50,24 @@ impl Picture<'_> {
             Samples::Linear(samples) => (samples.len(), pixels),
         };
         if found == expected { Ok(()) } else { Err(WrittenError::Count { found, expected }) }
+    }
+
+    /// Red, green and blue of each pixel as they stand in the file, such that white is 1.
+    ///
+    /// # Errors
+    /// Returns an error if there are too few or too many samples.
+    pub fn colors(&self) -> Result<Vec<[f64; 3]>, WrittenError> {
+        self.check(self.size)?;
+        let [_, channels] = self.layout();
+        let white = match self.samples {
+            Samples::Linear(_) => 1.0,
+            Samples::Encoded(_) => f64::from(self.encoding.bits().white()),
+        };
+        let color = |index| {
+            let [r, g, b, _] = self.at(index, channels);
+            [r, g, b].map(|sample| sample / white)
+        };
+        Ok((0..self.size[0] as usize * self.size[1] as usize).map(color).collect())
     }
 
     /// The samples of a pixel.
@@ -126,7 +144,7 @@ impl<'a> Mapping<'a> {
             channels[channel] = [low[channel], high[channel]];
         }
         if encoding.transparent() {
-            channels[3] = [alpha * if encoding.bits() == Bits::Eight { 255.0 } else { 65535.0 }; 2];
+            channels[3] = [alpha * f64::from(encoding.bits().white()); 2];
         }
         LegalSample(channels)
     }

@@ -2,22 +2,16 @@
 //! which stay within the bounds are noted.
 
 use libtest_mimic::Failed;
-use pinhole::gpu::{Headless, HeadlessOptions};
-use pinhole::internals::ShaderEdit;
+use pinhole::gpu::Headless;
 use pinhole::verify::{Deviations, LARGEST_MEAN};
 
 use super::{certify_lit_on, certify_on};
+use crate::planted::faulty;
 use crate::{headless, scenes};
 
 /// The mean deviations of a device without a fault are below this, where there are this many results.
 const CLEAN: f64 = LARGEST_MEAN / 2.0;
 const MANY: u64 = 20_000;
-
-fn device(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
-    let [file, find, replace] = [file, find, replace].map(str::to_owned);
-    let edits = vec![ShaderEdit { file, find, replace }];
-    Ok(Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() })?)
-}
 
 /// The deviations of a picture of primary rays.
 fn of_picture(headless: &Headless) -> Result<Deviations, Failed> {
@@ -91,7 +85,7 @@ pub(super) const SMALL: &[Small] = &[
 ];
 
 pub(super) fn is_noted(&(_, file, find, replace, is_lit): &Small) -> Result<(), Failed> {
-    let headless = device(file, find, replace)?;
+    let headless = faulty(file, find, replace)?;
     let deviations = if is_lit { of_light(&headless)? } else { of_picture(&headless)? };
     let biased: Vec<_> = deviations.biased().map(ToString::to_string).collect();
     println!("{}", biased.join("\n"));
