@@ -4,6 +4,7 @@
 //! cargo bench --bench verify -- standard    # the standard scenes, also from 100 times as far away
 //! cargo bench --bench verify -- cost        # the checker against the CPU reference
 //! cargo bench --bench verify -- fences      # tracing with and without fences, in turns
+//! cargo bench --bench verify -- margins    # ray queries, where there are any: the margin of boxes at which they fail
 //! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
 //! cargo bench --bench verify -- lit-campaign 500    # light paths of this number of random scenes; ends at a violation
 //! cargo bench --bench verify -- studio-campaign 500    # the same in random studios
@@ -61,6 +62,9 @@ fn main() {
     }
     if runs("fences") {
         fences(&headless);
+    }
+    if wanted.iter().any(|wanted| wanted == "margins") {
+        margins();
     }
     // The campaign runs only if it is named, because it takes minutes.
     if wanted.iter().any(|wanted| wanted == "campaign") {
@@ -250,6 +254,49 @@ fn fences(fenced: &Headless) {
         }
     }
     println!();
+}
+
+/// Prints how many pixels miss a sphere with smaller margins of the boxes for ray queries.
+fn margins() {
+    // Of 0, only roundings of coordinates are left; less than 0 cuts spheres.
+    const PARTS: [f32; 8] = [1.0, 0.25, 0.0625, 0.0, -0.015_625, -0.0625, -0.25, -1.0];
+    let options = HeadlessOptions { ray_query: true, ..HeadlessOptions::default() };
+    let headless = Headless::open(&options).unwrap();
+    print!("{:<26}{:>9}", "margin, of that of trees", "rays");
+    PARTS.iter().for_each(|part| print!("{part:>9.5}"));
+    println!();
+    let mut sums = [0; PARTS.len()];
+    for (name, scene) in campaign_scenes() {
+        if scene.spheres().len() > 10_000 {
+            // A list of as many spheres takes too long.
+            continue;
+        }
+        let (mut rays, mut missed) = (0, [0; PARTS.len()]);
+        for (_, camera) in campaign_views(&scene) {
+            let view = View::new(camera.as_ref(), Film::new(256, 256).unwrap());
+            let hits = |choice, part| {
+                let plan = headless.plan_accel(&scene, choice).with_box_margin(part);
+                let structures: Structures = plan.build(scene.spheres()).into();
+                let buffers = headless.upload(&scene, &structures).unwrap();
+                let (settings, go_on) = (RenderSettings::default(), |_: &_| Decision::GoOn);
+                let recording =
+                    headless.record(&buffers, &view, &settings, &mut { go_on }).unwrap();
+                let hit = |pixel: &pinhole::verify::TracedPixel| (pixel.t.to_bits(), pixel.id);
+                recording.pixels.iter().map(hit).collect::<Vec<_>>()
+            };
+            let expected = hits(AccelChoice::List, 1.0);
+            rays += expected.len();
+            for (missed, part) in missed.iter_mut().zip(PARTS) {
+                let found = hits(AccelChoice::RayQuery, part);
+                *missed += found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+            }
+        }
+        print!("{name:<26}{rays:>9}");
+        missed.iter().for_each(|missed| print!("{missed:>9}"));
+        println!();
+        sums.iter_mut().zip(missed).for_each(|(sum, missed)| *sum += missed);
+    }
+    println!("{:<35}{}", "all", sums.map(|sum| format!("{sum:>9}")).concat());
 }
 
 type Named = (&'static str, Scene);

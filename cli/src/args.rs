@@ -209,6 +209,8 @@ pub(super) enum Structure {
     BinaryTree,
     /// No structure, every ray tests every sphere: slow, for comparison
     List,
+    /// Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`
+    Query,
 }
 
 impl From<Structure> for AccelChoice {
@@ -219,6 +221,7 @@ impl From<Structure> for AccelChoice {
             Structure::Tree => Self::Tree,
             Structure::BinaryTree => Self::BinaryTree,
             Structure::List => Self::List,
+            Structure::Query => Self::RayQuery,
         }
     }
 }

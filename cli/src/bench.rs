@@ -32,7 +32,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args, size));
         sources.collect::<Result<Vec<_>, _>>()?
     };
-    let adapter = WantedAdapter::new(&args.adapter);
+    let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.iter().copied());
     threads::start()?;
     let mut headless = adapter.open_any()?;
     if args.calibrate {

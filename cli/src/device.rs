@@ -32,6 +32,8 @@ pub(super) enum Device {
 pub(super) struct WantedAdapter {
     name: Option<String>,
     limits: Option<Limits>,
+    /// Whether the device is opened for ray queries.
+    ray_query: bool,
 }
 
 impl Device {
@@ -49,7 +51,7 @@ impl Device {
                 "{flag} and --backend cpu exclude each other; remove one of them"
             ))),
             (backend, given) => Ok(Self::Adapter {
-                wanted: WantedAdapter::new(&args.adapter),
+                wanted: WantedAdapter::new(&args.adapter).for_structures(accel),
                 choice: choice(accel),
                 // A flag that only adapters have means that the user wants an adapter.
                 or_cpu: backend == Backend::Auto && given.is_none(),
@@ -160,13 +162,19 @@ impl Device {
 
 impl WantedAdapter {
     pub(super) fn new(args: &AdapterArgs) -> Self {
-        Self { name: args.adapter.clone(), limits: args.limits }
+        Self { name: args.adapter.clone(), limits: args.limits, ray_query: false }
+    }
+
+    /// The same adapter, opened for what these structures need.
+    pub(super) fn for_structures(self, structures: impl IntoIterator<Item = Structure>) -> Self {
+        let ray_query = structures.into_iter().any(|structure| structure == Structure::Query);
+        Self { ray_query, ..self }
     }
 
     /// Asks for the adapter of this name with all its limits; without a name, for the best adapter.
     #[cfg(feature = "gpu")]
     pub(super) fn named(name: Option<String>) -> Self {
-        Self { name, limits: None }
+        Self { name, limits: None, ray_query: false }
     }
 
     /// Opens the adapter. The inner error means that there is no adapter, which is not a failure for every caller.
@@ -179,6 +187,7 @@ impl WantedAdapter {
                 Some(Limits::Adapter) | None => LimitChoice::Adapter,
             },
             profile: profile::of_device(),
+            ray_query: self.ray_query,
             ..HeadlessOptions::default()
         };
         let phase = profile::phase("open device");

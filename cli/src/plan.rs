@@ -94,7 +94,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
             .map(|layer| layers.with(layer))
             .map_err(|error| Failure::usage(format!("--layer {name}: {error}")))
     })?;
-    let adapter = WantedAdapter::new(&args.adapter);
+    let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
     threads::start()?;
     let input = source.load()?;
     for note in &input.notes {

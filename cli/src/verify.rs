@@ -164,7 +164,7 @@ mod recorded {
     pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
         let source = Source::of_view(path, &args.view)?;
         let outputs = VerifyOutputs::new(args)?;
-        let wanted = WantedAdapter::new(&args.adapter);
+        let wanted = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
         threads::start()?;
         let input = source.load()?;
         outputs.check_not_inputs(&input.files)?;

@@ -8,6 +8,7 @@ use super::list;
 use super::plan::AccelChoice;
 use super::primitive::{BrickKind, Primitive};
 use super::query::{Nearest, RayF32};
+use super::query_boxes::QueryBoxes;
 use super::wide_tree::WideTree;
 
 /// The acceleration structures, as kernels distinguish them.
@@ -24,10 +25,12 @@ pub enum Structure {
     WideTree,
     /// A tree with two children for each node, which is simple and serves as an independent check.
     BinaryTree,
+    /// A structure that the driver builds from boxes, and searches by ray queries; not all devices have these.
+    RayQuery,
 }
 
 impl Structure {
-    /// All structures.
+    /// All structures that any device can search: not [`Structure::RayQuery`].
     pub const ALL: &'static [Self] = &[
         Self::List,
         Self::Grid(ListLayout::Referenced),
@@ -36,6 +39,19 @@ impl Structure {
         Self::NestedGrid(ListLayout::Balls),
         Self::WideTree,
         Self::BinaryTree,
+    ];
+
+    /// All structures for which there are kernels.
+    #[cfg(feature = "gpu")]
+    pub(crate) const WITH_KERNELS: &'static [Self] = &[
+        Self::List,
+        Self::Grid(ListLayout::Referenced),
+        Self::Grid(ListLayout::Balls),
+        Self::NestedGrid(ListLayout::Referenced),
+        Self::NestedGrid(ListLayout::Balls),
+        Self::WideTree,
+        Self::BinaryTree,
+        Self::RayQuery,
     ];
 
     /// The structures that [`AccelChoice::Auto`](super::AccelChoice::Auto) chooses among. The binary
@@ -65,6 +81,7 @@ impl Structure {
             Self::Grid(_) | Self::NestedGrid(_) => AccelChoice::Grid,
             Self::WideTree => AccelChoice::Tree,
             Self::BinaryTree => AccelChoice::BinaryTree,
+            Self::RayQuery => AccelChoice::RayQuery,
         }
     }
 
@@ -79,6 +96,7 @@ impl Structure {
             Self::NestedGrid(ListLayout::Balls) => "nested grids, cells have balls",
             Self::WideTree => "8-wide tree",
             Self::BinaryTree => "binary tree",
+            Self::RayQuery => "ray query",
         }
     }
 }
@@ -94,6 +112,8 @@ pub enum Index {
     WideTree(WideTree),
     /// A tree with two children for each node.
     BinaryTree(BinaryTree),
+    /// Boxes from which a driver builds a structure. The host searches without one.
+    RayQuery(QueryBoxes),
 }
 
 /// A part of a scene with its acceleration structure.
@@ -117,7 +137,7 @@ impl Brick {
     pub fn find_nearest(&self, ray: &RayF32, nearest: &mut Nearest) {
         let Self { index, spheres, ids } = self;
         match index {
-            Index::List => list::find_nearest(spheres, ids, ray, nearest),
+            Index::List | Index::RayQuery(_) => list::find_nearest(spheres, ids, ray, nearest),
             Index::Grid(grid) => grid.find_nearest(spheres, ids, ray, nearest),
             Index::WideTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
             Index::BinaryTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
@@ -129,7 +149,7 @@ impl Brick {
     pub fn find_any(&self, ray: &RayF32, t_max: f32) -> bool {
         let Self { index, spheres, .. } = self;
         match index {
-            Index::List => list::find_any(spheres, ray, t_max),
+            Index::List | Index::RayQuery(_) => list::find_any(spheres, ray, t_max),
             Index::Grid(grid) => grid.find_any(spheres, ray, t_max),
             Index::WideTree(tree) => tree.find_any(spheres, ray, t_max),
             Index::BinaryTree(tree) => tree.find_any(spheres, ray, t_max),

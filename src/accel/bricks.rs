@@ -13,6 +13,7 @@ use super::divide::divide;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::outliers::Margins;
 use super::plan::AccelPlan;
+use super::query_boxes::QueryBoxes;
 use super::wide_tree::WideTree;
 
 /// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are
@@ -119,6 +120,11 @@ impl Bricks<'_> {
                 let tree = BinaryTree::build(spheres, margin);
                 (tree.ids().to_vec(), Index::BinaryTree(tree))
             }),
+            Structure::RayQuery => {
+                let spheres: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+                let boxes = QueryBoxes::of(&spheres, plan.box_margin * margin);
+                Brick { index: Index::RayQuery(boxes), spheres, ids }
+            }
         }
     }
 }

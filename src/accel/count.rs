@@ -65,7 +65,7 @@ impl Observer for Counts {
 
 impl Accel {
     /// Finds the nearest sphere like [`Accel::find_nearest`], and adds what the walks of all bricks did to `counts`.
-    /// Nothing is counted in binary trees.
+    /// Nothing is counted in binary trees, and with ray queries only the spheres of the host's search.
     pub fn count_nearest(&self, ray: &RayF32, counts: &mut Counts) -> Nearest {
         let mut nearest = Nearest::NONE;
         for Brick { index, spheres, ids } in self.bricks() {
@@ -76,7 +76,7 @@ impl Accel {
                 Index::WideTree(tree) => {
                     tree.find_nearest_observed(spheres, ids, ray, &mut nearest, counts);
                 }
-                Index::List => {
+                Index::List | Index::RayQuery(_) => {
                     counts.spheres += spheres.len() as f64;
                     super::list::find_nearest(spheres, ids, ray, &mut nearest);
                 }

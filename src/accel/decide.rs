@@ -42,6 +42,7 @@ pub(super) fn decide(
         AccelChoice::List => (Structure::List, "asked for".to_owned()),
         AccelChoice::Tree => fallback,
         AccelChoice::BinaryTree => (Structure::BinaryTree, "asked for".to_owned()),
+        AccelChoice::RayQuery => (Structure::RayQuery, "asked for".to_owned()),
         AccelChoice::Auto if count <= FEW => {
             (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
         }
@@ -67,7 +68,9 @@ pub(super) fn candidates(
 ) -> Vec<Candidate> {
     let count = statistics.count;
     let is_few = choice == AccelChoice::Auto && count <= FEW;
-    if count == 0 || is_few || matches!(choice, AccelChoice::List | AccelChoice::BinaryTree) {
+    let never_competes =
+        matches!(choice, AccelChoice::List | AccelChoice::BinaryTree | AccelChoice::RayQuery);
+    if count == 0 || is_few || never_competes {
         return Vec::new();
     }
     let plans = COMPETING.map(|structure| {

@@ -40,6 +40,7 @@ mod plan;
 mod prices;
 mod primitive;
 pub(crate) mod query;
+mod query_boxes;
 pub(crate) mod slab;
 pub(crate) mod sphere;
 mod split;
@@ -67,6 +68,7 @@ pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};
 pub use prices::{Candidate, Prices, StructurePrices};
 pub use primitive::{BrickKind, Primitive};
+pub use query_boxes::QueryBoxes;
 pub use statistics::SceneStatistics;
 #[cfg(feature = "gpu")]
 pub(crate) use statistics::margin_of;

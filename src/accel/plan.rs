@@ -29,6 +29,9 @@ pub enum AccelChoice {
     BinaryTree,
     /// No structure: every sphere is tested. Slow; serves as the reference for the others.
     List,
+    /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
+    /// have them and are opened for it.
+    RayQuery,
 }
 
 /// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
@@ -43,6 +46,9 @@ pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
 
 /// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
 const BINARY_BYTES_PER_SPHERE: usize = 32;
+
+/// The bytes of a box for ray queries.
+const BOX_BYTES: usize = size_of::<[f32; 6]>();
 
 /// The planned size of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +84,8 @@ pub struct AccelPlan {
     pub brick_count: usize,
     /// The limits for the grid of one brick.
     pub(super) budget: GridBudget,
+    /// The margin of boxes for ray queries, as a multiple of [`SceneStatistics::margin`].
+    pub(super) box_margin: f32,
     /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
     /// The structures that were compared, with what they are expected to cost; none for very few spheres, or if a
@@ -158,11 +166,27 @@ impl AccelPlan {
         }
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
-        let buffers = Vec::new();
-        let mut plan =
-            Self { statistics, crowd, structure, reason, brick_count, budget, buffers, candidates };
+        let (buffers, box_margin) = (Vec::new(), 1.0);
+        let mut plan = Self {
+            statistics,
+            crowd,
+            structure,
+            reason,
+            brick_count,
+            budget,
+            box_margin,
+            buffers,
+            candidates,
+        };
         plan.buffers = plan.list_buffers();
         plan
+    }
+
+    /// The same plan with another margin of the boxes for ray queries, as a multiple of [`SceneStatistics::margin`]. With
+    /// less than 1 spheres may be missed: to measure when a driver begins to.
+    #[must_use]
+    pub fn with_box_margin(self, box_margin: f32) -> Self {
+        Self { box_margin, ..self }
     }
 
     /// The number of bytes of all buffers.
@@ -214,6 +238,7 @@ impl AccelPlan {
         let per_brick = self.per_brick();
         match self.structure {
             Structure::List => 0,
+            Structure::RayQuery => per_brick * 44,
             // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
             // some memory unused.
             Structure::WideTree | Structure::BinaryTree => per_brick * 72,
@@ -236,6 +261,11 @@ impl AccelPlan {
             Structure::WideTree | Structure::BinaryTree => {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
+            }
+            // What the driver builds from the boxes is known to it alone.
+            Structure::RayQuery => {
+                buffers.push(("ids", 4 * per_brick));
+                buffers.push(("boxes", BOX_BYTES as u64 * per_brick));
             }
             Structure::Grid(ListLayout::Referenced)
             | Structure::NestedGrid(ListLayout::Referenced) => {
@@ -268,6 +298,7 @@ impl Structure {
             Self::List => None,
             Self::Grid(_) | Self::NestedGrid(_) => Some(AccelChoice::Tree),
             Self::WideTree | Self::BinaryTree => Some(AccelChoice::List),
+            Self::RayQuery => Some(AccelChoice::Tree),
         }
     }
 }
@@ -280,6 +311,7 @@ impl fmt::Display for AccelChoice {
             Self::Tree => "tree",
             Self::BinaryTree => "binary-tree",
             Self::List => "list",
+            Self::RayQuery => "query",
         })
     }
 }
@@ -313,6 +345,7 @@ fn node_bytes(structure: Structure, count: u64) -> u64 {
     let (per_sphere, root) = match structure {
         Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
         Structure::BinaryTree => (BINARY_BYTES_PER_SPHERE, size_of::<BinaryNode>()),
+        Structure::RayQuery => (BOX_BYTES, 0),
         _ => (0, 0),
     };
     per_sphere as u64 * count + root as u64

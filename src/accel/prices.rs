@@ -112,7 +112,7 @@ impl Prices {
                 Some(&self.balls)
             }
             Structure::WideTree => Some(&self.tree),
-            Structure::List | Structure::BinaryTree => None,
+            Structure::List | Structure::BinaryTree | Structure::RayQuery => None,
         }
     }
 }
@@ -150,6 +150,7 @@ impl Candidate {
             Structure::WideTree => "a tree",
             Structure::BinaryTree => "a binary tree",
             Structure::List => "a list",
+            Structure::RayQuery => "ray queries",
         }
     }
 }

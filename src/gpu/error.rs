@@ -108,6 +108,11 @@ pub enum GpuError {
         /// The kind of the scene's bricks.
         kind: BrickKind,
     },
+    /// The device has no ray queries, was opened without them, or is a host's.
+    #[error(
+        "this device has no ray queries, or was opened without them (`HeadlessOptions::ray_query`); choose another structure"
+    )]
+    NoRayQuery,
     /// A ray needed more loop iterations than a kernel may execute on this device.
     #[error(
         "a ray needs more loop iterations than this device allows; choose the structure `list`, which is slow but \

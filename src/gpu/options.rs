@@ -25,6 +25,9 @@ pub struct HeadlessOptions {
     /// time than several passes. Only experiments and tests turn it off. The picture is the same,
     /// but for what a device rounds otherwise.
     pub one_pass: bool,
+    /// Whether the device is opened for ray queries, which [`AccelChoice::RayQuery`](crate::accel::AccelChoice::RayQuery)
+    /// needs. wgpu calls them an experiment, so that a mistake in it or in the driver may do anything.
+    pub ray_query: bool,
     /// The type of device whose sizes of tiles and submissions are used; `None` is the type of the adapter. Only
     /// experiments and tests choose another. The picture does not depend on this option.
     pub device_type: Option<wgpu::DeviceType>,
@@ -58,6 +61,7 @@ impl Default for HeadlessOptions {
             timeout,
             indirect: true,
             one_pass: true,
+            ray_query: false,
             device_type: None,
             profile: None,
             edits,

@@ -29,6 +29,7 @@ fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
         (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
         (Structure::WideTree, TINY),
         (Structure::BinaryTree, TINY),
+        (Structure::RayQuery, TINY),
     ];
     let mut all = Vec::new();
     for (structure, tiny) in kinds {
@@ -74,6 +75,7 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
         }
         Index::WideTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
         Index::BinaryTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
+        Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(boxes.boxes()) as u64)),
     }
     buffers
 }
@@ -116,6 +118,17 @@ fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
         for id in &own {
             let seen = &mut seen[*id as usize];
             assert!(!std::mem::replace(seen, true), "{name}: sphere {id} is in two bricks");
+        }
+        if let Index::RayQuery(boxes) = &brick.index {
+            let boxes = boxes.boxes().iter().zip(&brick.spheres);
+            for ([x0, y0, z0, x1, y1, z1], [x, y, z, radius]) in boxes {
+                let reach = f64::from(radius + margin);
+                let holds = |low: &f32, center: &f32, high: &f32| {
+                    let center = f64::from(*center);
+                    f64::from(*low) <= center - reach && f64::from(*high) >= center + reach
+                };
+                assert!(holds(x0, x, x1) && holds(y0, y, y1) && holds(z0, z, z1), "{name}");
+            }
         }
         if let Index::Grid(grid) = &brick.index {
             // As if the brick were a scene.
@@ -339,7 +352,7 @@ fn every_structure_is_met() {
         .collect();
     met.sort_by_key(|structure| structure.name());
     met.dedup();
-    assert_eq!(met.len(), 7, "{met:?}");
+    assert_eq!(met.len(), 8, "{met:?}");
 }
 
 /// All in one place: lists keep the one that counts, and trees end.

@@ -33,6 +33,7 @@ mod pictures;
 mod plan;
 mod planted;
 mod profile;
+mod ray_query;
 mod scenes;
 mod self_test;
 mod structures;
@@ -68,6 +69,7 @@ fn main() {
             studio::trials(),
             plan::trials(),
             profile::trials(),
+            ray_query::trials(),
             self_test::trials(),
             twin::trials(),
             update::trials(),

@@ -55,6 +55,7 @@ use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::scene::query_structure;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries_async;
@@ -109,10 +110,22 @@ impl Headless {
         options: &HeadlessOptions,
     ) -> Result<Self, GpuError> {
         let info = adapter.get_info();
+        let mut required_features = adapter.features() & wanted_features(info.device_type);
+        let mut required_limits = required_limits(&adapter.limits(), options.limits);
+        let mut experimental_features = wgpu::ExperimentalFeatures::disabled();
+        if options.ray_query {
+            if !adapter.features().contains(query_structure::FEATURES) {
+                return Err(GpuError::NoRayQuery);
+            }
+            required_features |= query_structure::FEATURES;
+            required_limits = required_limits.using_acceleration_structure_values(adapter.limits());
+            experimental_features = query_structure::experiment();
+        }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("pinhole"),
-            required_features: adapter.features() & wanted_features(info.device_type),
-            required_limits: required_limits(&adapter.limits(), options.limits),
+            required_features,
+            required_limits,
+            experimental_features,
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
         };

@@ -138,6 +138,9 @@ impl Headless {
                 tell(UploadStep::Copying)?;
                 let phase = self.phase("upload");
                 upload.brick(&brick).await?;
+                for work in upload.take_work() {
+                    self.start(work);
+                }
                 self.flush().await?;
                 drop(phase);
                 let key = keys[usize::from(brick.is_nested())].clone();

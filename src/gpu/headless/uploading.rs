@@ -181,6 +181,9 @@ impl Headless {
             let _phase = self.phase("upload");
             upload.brick(brick.borrow()).await?;
             drop(brick);
+            for work in upload.take_work() {
+                self.start(work);
+            }
             self.flush().await?;
         }
         Ok(SceneBuffers::new_of(upload.finish()?, summary, ids.exclude_by, renderer.shape))

@@ -30,11 +30,13 @@ pub struct ComposedKernel {
     pub source: String,
 }
 
-/// Returns all kernels of this crate, ordered by name, for readers and for other compilers of WGSL.
+/// Returns all kernels of this crate that need nothing but WGSL, ordered by name, for readers and for other compilers:
+/// those with ray queries, which are an extension of wgpu, are left out.
 pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
+    let core = all_kernels().into_iter().filter(|kernel| !kernel.has_ray_queries());
     // Some settings of lit pictures share a kernel.
     let sources: BTreeMap<String, String> =
-        all_kernels().iter().map(|kernel| (kernel.name(), kernel.source())).collect();
+        core.map(|kernel| (kernel.name(), kernel.source())).collect();
     sources.into_iter().map(|(name, source)| ComposedKernel { name, source })
 }
 
@@ -43,7 +45,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
         [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
     for &camera in CameraKind::ALL {
-        for kind in BrickKind::of(Structure::ALL, Primitive::ALL) {
+        for kind in BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL) {
             for brick_pass in [BrickPass::First, BrickPass::Later] {
                 for keeps_rays in [false, true] {
                     kernels.push(trace_kernel(camera, kind, brick_pass, keeps_rays));

@@ -17,8 +17,11 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
         .map_err(|error| readable(error.emit_to_string(&source)))?;
     naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
-        // Kernels may use only the core features of WebGPU.
-        naga::valid::Capabilities::empty(),
+        // All others may use only the core features of WebGPU.
+        match kernel.has_ray_queries() {
+            true => naga::valid::Capabilities::RAY_QUERY,
+            false => naga::valid::Capabilities::empty(),
+        },
     )
     .validate(&module)
     .map_err(|error| readable(error.emit_to_string(&source)))?;
@@ -34,7 +37,7 @@ fn every_kernel_composes_and_validates() {
     assert_eq!(
         kernels.len(),
         CameraKind::ALL.len()
-            * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
+            * (6 * BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL).count()
                 + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
             + 6
             + crate::gpu::host::kernels().len()

@@ -5,13 +5,14 @@ use std::sync::{Mutex, PoisonError};
 
 use wgpu::{BindGroupLayout, ComputePipeline, Device};
 
-use crate::accel::{BrickKind, Primitive};
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::{Query, RendererOptions};
+use crate::gpu::scene::query_structure;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::Layouts;
 use crate::gpu::shader::{self, BrickPass, Kernel, pipeline};
@@ -66,6 +67,10 @@ impl Renderer {
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
     pub async fn new_async(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
+        let needs_queries = options.structures.contains(&Structure::RayQuery);
+        if needs_queries && !device.features().contains(query_structure::FEATURES) {
+            return Err(GpuError::NoRayQuery);
+        }
         let mut renderer = Self::begin(device, options);
         // A browser builds pipelines at the same time, so all are begun before the first is awaited.
         while renderer.begin_next(device)? {}
@@ -252,8 +257,6 @@ impl Renderer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::Structure;
-
     /// wgpu checks shaders, layouts, access modes and record sizes without any driver.
     #[test]
     fn every_pipeline_is_accepted_by_a_device_with_webgpu_limits() {

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
+use wgpu::{BindGroup, BindingResource, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
 use crate::accel::{Brick, BrickBounds, BrickKind, Index};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::appearance::AppearanceWords;
+use crate::gpu::scene::query_structure;
 use crate::gpu::shader::records;
 use crate::scene::SceneAppearance;
 
@@ -52,6 +53,11 @@ impl<'a> BrickContents<'a> {
     }
 }
 
+/// The whole of each buffer.
+fn whole<'a>(buffers: &[&'a Buffer]) -> Vec<BindingResource<'a>> {
+    buffers.iter().map(|buffer| buffer.as_entire_binding()).collect()
+}
+
 /// Upper bound of the size of a shape in bytes, for every primitive.
 const LARGEST_SHAPE: usize = 64;
 
@@ -63,6 +69,8 @@ pub(in crate::gpu) struct Upload<'a> {
     pub(in crate::gpu) appearance: Arc<SceneAppearance>,
     pub(in crate::gpu) first_shape: u32,
     pub(in crate::gpu) bytes: u64,
+    /// Work that the device has to do before the bricks can be searched.
+    pub(in crate::gpu) work: Vec<CommandEncoder>,
 }
 
 impl Upload<'_> {
@@ -93,6 +101,7 @@ impl Upload<'_> {
         // What shares a buffer with the ids, so that a kernel has enough bindings.
         let mut with_ids: Vec<&[u32]> = vec![ids];
         let mut words: Vec<&[u32]> = Vec::new();
+        let mut boxes = None;
         match index {
             Index::List => {}
             Index::Grid(grid) => {
@@ -116,6 +125,7 @@ impl Upload<'_> {
                 words.push(bytemuck::cast_slice(tree.nodes()));
             }
             Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
+            Index::RayQuery(own) => boxes = Some(own.boxes()),
         }
         self.first_shape += record.shape_count;
         for (what, bytes) in [
@@ -136,33 +146,37 @@ impl Upload<'_> {
             let appearances = self.storage("pinhole appearances", &appearances.words);
             let words: Vec<Buffer> =
                 words.iter().map(|words| self.storage("pinhole structure", words)).collect();
-            let group = |label, layout, buffers: &[&Buffer]| {
+            let query = boxes.map(|boxes| {
+                let (query, work) = query_structure::begin(self.device, boxes);
+                self.bytes += size_of_val(boxes) as u64;
+                self.work.push(work);
+                query
+            });
+            let group = |label, layout, resources: Vec<BindingResource<'_>>| {
                 let entries: Vec<_> = (0..)
-                    .zip(buffers)
-                    .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                        binding,
-                        resource: buffer.as_entire_binding(),
-                    })
+                    .zip(resources)
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
                     .collect();
                 let descriptor =
                     wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
                 self.device.create_bind_group(&descriptor)
             };
-            let mut traced = vec![&record, &shapes, &ids];
-            traced.extend(&words);
+            let mut traced = whole(&[&record, &shapes, &ids]);
+            traced.extend(words.iter().map(Buffer::as_entire_binding));
+            traced.extend(query.iter().map(wgpu::Tlas::as_binding));
             BrickBuffers {
                 kind,
                 bounds,
-                trace_group: group("pinhole brick", trace_layout, &traced),
+                trace_group: group("pinhole brick", trace_layout, traced),
                 surface_group: group(
                     "pinhole surface",
                     layouts.surface_of(kind.primitive),
-                    &[&record, &shapes, &appearances, palette],
+                    whole(&[&record, &shapes, &appearances, palette]),
                 ),
                 appearance_group: group(
                     "pinhole appearance",
                     &layouts.appearance,
-                    &[&appearances, palette],
+                    whole(&[&appearances, palette]),
                 ),
                 ids,
                 appearances,

@@ -2,6 +2,7 @@
 
 pub(in crate::gpu) mod appearance;
 pub(in crate::gpu) mod brick_buffers;
+pub(in crate::gpu) mod query_structure;
 pub(in crate::gpu) mod recolor;
 pub(in crate::gpu) mod scene_buffers;
 pub(in crate::gpu) mod scene_summary;

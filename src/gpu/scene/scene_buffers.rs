@@ -187,6 +187,10 @@ impl SceneBuffers {
         for brick in bricks {
             upload.brick(brick.borrow()).await?;
         }
+        if !upload.take_work().is_empty() {
+            // Nothing is submitted to the device of a host.
+            return Err(GpuError::NoRayQuery);
+        }
         Ok(Self::new_of(upload.finish()?, summary, ids.exclude_by, renderer.shape))
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use wgpu::{Buffer, Device, Queue};
+use wgpu::{Buffer, CommandEncoder, Device, Queue};
 
 use crate::accel::{Accel, Brick, BrickKind, Bricks, Primitive, Structure};
 use crate::gpu::checks::scoped;
@@ -81,7 +81,8 @@ impl<'a> SceneUpload<'a> {
     ) -> Result<Self, GpuError> {
         let appearance = Arc::clone(&summary.appearance);
         let palette = appearance::palette(&appearance);
-        let mut upload = Upload { renderer, device, queue, appearance, first_shape: 0, bytes: 0 };
+        let (first_shape, bytes, work) = (0, 0, Vec::new());
+        let mut upload = Upload { renderer, device, queue, appearance, first_shape, bytes, work };
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
         let palette = scoped(device, || upload.storage("pinhole palette", &palette)).await?;
         Ok(Self { upload, palette, ids, space, bricks: Vec::new() })
@@ -95,6 +96,11 @@ impl<'a> SceneUpload<'a> {
         let contents = BrickContents::of_spheres(brick, &ids, kind);
         self.bricks.push(self.upload.brick(&contents, &self.palette).await?);
         Ok(())
+    }
+
+    /// Returns the work since the last call that has to be submitted before the bricks are searched.
+    pub(in crate::gpu) fn take_work(&mut self) -> Vec<CommandEncoder> {
+        std::mem::take(&mut self.upload.work)
     }
 
     /// Returns the bricks since the last call, each of which is searched as what it is.

@@ -19,7 +19,11 @@ const STRUCTURES: &[&str] = &[
     "accel/nested_grid.wgsl",
     "accel/wide_tree.wgsl",
     "accel/binary_tree.wgsl",
+    WITH_DIRECTIVE,
 ];
+
+/// The file that begins with a directive, which WGSL allows only before all declarations.
+const WITH_DIRECTIVE: &str = "accel/ray_query.wgsl";
 
 /// Whether other kernels with the same entry point may have another part in place of this one.
 fn is_choice(part: &str) -> bool {
@@ -37,6 +41,11 @@ impl Kernel {
             let (_, file) = part.split_once('/').unwrap_or(("", part));
             name + " " + &file.replace(".wgsl", "")
         })
+    }
+
+    /// Whether it is written in more than the WGSL of any device.
+    pub(in crate::gpu) fn has_ray_queries(&self) -> bool {
+        self.parts.iter().any(|part| part.name == WITH_DIRECTIVE)
     }
 
     /// The kernel with one more part.
@@ -69,7 +78,15 @@ impl Kernel {
 
     /// The composed WGSL, in which a comment names each part.
     pub(in crate::gpu) fn source(&self) -> String {
-        self.parts.iter().flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
+        let parts = self.in_order();
+        parts.flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
+    }
+
+    /// The parts as they are composed: one that begins with a directive is the first.
+    fn in_order(&self) -> impl Iterator<Item = &Part> {
+        let has_directive = |part: &&Part| part.name == WITH_DIRECTIVE;
+        let others = self.parts.iter().filter(move |part| !has_directive(part));
+        self.parts.iter().filter(has_directive).chain(others)
     }
 
     /// Replaces every position in the composed WGSL that occurs in a message of naga or wgpu by a position in a file.
@@ -97,7 +114,7 @@ impl Kernel {
     fn position(&self, line: usize) -> Option<(&'static str, usize)> {
         // The first line of a part is the comment that names it.
         let mut comment = 1;
-        for part in &self.parts {
+        for part in self.in_order() {
             // `source` adds a line end to every part.
             let lines = part.source.matches('\n').count() + 1;
             if (comment..=comment + lines).contains(&line) {

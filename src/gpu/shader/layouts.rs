@@ -131,6 +131,7 @@ pub(in crate::gpu) fn layout_of(
 fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
         Structure::List => vec![],
+        Structure::RayQuery => vec![BindingType::AccelerationStructure { vertex_return: false }],
         Structure::WideTree | Structure::BinaryTree => vec![storage::<[u32; 4]>(true)],
         Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
             vec![storage::<[u32; 4]>(true)]

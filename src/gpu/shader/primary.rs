@@ -87,6 +87,7 @@ fn walk_parts(
 pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
     match structure {
         Structure::List => vec![part!("accel/list.wgsl")],
+        Structure::RayQuery => vec![part!("accel/ray_query.wgsl")],
         Structure::WideTree => vec![
             part!("accel/slab.wgsl"),
             part!("accel/leaf.wgsl"),

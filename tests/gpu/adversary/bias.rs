@@ -2,6 +2,7 @@
 //! which stay within the bounds are noted.
 
 use libtest_mimic::Failed;
+use pinhole::accel::AccelChoice;
 use pinhole::gpu::Headless;
 use pinhole::verify::{Deviations, LARGEST_MEAN};
 
@@ -17,7 +18,7 @@ const MANY: u64 = 20_000;
 fn of_picture(headless: &Headless) -> Result<Deviations, Failed> {
     let mut scenes = scenes::all().into_iter();
     let (_, view) = scenes.find(|(name, _)| *name == "random_pinhole_y_up").unwrap();
-    let certificate = certify_on(headless, &view, 160)?;
+    let certificate = certify_on(headless, &view, 160, AccelChoice::Auto)?;
     println!("{certificate}");
     Ok(certificate.deviations)
 }
@@ -29,7 +30,12 @@ fn of_light(headless: &Headless) -> Result<Deviations, Failed> {
         if ["paths::lobes", "paths::metals", "paths::matt", "studio::lamps_of_all_kinds"]
             .contains(&name.as_str())
         {
-            all.join(certify_lit_on(headless, &view(), &(0..8).collect::<Vec<_>>())?);
+            all.join(certify_lit_on(
+                headless,
+                &view(),
+                &(0..8).collect::<Vec<_>>(),
+                AccelChoice::Auto,
+            )?);
         }
     }
     println!("{all}");

@@ -3,7 +3,7 @@
 
 mod bias;
 mod operations;
-mod structures;
+pub(crate) mod structures;
 
 use std::sync::LazyLock;
 
@@ -77,10 +77,10 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-type Lazy<T> = Box<dyn FnOnce() -> T + Send>;
+pub(crate) type Lazy<T> = Box<dyn FnOnce() -> T + Send>;
 
 /// All lit scenes of the tests that a device of its own bits is legal, and random ones.
-fn lit_views() -> Vec<(String, Lazy<RandomView>)> {
+pub(crate) fn lit_views() -> Vec<(String, Lazy<RandomView>)> {
     let mut views: Vec<(String, Lazy<RandomView>)> = Vec::new();
     let name = String::new;
     for (of, view) in paths::scenes::all() {
@@ -139,7 +139,7 @@ fn certify(
 ) -> Result<Certificate, Failed> {
     let headless = device.as_ref()?;
     if !is_rendered {
-        return certify_on(headless, view, SIDE);
+        return certify_on(headless, view, SIDE, AccelChoice::Auto);
     }
     let support::View { scene, camera, film, settings } = view;
     let film = cut(film, SIDE)?;
@@ -152,10 +152,15 @@ fn cut(film: &Film, side: u32) -> Result<Film, Failed> {
     Ok(film)
 }
 
-fn certify_on(headless: &Headless, view: &support::View, side: u32) -> Result<Certificate, Failed> {
+pub(crate) fn certify_on(
+    headless: &Headless,
+    view: &support::View,
+    side: u32,
+    choice: AccelChoice,
+) -> Result<Certificate, Failed> {
     let support::View { scene, camera, film, settings } = view;
     let seen = View::new(camera.as_ref(), cut(film, side)?);
-    let buffers = upload(headless, scene, &seen, settings)?;
+    let buffers = upload(headless, scene, &seen, settings, choice)?;
     let recording = headless.record(&buffers, &seen, settings, &mut go_on())?;
     Ok(Checker::new(scene)?.certify(&recording))
 }
@@ -165,23 +170,25 @@ fn upload(
     scene: &Scene,
     seen: &View<'_>,
     settings: &pinhole::RenderSettings,
+    choice: AccelChoice,
 ) -> Result<pinhole::gpu::SceneBuffers, Failed> {
-    let plan = headless.plan(scene, seen, settings, LayerSet::DATA, AccelChoice::Auto, 0);
+    let plan = headless.plan(scene, seen, settings, LayerSet::DATA, choice, 0);
     Ok(headless.upload(scene, &plan.build(scene))?)
 }
 
 fn certify_lit(device: &Device, view: &RandomView) -> Result<LitCertificate, Failed> {
-    certify_lit_on(device.as_ref()?, view, &[0, 1])
+    certify_lit_on(device.as_ref()?, view, &[0, 1], AccelChoice::Auto)
 }
 
-fn certify_lit_on(
+pub(crate) fn certify_lit_on(
     headless: &Headless,
     view: &RandomView,
     samples: &[u32],
+    choice: AccelChoice,
 ) -> Result<LitCertificate, Failed> {
     let RandomView { scene, camera, film, settings, .. } = view;
     let seen = View::new(camera.as_ref(), *film);
-    let buffers = upload(headless, scene, &seen, settings)?;
+    let buffers = upload(headless, scene, &seen, settings, choice)?;
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));

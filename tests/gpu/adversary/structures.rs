@@ -14,17 +14,32 @@ use crate::support::spheres;
 static ALIKE: Device =
     Device::new(|| open(Adversary { is_alike: true, ..Adversary::new(Rounding::EachItsOwn, 3) }));
 
-/// The bits of the distance and the id of every pixel's hit.
-fn hits(
+/// The bits of the distance and the id of every pixel's hit. `box_margin` is that of boxes for ray queries.
+pub(crate) fn hits(
     headless: &Headless,
     scene: &Scene,
     view: &View<'_>,
     choice: AccelChoice,
+    box_margin: f32,
 ) -> Result<Vec<(u32, u32)>, Failed> {
     let plan = AccelPlan::for_rays(scene.spheres(), choice, 1 << 27, u64::MAX);
+    let plan = plan.with_box_margin(box_margin);
     let buffers = headless.upload(scene, &plan.build(scene.spheres()).into())?;
     let recording = headless.record(&buffers, view, &RenderSettings::default(), &mut go_on())?;
     Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
+}
+
+/// Calls `test` with a view of all of a scene.
+pub(crate) fn seen<T>(
+    scene: &Scene,
+    test: impl FnOnce(&View<'_>) -> Result<T, Failed>,
+) -> Result<T, Failed> {
+    let bounds = scene.bounds_to_frame();
+    let (center, size) = (bounds.center(), bounds.size().max_element());
+    let eye = center + pinhole::glam::DVec3::new(0.3, 0.2, 0.9) * size;
+    let pose = Pose::looking_at(eye, center, [0.1, 1.0, 0.2])?;
+    let camera = PinholeCamera::with_vertical_fov(pose, 0.6, 1.0)?;
+    test(&View::new(&camera, Film::new(112, 112)?))
 }
 
 pub(super) fn agree() -> Result<(), Failed> {
@@ -38,20 +53,14 @@ pub(super) fn agree() -> Result<(), Failed> {
     ];
     for (name, spheres) in scenes {
         let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
-        let bounds = scene.bounds_to_frame();
-        let (center, size) = (bounds.center(), bounds.size().max_element());
-        let eye = center + pinhole::glam::DVec3::new(0.3, 0.2, 0.9) * size;
-        let pose = Pose::looking_at(eye, center, [0.1, 1.0, 0.2])?;
-        let camera = PinholeCamera::with_vertical_fov(pose, 0.6, 1.0)?;
-        let view = View::new(&camera, Film::new(112, 112)?);
-        let expected = hits(headless, &scene, &view, AccelChoice::List)?;
+        let expected = seen(&scene, |view| hits(headless, &scene, view, AccelChoice::List, 1.0))?;
         let misses = expected.iter().filter(|(_, id)| *id == pinhole::image::NO_ID).count();
         println!("{name}: {} hits", expected.len() - misses);
         if expected.len() - misses < 40 {
             return Err(format!("{name}: few hits").into());
         }
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
-            let found = hits(headless, &scene, &view, choice)?;
+            let found = seen(&scene, |view| hits(headless, &scene, view, choice, 1.0))?;
             let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
             if different > 0 {
                 return Err(format!("{name}: {different} hits differ in {choice:?}").into());

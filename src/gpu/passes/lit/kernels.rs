@@ -388,8 +388,9 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         let cameras = CameraKind::ALL.iter();
         kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
     }
-    for (&structure, exclude_by) in
-        Structure::ALL.iter().flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
+    for (&structure, exclude_by) in Structure::WITH_KERNELS
+        .iter()
+        .flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
     {
         for brick_pass in [BrickPass::First, BrickPass::Later] {
             kernels

@@ -119,7 +119,7 @@ pub(in crate::gpu) fn live_kernels() -> Vec<Kernel> {
     for &color in ColorTarget::ALL {
         kernels.extend([false, true].map(|has_data| show_kernel(color, has_data)));
     }
-    for &structure in Structure::ALL {
+    for &structure in Structure::WITH_KERNELS {
         for exclude_by in ExcludeBy::ALL {
             for &camera in CameraKind::ALL {
                 kernels.extend([false, true].map(|has_ground| {

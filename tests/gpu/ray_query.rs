@@ -1,0 +1,113 @@
+//! Tests that ray queries find what the other structures find, where the adapter has them; otherwise these tests count
+//! as ignored. Debian's Mesa 22.3 has none; `tests/drivers/run.sh` runs them with other drivers.
+
+use std::sync::LazyLock;
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, SceneBuffers};
+use pinhole::verify::Outcome;
+use pinhole::{LinearRgb, Scene};
+
+use crate::adversary::structures::{hits, seen};
+use crate::adversary::{certify_lit_on, certify_on, lit_views};
+use crate::harness::trial_unless;
+use crate::support::spheres;
+use crate::{headless, scenes};
+
+static DEVICE: LazyLock<Result<Headless, GpuError>> = LazyLock::new(|| {
+    Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() })
+});
+
+/// The margins of boxes that must not suffice, as multiples of the one that is used: they cut spheres.
+const TOO_SMALL: f32 = -60.0;
+
+fn device() -> Result<&'static Headless, Failed> {
+    DEVICE.as_ref().map_err(|error| error.to_string().into())
+}
+
+fn lacking(_: &'static Headless) -> Option<String> {
+    let has_none = matches!(&*DEVICE, Err(GpuError::NoRayQuery));
+    has_none.then(|| "this adapter has no ray queries".to_owned())
+}
+
+fn trial(name: &str, test: impl FnOnce() -> Result<(), Failed> + Send + 'static) -> Trial {
+    trial_unless(format!("ray_query::{name}"), lacking, |_| test())
+}
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = vec![
+        trial("finds_what_the_list_finds", finds_the_same),
+        trial("boxes_that_cut_spheres_are_found", cut_spheres_are_found),
+        Trial::test("ray_query::a_device_without_them_says_so", refused),
+    ];
+    for (name, view) in scenes::all() {
+        trials.push(trial(&format!("primary::{name}"), move || {
+            let certificate = certify_on(device()?, &view, 96, AccelChoice::RayQuery)?;
+            println!("{certificate}");
+            legal(certificate.outcome(), &certificate.to_string())
+        }));
+    }
+    for (name, view) in lit_views() {
+        trials.push(trial(&name, move || {
+            let certificate = certify_lit_on(device()?, &view(), &[0, 1], AccelChoice::RayQuery)?;
+            legal(certificate.outcome(), &certificate.to_string())
+        }));
+    }
+    trials
+}
+
+fn legal(outcome: Outcome, words: &str) -> Result<(), Failed> {
+    if outcome == Outcome::Violated { Err(words.into()) } else { Ok(()) }
+}
+
+/// Ray queries choose which spheres are tested; the tests have the same bits.
+fn finds_the_same() -> Result<(), Failed> {
+    let headless = device()?;
+    let scenes = [
+        ("small", spheres::random(6000, 5, |_| 1e-3)),
+        ("large", spheres::random(3000, 6, |rng| 0.02 + 0.1 * rng.f32())),
+        ("four decades", spheres::four_decades(3000)),
+        ("a line that touches", spheres::line(300)),
+        ("mirrored pairs", spheres::mirrored(1000)),
+        ("equal pairs", spheres::twice(1000)),
+        ("coincident", spheres::coincident(50)),
+    ];
+    for (name, spheres) in scenes {
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
+        seen(&scene, |view| {
+            let expected = hits(headless, &scene, view, AccelChoice::List, 1.0)?;
+            let found = hits(headless, &scene, view, AccelChoice::RayQuery, 1.0)?;
+            let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+            if different > 0 {
+                Err(format!("{name}: {different} hits differ").into())
+            } else {
+                Ok(())
+            }
+        })?;
+    }
+    Ok(())
+}
+
+fn cut_spheres_are_found() -> Result<(), Failed> {
+    let scene = Scene::from_f32(spheres::random(3000, 6, |_| 0.03), LinearRgb::WHITE)?;
+    seen(&scene, |view| {
+        let all = hits(device()?, &scene, view, AccelChoice::List, 1.0)?;
+        let cut = hits(device()?, &scene, view, AccelChoice::RayQuery, TOO_SMALL)?;
+        if all == cut { Err("no hit differs, although boxes cut spheres".into()) } else { Ok(()) }
+    })
+}
+
+/// A device that was opened without ray queries, or that has none, refuses them by name.
+fn refused() -> Result<(), Failed> {
+    let webgpu = HeadlessOptions { limits: LimitChoice::WebGpu, ..HeadlessOptions::default() };
+    let scene = Scene::from_f32(spheres::random(300, 6, |_| 0.03), LinearRgb::WHITE)?;
+    for headless in [headless()?, &Headless::open(&webgpu)?] {
+        let structures = headless.plan_accel(&scene, AccelChoice::RayQuery).build(scene.spheres());
+        let refusal = headless.upload(&scene, &structures.into()).map(|_: SceneBuffers| ());
+        if refusal != Err(GpuError::NoRayQuery) {
+            return Err(format!("{refusal:?}").into());
+        }
+    }
+    Ok(())
+}
