@@ -80,6 +80,7 @@ mod threads;
 mod unknown_flag;
 mod verify;
 mod verify_denoiser;
+mod verify_kept;
 mod verify_light;
 mod verify_lit;
 mod verify_output;

@@ -90,9 +90,10 @@ pub(super) use recorded::certify;
 
 #[cfg(feature = "gpu")]
 mod recorded {
+    use std::cell::RefCell;
     use std::collections::BTreeSet;
 
-    use anyhow::Context;
+    use anyhow::{Context, anyhow};
 
     use super::*;
     use crate::device::explained_alone;
@@ -102,21 +103,25 @@ mod recorded {
     use crate::with_scene::{upload, with_structures};
     use crate::{interrupt, progress, render};
     use pinhole::accel::AccelChoice;
-    use pinhole::gpu::Headless;
+    use pinhole::gpu::{Decision, Headless};
     use pinhole::image::LayerSet;
+    use pinhole::verify::run_file::LitSamples;
     use pinhole::verify::{Checker, LitRecording};
 
-    /// Records this number of samples on an adapter, one after the other, and checks them.
+    /// Records this number of samples on an adapter, one after the other, and checks them. If they will be saved, `kept`
+    /// keeps them.
     pub(crate) fn certify(
         headless: &Headless,
         input: &Input,
         count: u32,
         choice: AccelChoice,
+        kept: Option<&mut LitSamples>,
     ) -> Result<LitCertificate, Failure> {
         let Input { scene, settings, .. } = input;
         let (view, views) = (input.view(), Views::of(input));
         let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
         let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+        let kept = RefCell::new(kept);
         let done = with_structures(headless, choice, plan, |plan| {
             let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
             let buffers = match uploaded {
@@ -125,6 +130,9 @@ mod recorded {
             };
             let checker = Checker::new(scene).context("the checker cannot be prepared")?;
             let mut certificate = LitCertificate::default();
+            // With another structure, recording begins anew.
+            kept.borrow_mut().iter_mut().for_each(|kept| kept.clear());
+            let failed = RefCell::new(None);
             let recording = "recording light";
             progress::stage(recording);
             let recorded = interrupt::on_device(|| {
@@ -132,12 +140,22 @@ mod recorded {
                     interrupt::driver_rests(true);
                     progress::stage("checking light");
                     certificate.join(checker.certify_lit(recorded));
+                    let added = kept.borrow_mut().as_mut().map(|kept| kept.add(recorded));
+                    if let Some(Err(error)) = added {
+                        *failed.borrow_mut() = Some(error);
+                    }
                     progress::stage(recording);
                     interrupt::driver_rests(false);
                 };
-                let watch = &mut |_: &_| interrupt::decide();
+                let watch = &mut |_: &_| match *failed.borrow() {
+                    None => interrupt::decide(),
+                    Some(_) => Decision::Stop,
+                };
                 headless.record_lit(&buffers, &view, settings, &samples, (each, watch))
             })?;
+            if let Some(error) = failed.take() {
+                return Err(anyhow!("the samples of the light cannot be kept: {error}").into());
+            }
             Ok(recorded.map(|()| certificate))
         })?;
         let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;

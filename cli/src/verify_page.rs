@@ -7,13 +7,13 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
-use super::verify_lit::{LitFigure, LitPicture};
+use super::verify_lit::LitFigure;
 use super::verify_page_light::LightSection;
 use super::verify_pictures::{
     DECIDED_HIT, MISS, Pictures, Window, css, depth_color, verdict_color,
 };
 use super::verify_report::{Listed, Report};
-use pinhole::verify::run_file::Run;
+use pinhole::verify::run_file::{Run, ShownPicture};
 use pinhole::verify::{Certificate, Verdict, Violation};
 
 /// The largest number of violations that are shown enlarged.
@@ -99,7 +99,7 @@ struct Page<'a> {
     report: &'a Report,
     /// The check of light, if there was one.
     light: Option<LightSection<'a>>,
-    /// The lit picture, which is not checked, if the scene asks for light and the picture was rendered now.
+    /// The lit picture, which is not checked, if the scene asks for light.
     lit: Option<LitFigure>,
     /// Version of the program that checks.
     program: &'static str,
@@ -133,7 +133,7 @@ pub(super) fn page(
     run: &Run,
     certificate: &Certificate,
     report: &Report,
-    lit: Option<&LitPicture>,
+    lit: Option<&ShownPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {
     let pictures = Pictures::new(run, certificate);
@@ -143,7 +143,7 @@ pub(super) fn page(
     let page = Page {
         report,
         light: report.light().map(LightSection::new),
-        lit: lit.map(|lit| lit.figure(whole)).transpose()?,
+        lit: lit.map(|lit| LitFigure::new(lit, whole)).transpose()?,
         program: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),
         pixels: grouped(u64::from(size[0]) * u64::from(size[1])),

@@ -33,6 +33,7 @@ mod pictures;
 mod plan;
 mod planted;
 mod profile;
+mod replayed;
 mod scenes;
 mod self_test;
 mod structures;

@@ -17,6 +17,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("verify::a_pixel_that_is_wrong_is_named", named),
         trial("verify::paths_are_proved", paths),
         trial("verify::studios_are_proved", studio),
+        trial("verify::saved_light_is_legal_again", saved_light),
     ]
 }
 
@@ -163,4 +164,47 @@ fn studio(_: &'static Headless) {
     ] {
         assert!(page.contains(words), "{words}\n{page}");
     }
+}
+
+/// What a replay says of light is what the recording said, with the same page.
+fn saved_light(_: &'static Headless) {
+    let folder = folder();
+    let studio = PATHS.replace("'path'", "'studio'") + "opacity = 0.5\n[studio.occlusion]\n";
+    std::fs::write(folder.path().join("studio.toml"), studio).unwrap();
+    let denoised = PATHS.replace("[film]", "[sampling]\nsamples = 4\ndenoise = true\n[film]");
+    std::fs::write(folder.path().join("paths.toml"), denoised).unwrap();
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    for (scene, words) in [
+        ("studio", "\n2400 samples, "),
+        ("paths", "\n2400 paths, "),
+        ("paths", "\ndenoiser: 1200 pixels: "),
+    ] {
+        let found = table(
+            &folder,
+            &format!("verify {scene}.toml --paths 2 --save run --json a.json --report page"),
+        );
+        assert!(found.contains(words), "{found}");
+        let again = replayed(&folder, "verify --replay run --json b.json --report again", 0);
+        assert_eq!(String::from_utf8(again.stdout).unwrap(), found);
+        assert!(read("a.json") == read("b.json"), "the documents differ");
+        assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
+        assert!(String::from_utf8(read("page/report.html")).unwrap().contains("<b>Light</b>"));
+        // A byte of a state that is another, and a file that is cut off.
+        let mut bytes = read("run");
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        std::fs::write(folder.path().join("altered"), &bytes).unwrap();
+        std::fs::write(folder.path().join("cut"), &bytes[..middle]).unwrap();
+        for (file, words) in [("altered", "was altered after"), ("cut", "is cut off")] {
+            let output = replayed(&folder, &format!("verify --replay {file} --json c.json"), 1);
+            let stderr = String::from_utf8(output.stderr).unwrap();
+            assert!(stderr.contains(words) && stderr.lines().count() == 1, "{stderr}");
+        }
+        assert!(!folder.path().join("c.json").exists());
+    }
+    // No temporary file is left behind.
+    let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+    assert!(names.into_iter().all(|name| !name.to_string_lossy().starts_with(".pinhole")));
+    let refused = command(&folder, "verify paths.toml --paths 3000 --save run").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
 }

@@ -88,6 +88,22 @@ impl PathState {
     /// In a studio, the slot of the normal, whose last word has a bit for each hidden light.
     pub const NORMAL: usize = 6;
 
+    /// The state once the visibility of its light is known. A light that is occluded is not searched again.
+    pub(in crate::verify) fn with_visibility(mut self, open: u32) -> Self {
+        if open != self.bits(slot::PENDING) {
+            self.slots[slot::PENDING][3] = open;
+            self.slots[slot::SHADOW][3] = 0;
+        }
+        self
+    }
+
+    /// The state in a studio once the light of some lights is added, with the bits that are left of them.
+    pub(in crate::verify) fn with_light(mut self, radiance: [u32; 4], left: u32) -> Self {
+        self.slots[slot::RADIANCE] = radiance;
+        self.slots[slot::NORMAL][3] = left;
+        self
+    }
+
     pub(in crate::verify) fn vector(&self, slot: usize) -> [f32; 3] {
         let [x, y, z, _] = self.slots[slot];
         [x, y, z].map(f32::from_bits)

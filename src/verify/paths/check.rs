@@ -73,7 +73,7 @@ impl PathCheck<'_> {
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
-            let mut after = stage.scattered[index];
+            let after = stage.scattered[index];
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
                 part.note(|part| &mut part.extend, address, self.extend(&state, last, hit, legal));
@@ -101,12 +101,7 @@ impl PathCheck<'_> {
                 );
                 part.note(|part| &mut part.occlude, address, Err(fail));
             }
-            if stage.open[index] != after.bits(slot::PENDING) {
-                // A light that is occluded is not searched again.
-                after.slots[slot::PENDING][3] = stage.open[index];
-                after.slots[slot::SHADOW][3] = 0;
-            }
-            state = after;
+            state = after.with_visibility(stage.open[index]);
         }
         if state.has(flag::ALIVE) {
             let words = "the path was not followed to its end".to_owned();

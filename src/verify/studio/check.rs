@@ -91,8 +91,7 @@ impl StudioCheck<'_> {
                 for (batch, light) in (0..).zip(lights) {
                     let found = Light { kind, first: batch * BITS, light, index };
                     self.judge_light(address, met, &after, found, part);
-                    after.slots[slot::RADIANCE] = light.radiance[index];
-                    after.slots[slot::NORMAL][3] = light.left[index];
+                    after = after.with_light(light.radiance[index], light.left[index]);
                 }
             }
             state = after;
