@@ -8,6 +8,7 @@ use super::args::VerifyArgs;
 use super::failure::Failure;
 use super::speak::answer;
 use super::verify_kept::{Kept, Replayed};
+use super::verify_open::open_pixels;
 use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads, verify_kept, verify_picture};
@@ -27,8 +28,9 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     progress::stage("checking");
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
+    let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
+    report.open_pixels = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
-    let report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report, &kept)?;
@@ -176,6 +178,11 @@ mod recorded {
                 "--paths needs a scene with the integrator `studio` or `path`; remove --paths",
             ));
         }
+        if !is_lit && args.tile_seed.is_some() {
+            return Err(Failure::usage(
+                "--tile-seed needs a scene with the integrator `studio` or `path`; remove --tile-seed",
+            ));
+        }
         // Of each sample the middle is recorded, and a part elsewhere.
         let most = run_file::MAX_SAMPLES / 2;
         if args.save.is_some() && args.paths.is_some_and(|paths| paths > most) {
@@ -205,10 +212,10 @@ mod recorded {
         })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
-        let samples = args.paths.unwrap_or(1);
+        let chosen = (args.paths.unwrap_or(1), args.tile_seed);
         let mut kept = Kept::beside(outputs.save().filter(|_| is_lit))?;
         let certify =
-            || verify_light::certify(&headless, &input, samples, choice, kept.samples.as_mut());
+            || verify_light::certify(&headless, &input, chosen, choice, kept.samples.as_mut());
         let light = is_lit.then(certify).transpose()?;
         if input.settings.is_denoised {
             kept.denoised = Some(verify_denoiser::render(&headless, &input, choice)?);

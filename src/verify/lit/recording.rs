@@ -42,6 +42,12 @@ impl LitInputs {
         [self.origin[0] + (index % width) as u32, self.origin[1] + (index / width) as u32]
     }
 
+    /// First column and row, width and height of the rectangle.
+    pub(in crate::verify) fn rectangle(&self) -> [u32; 4] {
+        let ([x, y], [width, height]) = (self.origin, self.size);
+        [x, y, width, height]
+    }
+
     /// The number of pixels in the rectangle.
     pub(in crate::verify) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
