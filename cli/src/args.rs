@@ -15,6 +15,7 @@ use super::job::JobArgs;
 use super::light::LightArgs;
 use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
+use super::verify_help::AFTER_HELP;
 use super::view::ViewArguments;
 use pinhole::accel::AccelChoice;
 use pinhole::load::Format;
@@ -258,28 +259,25 @@ pub(super) const CAMERA: [&str; 21] = [
 
 /// The other arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay`
 /// excludes them, as it does those of the camera.
-const RENDERING: [&str; 12] = [
-    "path", "format", "radius", "color", "frame", "topology", "columns", "adapter", "limits",
-    "accel", "paths", "save",
+const RENDERING: [&str; 13] = [
+    "path",
+    "format",
+    "radius",
+    "color",
+    "frame",
+    "topology",
+    "columns",
+    "adapter",
+    "limits",
+    "accel",
+    "paths",
+    "save",
+    "tile_seed",
 ];
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The check covers the data on the device and every ray, hit, depth, normal and color. It computes in \
-    f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
-    given one of them. The CPU reference never replaces an adapter here.\n\n\
-    Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
-    or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
-    pixels have several legal answers, or of the stages of light paths have bounds so wide that they say little.\n\n\
-    JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
-    `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
-    `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
-    wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
-    stages, upload, violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
-     stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
-     outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
-    (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program that rendered. New versions may add \
-    keys, but do not change these."
+    after_help = AFTER_HELP
 )]
 pub(super) struct VerifyArgs {
     /// File to check: a scene file or a data file, as for `render`; or with --scene a picture
@@ -297,9 +295,14 @@ pub(super) struct VerifyArgs {
     pub(super) accel: AccelArgs,
     /// Samples of each pixel that are checked stage by stage, in scenes with light: paths bounce by bounce, studios
     /// surface by surface and light by light. The last sample is one of them. In a picture with a side of more than 256
-    /// pixels, only the middle is checked, and of a studio with many lights a smaller part [default: 1]
+    /// pixels, only the middle and a part at random are checked, and of a studio with many lights smaller parts
+    /// [default: 1]
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub(super) paths: Option<u32>,
+    /// Where the part at random is in which light is checked as well: the same seed, the same part [default: another one
+    /// in each run]
+    #[arg(long, value_name = "SEED")]
+    pub(super) tile_seed: Option<u32>,
     /// Also write the results to this file as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,

@@ -126,6 +126,12 @@ fn temporary(path: &Path) -> Result<NamedTempFile> {
     interrupt::creating(|| temporary_in_folder(path), |file| file.path().to_path_buf())
 }
 
+/// Creates a temporary file beside an output, for what is kept until the output is written.
+#[cfg(feature = "gpu")]
+pub(super) fn scratch(path: &Path) -> Result<NamedTempFile> {
+    temporary(path)
+}
+
 fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");

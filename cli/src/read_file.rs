@@ -1,6 +1,6 @@
 //! Reads whole files.
 
-use std::io::Read;
+use std::io::{Cursor, Read, Seek};
 use std::path::Path;
 
 use anyhow::{Context, Error, Result, bail};
@@ -21,6 +21,20 @@ pub(super) fn is_gzip(path: &Path) -> bool {
 
 /// Bytes that are read first from a file whose size is not known, such as a pipe.
 const FIRST_PIECE: u64 = 1 << 20;
+
+/// A file of which any part can be read.
+pub(super) trait ReadSeek: Read + Seek {}
+
+impl<S: Read + Seek> ReadSeek for S {}
+
+/// Opens a file of which parts are read. One that is not a regular file, such as a pipe, is read into memory.
+pub(super) fn open_seekable(path: &Path) -> Result<Box<dyn ReadSeek>> {
+    if is_standard_input(path) || !path.is_file() {
+        return Ok(Box::new(Cursor::new(read(path)?)));
+    }
+    let file = std::fs::File::open(path);
+    Ok(Box::new(file.with_context(|| format!("{}: cannot be read", path.display()))?))
+}
 
 /// Reads a whole file. A regular file is read into memory of exactly its size.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {

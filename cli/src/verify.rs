@@ -6,36 +6,34 @@ use anyhow::{Context, anyhow};
 
 use super::args::VerifyArgs;
 use super::failure::Failure;
-use super::input::read;
 use super::speak::answer;
-use super::verify_lit::LitPicture;
+use super::verify_kept::{Kept, Replayed};
+use super::verify_open::open_pixels;
 use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
-use super::{progress, threads, verify_picture};
+use super::{progress, threads, verify_kept, verify_picture};
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::run_file::{self, Run};
+use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
         return verify_picture::run(args, picture, scene);
     }
-    let Recorded { run, outputs, light, denoiser, lit } = match (&args.replay, &args.path) {
-        (Some(path), _) => {
-            let (run, outputs) = replayed(path, args)?;
-            Recorded { run, outputs, light: None, denoiser: None, lit: None }
-        }
+    let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
+        (Some(path), _) => replayed(path, args)?,
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
     };
     progress::stage("checking");
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
+    let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
+    report.open_pixels = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
-    let report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
-    outputs.write(&run, &certificate, &report, lit.as_ref())?;
+    outputs.write(&run, &certificate, &report, &kept)?;
     let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
     worse(worse(verdict(&certificate), of_light), of_denoiser)
@@ -49,15 +47,13 @@ fn worse(first: Result<(), Failure>, second: Result<(), Failure>) -> Result<(), 
     }
 }
 
-/// Reads a saved recording.
-fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
+/// Reads a saved recording, and checks its light.
+fn replayed(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
-    progress::stage(format!("reading {}", path.display()));
-    let bytes = read(path)?;
-    let run = run_file::read(&bytes).with_context(|| path.display().to_string())?;
-    Ok((run, outputs))
+    let Replayed { run, light, denoiser, kept } = verify_kept::replay(path)?;
+    Ok(Recorded { run, outputs, light, denoiser, kept })
 }
 
 fn verdict(certificate: &Certificate) -> Result<(), Failure> {
@@ -128,8 +124,8 @@ struct Recorded {
     light: Option<LitCertificate>,
     /// The certificate of the denoiser, if the scene asks for it.
     denoiser: Option<DenoiseCertificate>,
-    /// The picture with light, for the page.
-    lit: Option<LitPicture>,
+    /// What is kept of the light, for a run file and the page.
+    kept: Kept,
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -158,7 +154,7 @@ mod recorded {
     };
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
-    use pinhole::verify::run_file::Provenance;
+    use pinhole::verify::run_file::{self, Provenance};
 
     /// Renders a scene on an adapter and records it.
     pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
@@ -182,11 +178,17 @@ mod recorded {
                 "--paths needs a scene with the integrator `studio` or `path`; remove --paths",
             ));
         }
-        if is_lit && args.save.is_some() {
-            tell(
-                "note: --save stores the picture with one ray per pixel, but no light; to check that again, \
-                 run `verify` on the scene again",
-            );
+        if !is_lit && args.tile_seed.is_some() {
+            return Err(Failure::usage(
+                "--tile-seed needs a scene with the integrator `studio` or `path`; remove --tile-seed",
+            ));
+        }
+        // Of each sample the middle is recorded, and a part elsewhere.
+        let most = run_file::MAX_SAMPLES / 2;
+        if args.save.is_some() && args.paths.is_some_and(|paths| paths > most) {
+            return Err(Failure::usage(format!(
+                "a run file has room for {most} samples of each pixel; choose --paths {most} or less"
+            )));
         }
         let mut headless = wanted.open_any()?;
         self_test::check(&headless)?;
@@ -210,20 +212,21 @@ mod recorded {
         })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
-        let samples = args.paths.unwrap_or(1);
-        let certify = || verify_light::certify(&headless, &input, samples, choice);
+        let chosen = (args.paths.unwrap_or(1), args.tile_seed);
+        let mut kept = Kept::beside(outputs.save().filter(|_| is_lit))?;
+        let certify =
+            || verify_light::certify(&headless, &input, chosen, choice, kept.samples.as_mut());
         let light = is_lit.then(certify).transpose()?;
-        let denoiser = input
-            .settings
-            .is_denoised
-            .then(|| verify_denoiser::certify(&headless, &input, choice))
-            .transpose()?;
-        let lit = (is_lit && outputs.has_page())
-            .then(|| verify_lit::render(&headless, &input, choice))
-            .transpose()?;
+        if input.settings.is_denoised {
+            kept.denoised = Some(verify_denoiser::render(&headless, &input, choice)?);
+        }
+        let denoiser = kept.denoised.as_ref().map(verify_denoiser::judge).transpose()?;
+        if is_lit && outputs.has_picture() {
+            kept.shown = Some(verify_lit::render(&headless, &input, choice)?);
+        }
         let run =
             Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-        Ok(Recorded { run, outputs, light, denoiser, lit })
+        Ok(Recorded { run, outputs, light, denoiser, kept })
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

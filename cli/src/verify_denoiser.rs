@@ -1,9 +1,11 @@
 //! The denoiser in `pinhole verify`: of a scene whose picture is denoised, what the device makes of a noisy picture.
 
+use anyhow::{Context, Result};
 use serde::Serialize;
 
 use super::verify_report::LISTED;
-use pinhole::verify::denoised::DenoiseCertificate;
+use pinhole::image::Image;
+use pinhole::verify::denoised::{self, DenoiseCertificate};
 
 /// The object `denoiser` of the JSON document.
 #[derive(Serialize)]
@@ -40,13 +42,16 @@ impl DenoiserReport {
     }
 }
 
+/// Judges what the device made of a noisy picture.
+pub(super) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
+    denoised::certify(noisy, quiet).context("the denoiser cannot be checked")
+}
+
 #[cfg(feature = "gpu")]
-pub(super) use rendered::certify;
+pub(super) use rendered::render;
 
 #[cfg(feature = "gpu")]
 mod rendered {
-    use anyhow::Context;
-
     use super::*;
     use crate::device::explained_alone;
     use crate::failure::Failure;
@@ -58,18 +63,17 @@ mod rendered {
     use pinhole::camera::film::Film;
     use pinhole::gpu::Headless;
     use pinhole::image::denoise::GUIDES;
-    use pinhole::verify::denoised;
 
     /// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
     const SIDE: u32 = 256;
     const SAMPLES: u32 = 4;
 
-    /// Renders a small noisy picture, and judges what the device makes of it.
-    pub(crate) fn certify(
+    /// Renders a small noisy picture, and what the device makes of it.
+    pub(crate) fn render(
         headless: &Headless,
         input: &Input,
         choice: AccelChoice,
-    ) -> Result<DenoiseCertificate, Failure> {
+    ) -> Result<[Image; 2], Failure> {
         let mut settings = input.settings.unfinished();
         settings.sampling.samples = settings.sampling.samples.min(SAMPLES);
         let (width, height) = (input.film.width(), input.film.height());
@@ -90,10 +94,10 @@ mod rendered {
                 let noisy =
                     headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch)?.image;
                 let quiet = headless.denoise(&noisy)?;
-                Ok((noisy, quiet))
+                Ok([noisy, quiet])
             })
         })?;
-        let ((noisy, quiet), _) = done.map_err(|error| explained_alone(headless, &error))?;
-        Ok(denoised::certify(&noisy, &quiet).context("the denoiser cannot be checked")?)
+        let (pictures, _) = done.map_err(|error| explained_alone(headless, &error))?;
+        Ok(pictures)
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::verify_report::LISTED;
-use pinhole::verify::{LitCertificate, LitViolation, StageCounts};
+use pinhole::verify::{LitCertificate, LitOpen, LitViolation, StageCounts};
 
 /// The object `paths` or `studio` of the JSON document.
 #[derive(Serialize)]
@@ -16,6 +16,8 @@ pub(super) struct LightReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) samples: Option<u64>,
     pub(super) stages: BTreeMap<&'static str, Counts>,
+    /// First column and row, width and height of the parts of the film in which samples were checked.
+    pub(super) rectangles: Vec<[u32; 4]>,
     pub(super) upload: Option<String>,
     pub(super) violation_count: u64,
     pub(super) violations: Vec<Listed>,
@@ -24,6 +26,9 @@ pub(super) struct LightReport {
     /// The certificate as one line of text.
     #[serde(skip)]
     pub(super) line: String,
+    /// The first stages with several legal results, and those of which the check says little.
+    #[serde(skip)]
+    pub(super) open: Vec<LitOpen>,
     /// The stages in the order in which a sample passes through them.
     #[serde(skip)]
     pub(super) order: Vec<&'static str>,
@@ -45,11 +50,11 @@ pub(super) struct Counts {
 
 #[derive(Serialize)]
 pub(super) struct Listed {
-    pixel: [u32; 2],
-    sample: u32,
-    surface: u32,
-    stage: &'static str,
-    message: String,
+    pub(super) pixel: [u32; 2],
+    pub(super) sample: u32,
+    pub(super) surface: u32,
+    pub(super) stage: &'static str,
+    pub(super) message: String,
 }
 
 impl From<StageCounts> for Counts {
@@ -75,6 +80,8 @@ impl From<&LitCertificate> for LightReport {
             samples: is_studio.then_some(paths),
             order: stages.iter().map(|(name, _)| *name).collect(),
             stages: stages.into_iter().map(|(name, counts)| (name, counts.into())).collect(),
+            rectangles: certificate.rectangles.clone(),
+            open: certificate.open.clone(),
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violation_count: certificate.violation_count,
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
@@ -90,33 +97,40 @@ pub(super) use recorded::certify;
 
 #[cfg(feature = "gpu")]
 mod recorded {
+    use std::cell::RefCell;
     use std::collections::BTreeSet;
 
-    use anyhow::Context;
+    use anyhow::{Context, anyhow};
 
     use super::*;
     use crate::device::explained_alone;
     use crate::failure::Failure;
     use crate::input::Input;
+    use crate::speak::tell;
     use crate::views::Views;
     use crate::with_scene::{upload, with_structures};
     use crate::{interrupt, progress, render};
     use pinhole::accel::AccelChoice;
-    use pinhole::gpu::Headless;
+    use pinhole::gpu::{Decision, EachSample, Headless, LitPart, Watch};
     use pinhole::image::LayerSet;
+    use pinhole::verify::run_file::LitSamples;
     use pinhole::verify::{Checker, LitRecording};
 
-    /// Records this number of samples on an adapter, one after the other, and checks them.
+    /// Records this number of samples on an adapter, one after the other, in the middle of the film and in a part at
+    /// random, and checks them. If they will be saved, `kept` keeps them.
     pub(crate) fn certify(
         headless: &Headless,
         input: &Input,
-        count: u32,
+        (count, tile_seed): (u32, Option<u32>),
         choice: AccelChoice,
+        kept: Option<&mut LitSamples>,
     ) -> Result<LitCertificate, Failure> {
         let Input { scene, settings, .. } = input;
         let (view, views) = (input.view(), Views::of(input));
         let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
         let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+        let tile_seed = tile_seed.unwrap_or_else(any_seed);
+        let kept = RefCell::new(kept);
         let done = with_structures(headless, choice, plan, |plan| {
             let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
             let buffers = match uploaded {
@@ -125,6 +139,9 @@ mod recorded {
             };
             let checker = Checker::new(scene).context("the checker cannot be prepared")?;
             let mut certificate = LitCertificate::default();
+            // With another structure, recording begins anew.
+            kept.borrow_mut().iter_mut().for_each(|kept| kept.clear());
+            let failed = RefCell::new(None);
             let recording = "recording light";
             progress::stage(recording);
             let recorded = interrupt::on_device(|| {
@@ -132,16 +149,43 @@ mod recorded {
                     interrupt::driver_rests(true);
                     progress::stage("checking light");
                     certificate.join(checker.certify_lit(recorded));
+                    let added = kept.borrow_mut().as_mut().map(|kept| kept.add(recorded));
+                    if let Some(Err(error)) = added {
+                        *failed.borrow_mut() = Some(error);
+                    }
                     progress::stage(recording);
                     interrupt::driver_rests(false);
                 };
-                let watch = &mut |_: &_| interrupt::decide();
-                headless.record_lit(&buffers, &view, settings, &samples, (each, watch))
+                let watch = &mut |_: &_| match *failed.borrow() {
+                    None => interrupt::decide(),
+                    Some(_) => Decision::Stop,
+                };
+                [LitPart::Middle, LitPart::Random(tile_seed)].into_iter().try_for_each(|part| {
+                    let samples = (part, &samples[..]);
+                    let callbacks =
+                        (&mut *each as &mut EachSample<'_>, &mut *watch as &mut Watch<'_>);
+                    headless.record_lit_part(&buffers, &view, settings, samples, callbacks)
+                })
             })?;
+            if let Some(error) = failed.take() {
+                return Err(anyhow!("the samples of the light cannot be kept: {error}").into());
+            }
             Ok(recorded.map(|()| certificate))
         })?;
         let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
+        if let [_, [x, y, width, height]] = certificate.rectangles[..] {
+            tell(format_args!(
+                "note: light was checked in the middle and in {width}x{height} pixels at ({x}, {y}); to check the \
+                 same again, add --tile-seed {tile_seed}"
+            ));
+        }
         Ok(certificate)
+    }
+
+    /// Another number in each run.
+    fn any_seed() -> u32 {
+        use std::hash::{BuildHasher, RandomState};
+        RandomState::new().hash_one(0) as u32
     }
 
     /// The indices of the samples that are checked: `count` of those of a picture, among them the last and, if there are

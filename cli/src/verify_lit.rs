@@ -4,54 +4,42 @@ use anyhow::Result;
 use serde::Serialize;
 
 use super::verify_pictures::{Window, encoded};
-use pinhole::image::Image;
+use pinhole::LinearRgb;
 use pinhole::image::color::to_srgb8;
-use pinhole::image::encoding::Encoding;
-
-/// A lit picture with few samples.
-pub(super) struct LitPicture {
-    image: Image,
-    encoding: Encoding,
-    integrator: &'static str,
-    samples: u32,
-    /// Number of samples that the scene asks for.
-    wanted: u32,
-}
+use pinhole::verify::run_file::ShownPicture;
 
 /// What the page shows of it.
 #[derive(Serialize)]
 pub(super) struct LitFigure {
     color: String,
-    integrator: &'static str,
     samples: u32,
     wanted: u32,
 }
 
-impl LitPicture {
-    /// Draws the picture, encoded as the scene asks for it, but with its background.
-    pub(super) fn figure(&self, window: Window) -> Result<LitFigure> {
-        let (color, alpha) = (self.image.color(), self.image.alpha());
-        let width = self.image.width() as usize;
-        let shown = |i: usize| match (alpha, self.encoding.background()) {
-            (Some(alpha), Some(background)) => {
-                self.encoding.display_over(color[i], alpha[i], background)
-            }
-            _ => self.encoding.display(color[i]),
-        };
-        let color = encoded(window, |pixels| {
-            let mut sum = [0.0; 3];
-            let mut count = 0.0;
-            for i in pixels.indices(width) {
-                let shown = shown(i);
-                (0..3)
-                    .for_each(|channel| sum[channel] += f64::from(shown[channel].clamp(0.0, 1.0)));
-                count += 1.0;
-            }
-            to_srgb8(sum.map(|sum| (sum / count) as f32))
-        });
-        let Self { integrator, samples, wanted, .. } = *self;
-        Ok(LitFigure { color: color?, integrator, samples, wanted })
+impl LitFigure {
+    /// Draws a part of the picture.
+    pub(super) fn new(shown: &ShownPicture, window: Window) -> Result<Self> {
+        let ShownPicture { samples, wanted, .. } = *shown;
+        Ok(Self { color: drawn(shown, window)?, samples, wanted })
     }
+}
+
+/// Draws the mean colour of each block of pixels.
+pub(super) fn drawn(
+    ShownPicture { size, srgb, .. }: &ShownPicture,
+    window: Window,
+) -> Result<String> {
+    let width = size[0] as usize;
+    encoded(window, |pixels| {
+        let mut sum = [0.0; 3];
+        let mut count = 0.0;
+        for i in pixels.indices(width) {
+            let color = LinearRgb::from_srgb8(srgb[i]).to_array();
+            (0..3).for_each(|channel| sum[channel] += f64::from(color[channel]));
+            count += 1.0;
+        }
+        to_srgb8(sum.map(|sum| (sum / count) as f32))
+    })
 }
 
 #[cfg(feature = "gpu")]
@@ -68,6 +56,8 @@ mod rendered {
     use crate::{interrupt, progress, render as job};
     use pinhole::accel::AccelChoice;
     use pinhole::gpu::Headless;
+    use pinhole::image::Image;
+    use pinhole::image::encoding::Encoding;
 
     /// More samples would take long, and change little at the size that a page has.
     const SAMPLES: u32 = 16;
@@ -77,7 +67,7 @@ mod rendered {
         headless: &Headless,
         input: &Input,
         choice: AccelChoice,
-    ) -> Result<LitPicture, Failure> {
+    ) -> Result<ShownPicture, Failure> {
         let mut settings = input.settings.clone();
         let wanted = settings.sampling.samples;
         settings.sampling.samples = wanted.min(SAMPLES);
@@ -96,7 +86,22 @@ mod rendered {
             })
         })?;
         let (picture, _) = done.map_err(|error| explained_alone(headless, &error))?;
-        let (integrator, samples) = (settings.integrator.name(), settings.sampling.samples);
-        Ok(LitPicture { image: picture.image, encoding, integrator, samples, wanted })
+        let samples = settings.sampling.samples;
+        Ok(shown(&picture.image, &encoding, samples, wanted))
+    }
+
+    /// Encodes the picture as the scene asks for it, but with its background.
+    fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> ShownPicture {
+        let (color, alpha) = (image.color(), image.alpha());
+        let srgb = (0..color.len()).map(|i| {
+            to_srgb8(match (alpha, encoding.background()) {
+                (Some(alpha), Some(background)) => {
+                    encoding.display_over(color[i], alpha[i], background)
+                }
+                _ => encoding.display(color[i]),
+            })
+        });
+        let size = [image.width(), image.height()];
+        ShownPicture { size, srgb: srgb.collect(), samples, wanted }
     }
 }

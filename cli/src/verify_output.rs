@@ -11,7 +11,7 @@ use super::output::{
     NewFolder, check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
 use super::progress;
-use super::verify_lit::LitPicture;
+use super::verify_kept::Kept;
 use super::verify_page::page;
 use super::verify_report::Report;
 use pinhole::verify::Certificate;
@@ -53,10 +53,16 @@ impl VerifyOutputs {
         self.json.iter().chain(&self.save).chain(&self.page)
     }
 
-    /// Whether a page is written.
+    /// Whether a lit picture for people is written, in a page or a run file.
     #[cfg(feature = "gpu")]
-    pub(super) fn has_page(&self) -> bool {
-        self.page.is_some()
+    pub(super) fn has_picture(&self) -> bool {
+        self.page.is_some() || self.save.is_some()
+    }
+
+    /// The run file to be written.
+    #[cfg(feature = "gpu")]
+    pub(super) fn save(&self) -> Option<&Path> {
+        self.save.as_deref()
     }
 
     /// Refuses to overwrite an input.
@@ -70,11 +76,11 @@ impl VerifyOutputs {
         run: &Run,
         certificate: &Certificate,
         report: &Report,
-        lit: Option<&LitPicture>,
+        kept: &Kept,
     ) -> Result<()> {
         match &self.folder {
-            Some(folder) => folder.with(|| self.write_files(run, certificate, report, lit)),
-            None => self.write_files(run, certificate, report, lit),
+            Some(folder) => folder.with(|| self.write_files(run, certificate, report, kept)),
+            None => self.write_files(run, certificate, report, kept),
         }
     }
 
@@ -83,7 +89,7 @@ impl VerifyOutputs {
         run: &Run,
         certificate: &Certificate,
         report: &Report,
-        lit: Option<&LitPicture>,
+        kept: &Kept,
     ) -> Result<()> {
         let mut files = Vec::new();
         if let Some(path) = &self.json {
@@ -95,14 +101,21 @@ impl VerifyOutputs {
         }
         if let Some(path) = &self.page {
             progress::stage("drawing the report");
-            let page = page(run, certificate, report, lit, self.run.as_deref().map(Path::display))?;
+            let page = page(
+                run,
+                certificate,
+                report,
+                kept.shown.as_ref(),
+                self.run.as_deref().map(Path::display),
+            )?;
             files.push((path, unnamed(path, page.as_bytes())?));
         }
         if let Some(path) = &self.save {
             progress::stage("writing the run");
             let Run { scene, recording, provenance } = run;
             let file = unnamed_with(path, |file| {
-                run_file::write(scene, recording, provenance, file.as_file_mut() as &mut dyn Write)
+                let file = file.as_file_mut() as &mut dyn Write;
+                run_file::write_with(scene, recording, provenance, kept.extras(), file)
             })?;
             files.push((path, file));
         }

@@ -7,13 +7,16 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
-use super::verify_lit::{LitFigure, LitPicture};
+use super::verify_lit::{LitFigure, drawn};
+use super::verify_open::OpenPixel;
 use super::verify_page_light::LightSection;
+use super::verify_page_scope::not_covered;
+use super::verify_page_spot::Spot;
 use super::verify_pictures::{
     DECIDED_HIT, MISS, Pictures, Window, css, depth_color, verdict_color,
 };
 use super::verify_report::{Listed, Report};
-use pinhole::verify::run_file::Run;
+use pinhole::verify::run_file::{Run, ShownPicture};
 use pinhole::verify::{Certificate, Verdict, Violation};
 
 /// The largest number of violations that are shown enlarged.
@@ -21,9 +24,6 @@ const ENLARGED: usize = 12;
 
 /// Number of intervals of the colour scale.
 const STOPS: u32 = 12;
-
-/// Width and height of an enlarged pixel in CSS pixels.
-const ZOOM: u32 = 11;
 
 /// A row of the table, which also is an entry of the legend.
 #[derive(Serialize)]
@@ -46,16 +46,20 @@ struct Enlarged {
     listed: Listed,
     color: String,
     mask: String,
-    /// Width of the enlarged part in CSS pixels.
-    width: u32,
-    height: u32,
-    zoom: u32,
-    /// Offset of the pixel in the enlarged part, in CSS pixels.
-    left: u32,
-    top: u32,
-    /// Position of the pixel in the whole picture, in percent.
-    x: f64,
-    y: f64,
+    #[serde(flatten)]
+    spot: Spot,
+}
+
+/// A pixel with several legal answers that is shown enlarged.
+#[derive(Serialize)]
+struct OpenFigure<'a> {
+    pixel: [u32; 2],
+    verdict: &'static str,
+    message: &'a str,
+    color: String,
+    mask: String,
+    #[serde(flatten)]
+    spot: Spot,
 }
 
 /// The size of the pictures on a screen.
@@ -99,7 +103,7 @@ struct Page<'a> {
     report: &'a Report,
     /// The check of light, if there was one.
     light: Option<LightSection<'a>>,
-    /// The lit picture, which is not checked, if the scene asks for light and the picture was rendered now.
+    /// The lit picture, which is not checked, if the scene asks for light.
     lit: Option<LitFigure>,
     /// Version of the program that checks.
     program: &'static str,
@@ -126,6 +130,10 @@ struct Page<'a> {
     /// Labels of the depth scale; `None` if no sphere is hit.
     ticks: Option<Vec<String>>,
     violations: Vec<Enlarged>,
+    /// The first ties and silhouettes.
+    open: Vec<OpenFigure<'a>>,
+    /// What the report does not cover, in words.
+    not_covered: Vec<String>,
 }
 
 /// Makes the page. `lit` is the picture with light, if there is one. `run_file` is the file that holds the checked recording, if there is one.
@@ -133,7 +141,7 @@ pub(super) fn page(
     run: &Run,
     certificate: &Certificate,
     report: &Report,
-    lit: Option<&LitPicture>,
+    lit: Option<&ShownPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {
     let pictures = Pictures::new(run, certificate);
@@ -142,8 +150,16 @@ pub(super) fn page(
     let first = (1..=ENLARGED).zip(&certificate.violations);
     let page = Page {
         report,
-        light: report.light().map(LightSection::new),
-        lit: lit.map(|lit| lit.figure(whole)).transpose()?,
+        light: report
+            .light()
+            .map(|light| {
+                LightSection::new(light, size, |window| match lit {
+                    Some(lit) => drawn(lit, window),
+                    None => pictures.color(window),
+                })
+            })
+            .transpose()?,
+        lit: lit.map(|lit| LitFigure::new(lit, whole)).transpose()?,
         program: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),
         pixels: grouped(u64::from(size[0]) * u64::from(size[1])),
@@ -168,6 +184,12 @@ pub(super) fn page(
         violations: first
             .map(|(number, violation)| enlarged(&pictures, number, violation, size))
             .collect::<Result<_>>()?,
+        open: report
+            .open_pixels
+            .iter()
+            .map(|open| open_figure(&pictures, open, size))
+            .collect::<Result<_>>()?,
+        not_covered: not_covered(report, lit.map(|lit| lit.wanted)),
     };
     let mut environment = Environment::new();
     let template = include_str!("verify_page.html");
@@ -214,23 +236,24 @@ fn enlarged(
     violation: &Violation,
     size: [u32; 2],
 ) -> Result<Enlarged> {
-    let window = Window::around(violation.pixel, size);
-    let [i, j] = violation.pixel;
-    let pixels_at = |axis: usize| (violation.pixel[axis] - window.first[axis]) * ZOOM;
-    let percent = |pixel: u32, side: u32| 100.0 * (f64::from(pixel) + 0.5) / f64::from(side);
+    let (window, spot) = Spot::around(violation.pixel, size);
     Ok(Enlarged {
         number,
         listed: violation.into(),
         color: pictures.color(window)?,
         mask: pictures.mask(window)?,
-        width: window.size[0] * ZOOM,
-        height: window.size[1] * ZOOM,
-        zoom: ZOOM,
-        left: pixels_at(0),
-        top: pixels_at(1),
-        x: percent(i, size[0]),
-        y: percent(j, size[1]),
+        spot,
     })
+}
+
+fn open_figure<'a>(
+    pictures: &Pictures<'_>,
+    OpenPixel { pixel, verdict, message }: &'a OpenPixel,
+    size: [u32; 2],
+) -> Result<OpenFigure<'a>> {
+    let (window, spot) = Spot::around(*pixel, size);
+    let (color, mask) = (pictures.color(window)?, pictures.mask(window)?);
+    Ok(OpenFigure { pixel: *pixel, verdict: verdict.name(), message, color, mask, spot })
 }
 
 /// Returns the stops of a CSS gradient, from near to far.

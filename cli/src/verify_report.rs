@@ -8,6 +8,7 @@ use super::adapter::AdapterReport;
 use super::shell::in_quotes;
 use super::verify_denoiser::DenoiserReport;
 use super::verify_light::LightReport;
+use super::verify_open::OpenPixel;
 use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{Run, scene_sha256};
@@ -48,6 +49,9 @@ pub(super) struct Report {
     /// The certificate as a table of text.
     #[serde(skip)]
     table: String,
+    /// The first pixels with several legal answers, for the page.
+    #[serde(skip)]
+    pub(super) open_pixels: Vec<OpenPixel>,
 }
 
 #[derive(Serialize)]
@@ -134,6 +138,7 @@ impl Report {
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
             table: certificate.to_string(),
+            open_pixels: Vec::new(),
         }
     }
 

@@ -226,6 +226,17 @@ impl Image {
         self.variance = self.variance.take().filter(|_| wants(Layer::Variance));
     }
 
+    /// Sets colour, normal and albedo, depth and variance. Each list has as many items as the picture has pixels.
+    #[cfg(feature = "run-file")]
+    pub(crate) fn set_guides(
+        &mut self,
+        [color, normal, albedo]: [Vec<[f32; 3]>; 3],
+        [depth, variance]: [Vec<f32>; 2],
+    ) {
+        (self.color, self.normal, self.albedo) = (color, Some(normal), Some(albedo));
+        (self.depth, self.variance) = (Some(depth), Some(variance));
+    }
+
     pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
         &mut self.color
     }

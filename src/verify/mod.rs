@@ -72,7 +72,9 @@ pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
-pub use lit::{LitCertificate, LitInputs, LitStage, LitUploadError, LitViolation, StageCounts};
+pub use lit::{
+    LitCertificate, LitInputs, LitOpen, LitStage, LitUploadError, LitViolation, StageCounts,
+};
 #[cfg(feature = "gpu")]
 pub(crate) use lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
 pub use lit_recording::LitRecording;

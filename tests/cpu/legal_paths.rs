@@ -10,8 +10,10 @@ use pinhole::internals::{
 };
 use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::verify::{Checker, LitInputs, Outcome, PathRecording, TracedRay};
-use pinhole::{Film, LinearRgb, Scene, Sphere};
+use pinhole::verify::{
+    Checker, LitInputs, Outcome, PathRecording, Recording, TracedPixel, TracedRay,
+};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
 use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
@@ -374,6 +376,26 @@ fn scenes() -> Vec<Scene> {
         .iter()
         .map(|spheres| scene(spheres))
         .collect()
+}
+
+/// Two samples of such a device, which sees a scene from inside, with a film of this size, for other tests. The recording
+/// by one ray for each pixel has no rays.
+pub(crate) fn followed(number: usize, film: Film) -> (Scene, Recording, PathRecording) {
+    let scene = scenes().swap_remove(number);
+    let center = scene.bounds_to_frame().center();
+    let within = Pose::looking_along(center, [0.3, -0.4, 0.8], [0.1, 1.0, 0.2]).unwrap();
+    let camera = PanoramaCamera::new(within);
+    let mut picture = given(&scene, &camera, film);
+    let missed = TracedPixel { t: NO_HIT, id: NO_ID, ..TracedPixel::default() };
+    picture.pixels = vec![missed; film.pixel_count() as usize];
+    picture.image = Image::new(film.width(), film.height(), LayerSet::DATA).unwrap();
+    let mut made = recording(&scene, &camera, film);
+    for habit in [Habit::Up, Habit::Random] {
+        let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(7) };
+        let followed = device.follow(&scene, &made);
+        made.samples.push(followed);
+    }
+    (scene, picture, made)
 }
 
 #[test]

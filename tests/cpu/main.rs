@@ -58,6 +58,7 @@ mod rays;
 mod reference;
 mod round_cameras;
 mod run_file;
+mod run_file_light;
 mod sampling;
 mod scene;
 mod scene_file;

@@ -46,7 +46,7 @@ pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording 
     }
 }
 
-fn provenance() -> Provenance {
+pub(crate) fn provenance() -> Provenance {
     Provenance {
         version: "0.1.0".to_owned(),
         command: "pinhole verify 'a \"sha256\":\"b' --size 3x2 \u{e9}\n".to_owned(),
@@ -95,7 +95,7 @@ fn smallest() -> Vec<u8> {
 }
 
 /// As if it had been written so.
-fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let before = b"\"sha256\":\"";
     let Some(place) = bytes.windows(before.len()).position(|window| window == before) else {
         return bytes;
@@ -108,7 +108,7 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// With another header of any length, signed.
-fn with_header(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+pub(crate) fn with_header(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let length = u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
     let header = str::from_utf8(&bytes[8..8 + length]).unwrap();
     assert!(header.contains(from), "{header} lacks {from}");
@@ -117,14 +117,18 @@ fn with_header(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     signed([&length, header.as_bytes(), &bytes[8 + bytes_of_header(bytes)..]].concat())
 }
 
-fn bytes_of_header(bytes: &[u8]) -> usize {
+pub(crate) fn bytes_of_header(bytes: &[u8]) -> usize {
     u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize
 }
 
 #[track_caller]
 fn contradicts(bytes: &[u8], words: &str) {
-    let error = run_file::read(bytes).unwrap_err();
-    let RunFileError::Contents { message } = &error else { panic!("{error}") };
+    is_contradiction(&run_file::read(bytes).unwrap_err(), words);
+}
+
+#[track_caller]
+pub(crate) fn is_contradiction(error: &RunFileError, words: &str) {
+    let RunFileError::Contents { message } = error else { panic!("{error}") };
     assert!(message.contains(words), "{message} lacks {words}");
     assert_eq!(error.to_string().lines().count(), 1, "{error}");
 }
@@ -201,9 +205,12 @@ fn every_byte_that_is_another_is_noticed() {
 
 /// Files of version 2 have no rays of shading.
 #[test]
-fn files_of_the_version_before_are_read() {
+fn files_of_the_versions_before_are_read() {
     let bytes = small();
-    let older = with_header(&bytes, "\"pinhole_run\":\"3\"", "\"pinhole_run\":\"2\"");
+    let before = with_header(&bytes, "\"pinhole_run\":\"4\"", "\"pinhole_run\":\"3\"");
+    let run = run_file::read(&before).unwrap();
+    assert!(written(&run.scene, &run.recording) == bytes);
+    let older = with_header(&bytes, "\"pinhole_run\":\"4\"", "\"pinhole_run\":\"2\"");
     let older = with_header(&older, "\"shaded\":", "\"seldom\":");
     let [new, old] = [&bytes, &older].map(|bytes| run_file::read(bytes).unwrap().recording);
     assert!(new.pixels.iter().any(|pixel| pixel.shading_ray.is_some()));
@@ -220,10 +227,11 @@ fn other_files_and_other_versions() {
         assert_eq!(run_file::read(other).unwrap_err(), RunFileError::NotRun);
     }
     let bytes = small();
-    let other = with_header(&bytes, "\"pinhole_run\":\"3\"", "\"pinhole_run\":\"4\"");
+    let other = with_header(&bytes, "\"pinhole_run\":\"4\"", "\"pinhole_run\":\"5\"");
     let error = run_file::read(&other).unwrap_err();
-    assert_eq!(error, RunFileError::Version { found: "4".to_owned() });
-    assert!(error.to_string().contains("of version 4"), "{error}");
+    assert_eq!(error, RunFileError::Version { found: "5".to_owned() });
+    let words = "of version 5, and this program reads the versions 2 to 4";
+    assert!(error.to_string().contains(words), "{error}");
     let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");
     assert_eq!(run_file::read(&foreign).unwrap_err(), RunFileError::NotRun);
 }
@@ -262,7 +270,7 @@ fn hostile_contents_with_a_right_digest() {
 }
 
 /// Puts numbers into an array.
-fn with_numbers(bytes: &[u8], name: &str, at: usize, numbers: &[u8]) -> Vec<u8> {
+pub(crate) fn with_numbers(bytes: &[u8], name: &str, at: usize, numbers: &[u8]) -> Vec<u8> {
     let file = safetensors::SafeTensors::deserialize(bytes).unwrap();
     let data = file.tensor(name).unwrap().data();
     let start = data.as_ptr() as usize - bytes.as_ptr() as usize + at;

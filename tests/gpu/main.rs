@@ -34,6 +34,7 @@ mod plan;
 mod planted;
 mod profile;
 mod ray_query;
+mod replayed;
 mod scenes;
 mod self_test;
 mod structures;

@@ -17,6 +17,9 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("verify::a_pixel_that_is_wrong_is_named", named),
         trial("verify::paths_are_proved", paths),
         trial("verify::studios_are_proved", studio),
+        trial("verify::saved_light_is_legal_again", saved_light),
+        trial("verify::another_part_of_large_pictures", another_part),
+        trial("verify::planted_faults_are_shown", planted),
     ]
 }
 
@@ -163,4 +166,129 @@ fn studio(_: &'static Headless) {
     ] {
         assert!(page.contains(words), "{words}\n{page}");
     }
+}
+
+/// What a replay says of light is what the recording said, with the same page.
+fn saved_light(_: &'static Headless) {
+    let folder = folder();
+    let studio = PATHS.replace("'path'", "'studio'") + "opacity = 0.5\n[studio.occlusion]\n";
+    std::fs::write(folder.path().join("studio.toml"), studio).unwrap();
+    let denoised = PATHS.replace("[film]", "[sampling]\nsamples = 4\ndenoise = true\n[film]");
+    std::fs::write(folder.path().join("paths.toml"), denoised).unwrap();
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    for (scene, words) in [
+        ("studio", "\n2400 samples, "),
+        ("paths", "\n2400 paths, "),
+        ("paths", "\ndenoiser: 1200 pixels: "),
+    ] {
+        let found = table(
+            &folder,
+            &format!("verify {scene}.toml --paths 2 --save run --json a.json --report page"),
+        );
+        assert!(found.contains(words), "{found}");
+        let again = replayed(&folder, "verify --replay run --json b.json --report again", 0);
+        assert_eq!(String::from_utf8(again.stdout).unwrap(), found);
+        assert!(read("a.json") == read("b.json"), "the documents differ");
+        assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
+        assert!(String::from_utf8(read("page/report.html")).unwrap().contains("<b>Light</b>"));
+        // A byte of a state that is another, and a file that is cut off.
+        let mut bytes = read("run");
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        std::fs::write(folder.path().join("altered"), &bytes).unwrap();
+        std::fs::write(folder.path().join("cut"), &bytes[..middle]).unwrap();
+        for (file, words) in [("altered", "was altered after"), ("cut", "is cut off")] {
+            let output = replayed(&folder, &format!("verify --replay {file} --json c.json"), 1);
+            let stderr = String::from_utf8(output.stderr).unwrap();
+            assert!(stderr.contains(words) && stderr.lines().count() == 1, "{stderr}");
+        }
+        assert!(!folder.path().join("c.json").exists());
+    }
+    // No temporary file is left behind.
+    let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+    assert!(names.into_iter().all(|name| !name.to_string_lossy().starts_with(".pinhole")));
+    let refused = command(&folder, "verify paths.toml --paths 3000 --save run").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+/// Of a large picture, a part beside the middle is checked, and the page says what is not.
+fn another_part(_: &'static Headless) {
+    let folder = folder();
+    let large = PATHS.replace("width = 40\nheight = 30", "width = 300\nheight = 8");
+    std::fs::write(folder.path().join("large.toml"), large).unwrap();
+    let run = |arguments: &str| {
+        let arguments = format!("verify large.toml --json a.json {arguments}");
+        let output = command(&folder, &arguments).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {stderr}");
+        let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(json["paths"]["paths"], 256 * 8 + 128 * 4);
+        (json["paths"]["rectangles"].to_string(), stderr)
+    };
+    let (first, note) = run("--save run --report page");
+    assert!(first.starts_with("[[22,0,256,8],["), "{first}");
+    let seed = note.trim().rsplit(' ').next().unwrap();
+    assert!(note.contains(" to check the same again, add --tile-seed "), "{note}");
+    assert_eq!(run(&format!("--tile-seed {seed}")).0, first);
+    let others: std::collections::BTreeSet<_> =
+        (0..4).map(|seed| run(&format!("--tile-seed {seed}")).0).collect();
+    assert!(others.len() > 1, "{others:?}");
+    replayed(&folder, "verify --replay run --report again", 0);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let page = read("page/report.html");
+    assert_eq!(page, read("again/report.html"));
+    for words in [
+        "<h2>What this does not cover</h2>",
+        "Light outside of 256 × 8 pixels from column 22, row 0 on and 128 × 4 pixels from column ",
+        "1 of 16 was checked",
+        "class=\"area\"",
+    ] {
+        assert!(page.contains(words), "{words}\n{page}");
+    }
+    let refused = command(&folder, "verify scene.toml --tile-seed 2").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+/// A state that is not what the kernel may have made of the one before is shown with the pixels around it.
+fn planted(_: &'static Headless) {
+    let folder = folder();
+    std::fs::write(folder.path().join("paths.toml"), PATHS).unwrap();
+    table(&folder, "verify paths.toml --save run");
+    let path = folder.path().join("run");
+    let mut bytes = std::fs::read(&path).unwrap();
+    let length = u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
+    let header: serde_json::Value = serde_json::from_slice(&bytes[8..8 + length]).unwrap();
+    let offset = header["sample_0_states"]["data_offsets"][0].as_u64().unwrap();
+    // The radiance of the pixel at (20, 15), the red of its fifth slot, is another.
+    let at = 8 + length + offset as usize;
+    let at = at + (15 * 40 + 20) * 9 * 16 + 4 * 16;
+    let mut number = [0; 4];
+    number.copy_from_slice(&bytes[at..at + 4]);
+    let brighter = f32::from_le_bytes(number) + 0.5;
+    bytes[at..at + 4].copy_from_slice(&brighter.to_le_bytes());
+    std::fs::write(&path, signed(bytes)).unwrap();
+    let output = replayed(&folder, "verify --replay run --report page", 3);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let words = "error: the paths are not legal: ";
+    assert!(stderr.starts_with(words) && stderr.lines().count() == 1, "{stderr}");
+    assert!(stderr.contains("the first is pixel (20, 15), sample 15, surface 0, "), "{stderr}");
+    let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
+    for words in
+        ["<h2>Violations of light</h2>", "Pixel (20, 15), sample 15, surface 0, ", "rings mark"]
+    {
+        assert!(page.contains(words), "{words}\n{page}");
+    }
+}
+
+/// A run file with the digest that it needs.
+fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let before = b"\"sha256\":\"";
+    let place = bytes.windows(before.len()).position(|window| window == before).unwrap();
+    let digits = place + before.len()..place + before.len() + 64;
+    bytes[digits.clone()].fill(b'0');
+    let digest = data_encoding::HEXLOWER
+        .encode(&sha2::Digest::finalize(<sha2::Sha256 as sha2::Digest>::new_with_prefix(&bytes)));
+    bytes[digits].copy_from_slice(digest.as_bytes());
+    bytes
 }

@@ -168,9 +168,9 @@ fn runs_that_are_damaged() {
     let whole = folder.read("run");
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"3\"").unwrap();
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"4\"").unwrap();
     // The number of the version is replaced by another of the same length.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"3\""));
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"4\""));
     let mut other = whole.clone();
     other[version + 15] = b'7';
     for (name, contents, words) in [
@@ -179,7 +179,7 @@ fn runs_that_are_damaged() {
         (
             "other",
             &other,
-            "other: this is a run file of version 7, and this program reads the versions 2 and 3",
+            "other: this is a run file of version 7, and this program reads the versions 2 to 4",
         ),
         (
             "none",

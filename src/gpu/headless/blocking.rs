@@ -5,7 +5,7 @@ use wgpu::Adapter;
 use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::lit_recording::EachSample;
+use crate::gpu::headless::lit_recording::{EachSample, LitPart};
 use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch};
 use crate::gpu::headless::timer::TraceTime;
@@ -231,6 +231,21 @@ impl Headless {
         callbacks: (&mut EachSample<'_>, &mut Watch<'_>),
     ) -> Result<(), GpuError> {
         block_on(self.record_lit_async(scene, view, settings, samples, callbacks))
+    }
+
+    /// Records samples like [`Headless::record_lit`], in a part of the film. Nothing is recorded if there is no such part.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::record_lit`].
+    pub fn record_lit_part(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        part_and_samples: (LitPart, &[u32]),
+        callbacks: (&mut EachSample<'_>, &mut Watch<'_>),
+    ) -> Result<(), GpuError> {
+        block_on(self.record_lit_part_async(scene, view, settings, part_and_samples, callbacks))
     }
 
     /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels

@@ -48,6 +48,22 @@ impl Headless {
         view: &View<'_>,
         settings: &RenderSettings,
         samples: &[u32],
+        callbacks: (&mut EachSample<'_>, &mut Watch<'_>),
+    ) -> Result<(), GpuError> {
+        let part = LitPart::Middle;
+        self.record_lit_part_async(scene, view, settings, (part, samples), callbacks).await
+    }
+
+    /// Records a part of a lit picture like [`Headless::record_lit_part`], without blocking the thread.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::record_lit`].
+    pub async fn record_lit_part_async(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        (part, samples): (LitPart, &[u32]),
         (each, watch): (&mut EachSample<'_>, &mut Watch<'_>),
     ) -> Result<(), GpuError> {
         if settings.integrator.is_primary() {
@@ -58,7 +74,7 @@ impl Headless {
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let side = if lighting.mode.is_studio() { longest_side(&lighting) } else { LONGEST_SIDE };
-        let tile = middle_of(&view.film, side);
+        let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
         let spaces = [scenes.all, scenes.occluders].map(SceneBuffers::space);
         let given = inputs(spaces, view, settings, &lighting, tile);
         let mut keep: Box<dyn Keep> = if lighting.mode.is_studio() {
@@ -144,10 +160,67 @@ impl Work<'_> {
     }
 }
 
-/// The rectangle in the middle of a film that is recorded.
-fn middle_of(film: &Film, longest_side: u32) -> Tile {
-    let film = [film.width(), film.height()];
-    let size = film.map(|side| side.min(longest_side));
-    let origin = [0, 1].map(|axis| (film[axis] - size[axis]) / 2);
-    Tile { origin, size, in_target: [0, 0] }
+/// The part of a lit picture of which samples are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LitPart {
+    /// A rectangle in the middle.
+    Middle,
+    /// A rectangle with half the sides, at a place that follows from this seed; nothing if [`LitPart::Middle`] is the whole
+    /// picture. Every pixel has about the same chance, those at the edges a larger one.
+    Random(u32),
+}
+
+impl LitPart {
+    /// The rectangle of a film, if the one in the middle has sides of at most `longest_side`.
+    fn tile(self, film: &Film, longest_side: u32) -> Option<Tile> {
+        let film = [film.width(), film.height()];
+        let middle = film.map(|side| side.min(longest_side));
+        let (size, origin) = match self {
+            Self::Middle => (middle, [0, 1].map(|axis| (film[axis] - middle[axis]) / 2)),
+            Self::Random(_) if middle == film => return None,
+            Self::Random(seed) => {
+                let size = middle.map(|side| side.div_ceil(2));
+                let first = |axis: usize| {
+                    // As if the rectangle could stick out, so that it covers edges as often as the middle.
+                    let places = u64::from(film[axis]) + u64::from(size[axis]) - 1;
+                    let random = u64::from(pcg(seed.wrapping_mul(2).wrapping_add(axis as u32)));
+                    let end = (random * places) >> 32;
+                    let first = (end + 1).saturating_sub(size[axis].into());
+                    first.min((film[axis] - size[axis]).into()) as u32
+                };
+                (size, [first(0), first(1)])
+            }
+        };
+        Some(Tile { origin, size, in_target: [0, 0] })
+    }
+}
+
+/// The hash function PCG of one round (M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020).
+fn pcg(input: u32) -> u32 {
+    let state = input.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn random_parts_lie_in_the_film_and_leave_no_pixel_out() {
+        let film = Film::new(300, 7).unwrap();
+        let mut seen = vec![0_u32; 300];
+        for seed in 0..4000 {
+            let Tile { origin, size, .. } = LitPart::Random(seed).tile(&film, 64).unwrap();
+            assert_eq!((size, LitPart::Random(seed).tile(&film, 300)), ([32, 4], None));
+            assert!(origin[0] + size[0] <= 300 && origin[1] + size[1] <= 7);
+            (origin[0]..origin[0] + size[0]).for_each(|column| seen[column as usize] += 1);
+        }
+        // A column is expected in 32 of 331 rectangles.
+        assert!(seen.iter().all(|count| *count > 300), "{seen:?}");
+        assert_eq!(LitPart::Random(9).tile(&film, 64), LitPart::Random(9).tile(&film, 64));
+        let Tile { origin, size, .. } = LitPart::Middle.tile(&film, 64).unwrap();
+        assert_eq!((origin, size), ([118, 0], [64, 7]));
+    }
 }

@@ -85,6 +85,25 @@ impl fmt::Display for LitViolation {
     }
 }
 
+/// The largest numbers of open stages and of undecided ones that are kept; all are counted.
+pub(super) const OPEN_KEPT: usize = 32;
+
+/// A stage of which several results are legal, or whose bounds are so wide that its check says little.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LitOpen {
+    /// Column and row in the film, from the top left.
+    pub pixel: [u32; 2],
+    /// Index of the sample in its pixel.
+    pub sample: u32,
+    /// Index of the surface along the ray or the path, from 0.
+    pub surface: u32,
+    /// The stage.
+    pub stage: LitStage,
+    /// Whether its check says little; otherwise the device gave one of several legal results.
+    pub is_undecided: bool,
+}
+
 /// The number of stages that were judged, by verdict. A stage counts once for each sample
 /// that passes through it; in a studio, a search counts once for each light and each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -131,6 +150,10 @@ pub struct LitCertificate {
     pub violation_count: u64,
     /// The first violations, in the order of samples, surfaces and pixels.
     pub violations: Vec<LitViolation>,
+    /// The first stages that are open, and the first that are undecided.
+    pub open: Vec<LitOpen>,
+    /// First column and row, width and height of the rectangles of the film in which samples were taken.
+    pub rectangles: Vec<[u32; 4]>,
     /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
     pub upload: Option<LitUploadError>,
     /// How far the numbers of decided stages are from the middle of their bounds.

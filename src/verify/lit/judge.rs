@@ -1,6 +1,6 @@
 //! The verdict about a stage, and how it is found and counted.
 
-use super::certificate::{LitCertificate, LitStage, LitViolation, StageCounts};
+use super::certificate::{LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT, StageCounts};
 use super::expected::{Expected, Mismatch};
 use super::kernel::Address;
 use super::recording::PathState;
@@ -60,6 +60,10 @@ impl LitCertificate {
         self.is_studio |= part.is_studio;
         self.violation_count += part.violation_count;
         self.upload = self.upload.take().or(part.upload);
+        part.open.into_iter().for_each(|open| self.add_open(open));
+        let new = part.rectangles.into_iter().filter(|new| !self.rectangles.contains(new));
+        let new: Vec<_> = new.collect();
+        self.rectangles.extend(new);
         let room = KEPT.saturating_sub(self.violations.len());
         self.violations.extend(part.violations.into_iter().take(room));
     }
@@ -76,26 +80,52 @@ impl StageCounts {
     }
 }
 
-/// The counts of one kind of stages.
-pub(in crate::verify) type CountsOf = fn(&mut LitCertificate) -> &mut StageCounts;
-
 impl LitCertificate {
+    /// The counts of the stages among which a stage counts: along paths, its parts count as one.
+    fn counts(&mut self, stage: LitStage) -> &mut StageCounts {
+        match stage {
+            LitStage::Start => &mut self.start,
+            LitStage::Extend => &mut self.extend,
+            LitStage::Vertex | LitStage::Radiance | LitStage::Light | LitStage::Scatter => {
+                &mut self.scatter
+            }
+            LitStage::Occlude => &mut self.occlude,
+            LitStage::Surface => &mut self.surface,
+            LitStage::Shadow => &mut self.shadow,
+            LitStage::Illuminate => &mut self.illuminate,
+            LitStage::Ambient => &mut self.ambient,
+            LitStage::Gather => &mut self.gather,
+            LitStage::Accumulate => &mut self.accumulate,
+        }
+    }
+
+    fn add_open(&mut self, open: LitOpen) {
+        let of_kind = self.open.iter().filter(|other| other.is_undecided == open.is_undecided);
+        if of_kind.count() < OPEN_KEPT {
+            self.open.push(open);
+        }
+    }
+
     /// Records the verdict about a stage.
     pub(in crate::verify) fn note(
         &mut self,
-        counts: CountsOf,
+        stage: LitStage,
         Address { pixel, sample, surface }: Address,
         result: Result<Judged, Mismatch>,
     ) {
         match result {
             Ok(Judged { verdict, deviations }) => {
-                counts(self).count(&verdict);
+                self.counts(stage).count(&verdict);
+                let is_undecided = matches!(verdict, StageOutcome::Undecided);
+                if is_undecided || matches!(verdict, StageOutcome::Open) {
+                    self.add_open(LitOpen { pixel, sample, surface, stage, is_undecided });
+                }
                 for (stage, what, deviation) in deviations {
                     self.deviations.add(stage.name(), what, deviation);
                 }
             }
             Err(mismatch) => {
-                counts(self).checked += 1;
+                self.counts(stage).checked += 1;
                 let (stage, message) = (mismatch.stage, mismatch.to_string());
                 self.violations.push(LitViolation { pixel, sample, surface, stage, message });
             }

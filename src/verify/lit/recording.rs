@@ -42,6 +42,12 @@ impl LitInputs {
         [self.origin[0] + (index % width) as u32, self.origin[1] + (index / width) as u32]
     }
 
+    /// First column and row, width and height of the rectangle.
+    pub(in crate::verify) fn rectangle(&self) -> [u32; 4] {
+        let ([x, y], [width, height]) = (self.origin, self.size);
+        [x, y, width, height]
+    }
+
     /// The number of pixels in the rectangle.
     pub(in crate::verify) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
@@ -87,6 +93,22 @@ impl PathState {
 
     /// In a studio, the slot of the normal, whose last word has a bit for each hidden light.
     pub const NORMAL: usize = 6;
+
+    /// The state once the visibility of its light is known. A light that is occluded is not searched again.
+    pub(in crate::verify) fn with_visibility(mut self, open: u32) -> Self {
+        if open != self.bits(slot::PENDING) {
+            self.slots[slot::PENDING][3] = open;
+            self.slots[slot::SHADOW][3] = 0;
+        }
+        self
+    }
+
+    /// The state in a studio once the light of some lights is added, with the bits that are left of them.
+    pub(in crate::verify) fn with_light(mut self, radiance: [u32; 4], left: u32) -> Self {
+        self.slots[slot::RADIANCE] = radiance;
+        self.slots[slot::NORMAL][3] = left;
+        self
+    }
 
     pub(in crate::verify) fn vector(&self, slot: usize) -> [f32; 3] {
         let [x, y, z, _] = self.slots[slot];

@@ -33,7 +33,11 @@ impl Checker<'_> {
         let upload = upload::check(self.scene, &self.candidates, given)
             .and_then(|()| recording.check_size())
             .err();
-        let mut certificate = LitCertificate { upload, ..LitCertificate::default() };
+        let mut certificate = LitCertificate {
+            upload,
+            rectangles: vec![given.rectangle()],
+            ..LitCertificate::default()
+        };
         if certificate.upload.is_some() {
             return certificate;
         }
@@ -69,29 +73,25 @@ impl PathCheck<'_> {
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
         let started = start::judge(self.inputs, &self.model, address, &state);
-        part.note(|part| &mut part.start, address, started);
+        part.note(LitStage::Start, address, started);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
-            let mut after = stage.scattered[index];
+            let after = stage.scattered[index];
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
-                part.note(|part| &mut part.extend, address, self.extend(&state, last, hit, legal));
-                part.note(
-                    |part| &mut part.scatter,
-                    address,
-                    self.scatter(address, &state, hit, &after),
-                );
+                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
+                part.note(LitStage::Scatter, address, self.scatter(address, &state, hit, &after));
                 last = Some(hit);
             } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
-                part.note(|part| &mut part.scatter, address, Err(mismatch));
+                part.note(LitStage::Scatter, address, Err(mismatch));
             }
             let open = f32::from_bits(stage.open[index]);
             let is_searched = surface < self.inputs.max_surfaces
                 && self.inputs.lighting.source_count > 0
                 && after.number(slot::SHADOW) > 0.0;
             if is_searched {
-                part.note(|part| &mut part.occlude, address, self.occlude(&after, open));
+                part.note(LitStage::Occlude, address, self.occlude(&after, open));
             } else if stage.open[index] != after.bits(slot::PENDING) {
                 let words = format!("{open:?}, without a search");
                 let fail = Expected::default().fail(
@@ -99,22 +99,17 @@ impl PathCheck<'_> {
                     "the visibility of the light",
                     words,
                 );
-                part.note(|part| &mut part.occlude, address, Err(fail));
+                part.note(LitStage::Occlude, address, Err(fail));
             }
-            if stage.open[index] != after.bits(slot::PENDING) {
-                // A light that is occluded is not searched again.
-                after.slots[slot::PENDING][3] = stage.open[index];
-                after.slots[slot::SHADOW][3] = 0;
-            }
-            state = after;
+            state = after.with_visibility(stage.open[index]);
         }
         if state.has(flag::ALIVE) {
             let words = "the path was not followed to its end".to_owned();
             let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
-            part.note(|part| &mut part.extend, address, Err(fail));
+            part.note(LitStage::Extend, address, Err(fail));
         }
         part.note(
-            |part| &mut part.accumulate,
+            LitStage::Accumulate,
             address,
             film::check(radiance_so_far(&state), &state, &recorded.film, index),
         );

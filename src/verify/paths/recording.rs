@@ -38,7 +38,7 @@ pub struct RecordedSurface {
 
 impl PathRecording {
     /// Whether every list has an element for each pixel of the rectangle.
-    pub(super) fn check_size(&self) -> Result<(), LitUploadError> {
+    pub(in crate::verify) fn check_size(&self) -> Result<(), LitUploadError> {
         let pixels = self.given.pixels();
         let is_whole = |length: usize| length as u64 == pixels;
         let are_whole = self.samples.iter().all(|sample| {

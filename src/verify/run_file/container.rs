@@ -5,8 +5,10 @@
 //! checks, so that malicious files could make it panic. Therefore only its types for the header and their validation
 //! are used.
 
+use std::cell::RefCell;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use safetensors::tensor::{Metadata, TensorInfo};
 use serde::Serialize;
@@ -26,6 +28,9 @@ const LENGTH: usize = size_of::<u64>();
 /// The placeholder for the digest while it is computed.
 const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
+/// The number of bytes that are read at a time.
+const PIECE: u64 = 1 << 20;
+
 /// The metadata key of the file's digest.
 const DIGEST: &str = "sha256";
 
@@ -40,6 +45,24 @@ struct Header<'a> {
     arrays: BTreeMap<&'a str, TensorInfo>,
 }
 
+/// Gives so many bytes of a reader to a sink, in pieces.
+pub(super) fn in_pieces(
+    source: &mut (impl Read + ?Sized),
+    count: u64,
+    sink: &mut Sink<'_>,
+) -> io::Result<()> {
+    let next = |left: u64| left.min(PIECE) as usize;
+    let mut piece = vec![0; next(count)];
+    let mut left = count;
+    while left > 0 {
+        let piece = &mut piece[..next(left)];
+        source.read_exact(piece)?;
+        sink(piece)?;
+        left -= piece.len() as u64;
+    }
+    Ok(())
+}
+
 /// A sink that adds bytes to a digest.
 pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<()> {
     |bytes| {
@@ -51,9 +74,12 @@ pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<
 /// Writes a file with metadata texts and arrays.
 pub(super) fn write(
     mut metadata: BTreeMap<String, String>,
-    arrays: &[Array<'_>],
+    mut arrays: Vec<Array<'_>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    // The widest numbers come first, so that all are aligned.
+    arrays.sort_by_key(|array| Reverse(array.dtype.bitsize()));
+    let arrays = &arrays[..];
     metadata.insert(FORMAT.to_owned(), VERSION.to_owned());
     metadata.insert(DIGEST.to_owned(), NO_DIGEST.to_owned());
     let mut end = 0;
@@ -61,7 +87,7 @@ pub(super) fn write(
         let start = end;
         end += array.bytes();
         let (dtype, shape) = (array.dtype, array.shape.clone());
-        (array.name, TensorInfo { dtype, shape, data_offsets: (start, end) })
+        (&*array.name, TensorInfo { dtype, shape, data_offsets: (start, end) })
     });
     let header = Header { metadata: &metadata, arrays: infos.collect() };
     let mut header = serde_json::to_vec(&header)?;
@@ -90,10 +116,17 @@ fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
     Some(offset + before.len())
 }
 
+/// The bytes of a file, which may be too many for the memory.
+pub(super) trait Source: Read + Seek {}
+
+impl<S: Read + Seek> Source for S {}
+
 /// A file that is complete and unaltered. Its contents may still be invalid.
 pub(super) struct Container<'a> {
     header: Metadata,
-    arrays: &'a [u8],
+    source: RefCell<&'a mut dyn Source>,
+    /// The position of the first array.
+    start: u64,
 }
 
 fn text<'a>(header: &'a Metadata, key: &str) -> Option<&'a str> {
@@ -105,44 +138,69 @@ pub(super) fn contradiction(message: impl Into<String>) -> RunFileError {
 }
 
 impl<'a> Container<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, RunFileError> {
-        let (length, rest) = bytes.split_first_chunk::<LENGTH>().ok_or(RunFileError::NotRun)?;
-        if !rest.starts_with(START) {
+    /// Opens a file, and computes the digest of all its bytes.
+    pub(super) fn open(source: &'a mut dyn Source) -> Result<Self, RunFileError> {
+        let found = source.seek(SeekFrom::End(0))?;
+        source.rewind()?;
+        let mut first = [0; LENGTH + START.len()];
+        if found < first.len() as u64 {
+            return Err(RunFileError::NotRun);
+        }
+        source.read_exact(&mut first)?;
+        let (length, start) = first.split_first_chunk::<LENGTH>().ok_or(RunFileError::NotRun)?;
+        if start != START {
             return Err(RunFileError::NotRun);
         }
         let truncated = |expected: u64| RunFileError::Truncated {
-            found: bytes.len() as u64,
+            found,
             expected: expected.saturating_add(LENGTH as u64),
         };
         let header_length = u64::from_le_bytes(*length);
-        let (header, arrays) = usize::try_from(header_length)
-            .ok()
-            .and_then(|length| rest.split_at_checked(length))
-            .ok_or_else(|| truncated(header_length))?;
-        let parsed: Metadata = serde_json::from_slice(header)
+        let beyond = found - LENGTH as u64;
+        if header_length > beyond {
+            return Err(truncated(header_length));
+        }
+        // A header that is shorter than its first bytes is not valid JSON.
+        let mut header = start.to_vec();
+        header.truncate(header_length as usize);
+        let rest = header_length.saturating_sub(START.len() as u64);
+        source.take(rest).read_to_end(&mut header)?;
+        let parsed: Metadata = serde_json::from_slice(&header)
             .map_err(|error| contradiction(format!("its header cannot be read: {error}")))?;
         match text(&parsed, FORMAT) {
             None => return Err(RunFileError::NotRun),
             Some(version) if READ.contains(&version) => {}
             Some(other) => return Err(RunFileError::Version { found: shortened(other) }),
         }
-        if parsed.data_len() > arrays.len() {
-            return Err(truncated(header_length.saturating_add(parsed.data_len() as u64)));
+        let (promised, arrays) = (parsed.data_len() as u64, beyond - header_length);
+        if promised > arrays {
+            return Err(truncated(header_length.saturating_add(promised)));
         }
         let digest = text(&parsed, DIGEST).unwrap_or_default();
-        let offset = digest_in(header, digest).filter(|_| digest.len() == NO_DIGEST.len());
-        let offset = LENGTH + offset.ok_or(RunFileError::Altered)?;
-        let mut found = Sha256::new();
-        found.update(&bytes[..offset]);
-        found.update(NO_DIGEST);
-        found.update(&bytes[offset + digest.len()..]);
-        if hex(found) != digest {
+        let offset = digest_in(&header, digest).filter(|_| digest.len() == NO_DIGEST.len());
+        let offset = offset.ok_or(RunFileError::Altered)?;
+        let mut sum = Sha256::new();
+        sum.update(length);
+        sum.update(&header[..offset]);
+        sum.update(NO_DIGEST);
+        sum.update(&header[offset + digest.len()..]);
+        in_pieces(source, arrays, &mut sink_into(&mut sum))?;
+        if hex(sum) != digest {
             return Err(RunFileError::Altered);
         }
-        if parsed.data_len() < arrays.len() {
+        if promised < arrays {
             return Err(contradiction("there are bytes after the last array"));
         }
-        Ok(Self { header: parsed, arrays })
+        let start = LENGTH as u64 + header_length;
+        Ok(Self { header: parsed, source: RefCell::new(source), start })
+    }
+
+    /// Writes the bytes of an array to a sink.
+    pub(super) fn emit(&self, name: &str, sink: &mut Sink<'_>) -> Result<(), RunFileError> {
+        let (start, end) = self.info(name)?.data_offsets;
+        let mut source = self.source.borrow_mut();
+        source.seek(SeekFrom::Start(self.start + start as u64))?;
+        Ok(in_pieces(&mut **source, (end - start) as u64, sink)?)
     }
 
     /// All metadata texts with their keys, in no particular order.
@@ -152,6 +210,12 @@ impl<'a> Container<'a> {
 
     pub(super) fn text(&self, key: &str) -> Result<&str, RunFileError> {
         text(&self.header, key).ok_or_else(|| contradiction(format!("the text `{key}` is missing")))
+    }
+
+    /// A text that is a whole number.
+    pub(super) fn whole(&self, key: &str) -> Result<u32, RunFileError> {
+        let words = || contradiction(format!("the text `{key}` is not a valid number"));
+        self.text(key)?.parse().map_err(|_| words())
     }
 
     pub(super) fn has_text(&self, key: &str) -> bool {
@@ -188,15 +252,21 @@ impl<'a> Container<'a> {
                 E::DTYPE
             )));
         }
-        let (start, end) = info.data_offsets;
-        let bytes = self.arrays.get(start..end).unwrap_or_default();
+        let memory =
+            |bytes: usize| RunFileError::Memory { name: name.to_owned(), bytes: bytes as u64 };
+        let length = info.data_offsets.1 - info.data_offsets.0;
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(length).map_err(|_| memory(length))?;
+        self.emit(name, &mut |piece| {
+            bytes.extend_from_slice(piece);
+            Ok(())
+        })?;
         let item = |i: usize| {
             let item = &bytes[i * N * E::WIDTH..];
             std::array::from_fn(|column| E::read(&item[column * E::WIDTH..]))
         };
         // The header's validation has ensured that shape and length agree.
-        try_map(bytes.len() / (N * E::WIDTH), item)
-            .map_err(|_| RunFileError::Memory { name: name.to_owned(), bytes: bytes.len() as u64 })
+        try_map(length / (N * E::WIDTH), item).map_err(|_| memory(length))
     }
 
     /// The items of an array with one number each; see [`Container::items`].

@@ -24,19 +24,65 @@
 //! | `color`, `normal` | f32 (H, W, 3) | layers of the picture |
 //! | `depth`, `id` | f32, u32 (H, W) | layers of the picture |
 //! | `rendered_color`, `rendered_normal`, `rendered_depth`, `rendered_id` | like those | layers of the picture rendered without recording, if it differs |
+//! | `surfaces` | f32 (k, 5) | surface properties: material (0 Lambert, 1 conductor, 2 dielectric, 3 emissive), three parameters, and opacity; absent if they are the default |
+//! | `surface_index` | u32 (n,) | indices into them; absent if all spheres have the first |
+//!
+//! Of a lit picture a file also has what was requested and what the device was given:
+//!
+//! | array | type, shape | |
+//! |---|---|---|
+//! | `settings` | f64 (…,) | numbers of [`RenderSettings`](crate::RenderSettings) in the order of its fields, with 0 or 1 before what is optional; without lights and the sky's image |
+//! | `lights` | f64 (…, 9) | kind (0 head, 1 directional, 2 point, 3 sphere), frame (0 world, 1 camera), position or direction, colour, size |
+//! | `sky_texels` | f32 (h, w, 3) | the image of the sky |
+//! | `sky_uploaded`, `sky_shares` | f32 (hw, 3), f32 (…,) | the image on the device and its tables, if they differ |
+//! | `lit_view`, `lit_advance` | like `view`, `advance` | |
+//! | `occluders` | f32 (2, 3) | `occluders` of [`LitInputs`](super::LitInputs) |
+//! | `lighting`, `filter` | u32 (45,), f32 (257,) | parameters of the lighting on the device, as bits; the table of the pixel filter |
+//! | `tables`, `emitters` | u32 (…, 4) | tables on the device, as bits |
+//!
+//! and for each sample i from 0 on, with P pixels in its rectangle and S surfaces, the arrays `sample_i_…`. Of each
+//! surface, pixels are left out whose ray has ended before it; K is the sum of all others:
+//!
+//! | array | type, shape | |
+//! |---|---|---|
+//! | `place` | u32 (5,) | index of the sample in its pixels; first column and row, width and height of the rectangle |
+//! | `start` | u32 (P, 9, 4) | the states of the rays at the camera, as bits |
+//! | `before`, `after` | u32 (P, 3, 4) | the sums of the pixels without and with the sample, as bits |
+//! | `counts` | u32 (S,) | the number of pixels of each surface |
+//! | `pixels` | u32 (K,) | their indices in the rectangle |
+//! | `hits`, `states` | u32 (K, 4), (K, 9, 4) | the hits, and the states after shading, as bits |
+//! | `open` | u32 (K,) | along paths: the visibility of the light, as bits |
+//! | `hidden`, `radiance`, `left` | u32 (K, B), (K, B, 4), (K, B) | in studios: for each 32 lights and each 32 directions the hidden ones, the radiance with the others, and the bits that are left |
+//!
+//! and, if they were made,
+//!
+//! | array | type, shape | |
+//! |---|---|---|
+//! | `noisy_color`, `noisy_normal`, `noisy_depth`, `noisy_albedo`, `noisy_variance` | f32 (h, w, 3), (h, w) | the small picture that the device denoised |
+//! | `denoised_color` | f32 (h, w, 3) | what it made of it |
+//! | `shown` | u8 (H, W, 3) | the lit picture as people see it, in sRGB; it is not judged |
 //!
 //! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the whole
 //! file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array `spheres`;
 //! `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also rendered without
-//! recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. The same run gives the same file,
-//! to the byte.
+//! recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. With light, `lit_samples` is the
+//! number of samples, at most [`MAX_SAMPLES`]; `max_surfaces` is that of [`LitInputs`](super::LitInputs); and
+//! `request_sha256` is a digest of what was requested: scene, camera, settings, lights and sky. The same run gives the
+//! same file, to the byte.
 //!
 //! Input from the host is validated like scenes, films and cameras. The results of the device are kept as they are,
 //! even if they are wrong, because the checker judges them.
 
 mod container;
+mod lit_inputs;
+mod lit_kept;
+mod lit_read;
+mod lit_samples;
 mod numbers;
+mod pictures;
 mod read;
+mod settings;
+mod surfaces;
 mod write;
 
 use std::collections::BTreeMap;
@@ -48,14 +94,17 @@ use crate::scene::Scene;
 use container::sink_into;
 use numbers::Array;
 
-pub use read::read;
-pub use write::write;
+pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
+pub use pictures::ShownPicture;
+pub use read::{RunFile, read};
+pub use write::{Extras, write, write_with};
 
-/// The version of the format that this crate writes. It also reads version 2, which has no rays of shading.
-pub const VERSION: &str = "3";
+/// The version of the format that this crate writes. It also reads versions 2 and 3: version 3 has no light and no
+/// properties of surfaces, and version 2 also no rays of shading.
+pub const VERSION: &str = "4";
 
 /// The versions that this crate reads.
-const READ: [&str; 2] = ["2", VERSION];
+const READ: [&str; 3] = ["2", "3", VERSION];
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
@@ -127,12 +176,18 @@ pub enum RunFileError {
     },
     /// The file has another version of the format.
     #[error(
-        "this is a run file of version {found}, and this program reads the versions 2 and {VERSION}; \
+        "this is a run file of version {found}, and this program reads the versions 2 to {VERSION}; \
          use the program that wrote it"
     )]
     Version {
         /// The version of the file.
         found: String,
+    },
+    /// The file cannot be read.
+    #[error("the run file cannot be read: {message}")]
+    Unreadable {
+        /// What the system says.
+        message: String,
     },
     /// The file is not what was written.
     #[error(
@@ -153,6 +208,12 @@ pub enum RunFileError {
         /// Size of the array in bytes.
         bytes: u64,
     },
+}
+
+impl From<std::io::Error> for RunFileError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Unreadable { message: error.to_string() }
+    }
 }
 
 /// The SHA-256 digest of the spheres of a scene, each as four little-endian f32, in hexadecimal.

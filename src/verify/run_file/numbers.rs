@@ -1,5 +1,6 @@
 //! Arrays of numbers as little-endian bytes.
 
+use std::borrow::Cow;
 use std::io;
 
 use safetensors::Dtype;
@@ -66,7 +67,7 @@ type Emit<'a> = dyn Fn(&mut Sink<'_>) -> io::Result<()> + 'a;
 
 /// An array to be written; its bytes are generated as they are needed.
 pub(super) struct Array<'a> {
-    pub(super) name: &'static str,
+    pub(super) name: Cow<'static, str>,
     pub(super) dtype: Dtype,
     pub(super) shape: Vec<usize>,
     emit: Box<Emit<'a>>,
@@ -91,7 +92,16 @@ impl<'a> Array<'a> {
         };
         let columns = (N > 1).then_some(N);
         let shape = shape.iter().copied().chain(columns).collect();
-        Self { name, dtype: E::DTYPE, shape, emit: Box::new(emit) }
+        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
+    }
+
+    /// An array whose bytes a function writes.
+    pub(super) fn emitted<E: Number>(
+        name: String,
+        shape: Vec<usize>,
+        emit: impl Fn(&mut Sink<'_>) -> io::Result<()> + 'a,
+    ) -> Self {
+        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
     }
 
     /// The array of spheres, which is also the input of the scene's digest.

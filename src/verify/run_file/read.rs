@@ -1,10 +1,14 @@
 //! Reading of run files.
 
+use std::io::{Cursor, Read, Seek};
+
 use glam::DVec3;
 
 use super::container::{Container, contradiction};
 use super::numbers::Flag;
-use super::{LIMIT, Provenance, Run, RunFileError, scene_sha256};
+use super::pictures::{self, ShownPicture};
+use super::surfaces::with_surfaces;
+use super::{LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_read, scene_sha256};
 use crate::camera::film::{Film, YAxis};
 use crate::camera::{CameraKind, CameraVectors};
 use crate::image::Image;
@@ -13,16 +17,77 @@ use crate::parallel::try_map;
 use crate::render::{PrimarySettings, Shading};
 use crate::scene::{Colors, Scene};
 use crate::text::shortened;
-use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+use crate::verify::{LitRecording, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay};
 
-/// Reads a run file.
+/// A run file that is open: complete and unaltered, but perhaps with contents that are not valid.
+///
+/// Arrays are read when they are asked for, and light sample by sample, so that a file may be larger than the memory.
+pub struct RunFile<'a> {
+    file: Container<'a>,
+}
+
+impl std::fmt::Debug for RunFile<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RunFile").finish_non_exhaustive()
+    }
+}
+
+impl<'a> RunFile<'a> {
+    /// Opens a run file and reads all of it once, for its digest.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read, is not a run file, has another version, or was altered.
+    pub fn open<S: Read + Seek>(source: &'a mut S) -> Result<Self, RunFileError> {
+        Ok(Self { file: Container::open(source)? })
+    }
+
+    /// Reads the scene and the picture by one ray for each pixel.
+    ///
+    /// # Errors
+    /// Returns an error if scene, film, camera or settings are not valid.
+    pub fn run(&self) -> Result<Run, RunFileError> {
+        let Self { file } = self;
+        Ok(Run { scene: scene(file)?, recording: recording(file)?, provenance: provenance(file)? })
+    }
+
+    /// Reads the samples of the lit picture, one after the other, and calls `each` with a recording of every one, as
+    /// [`Headless::record_lit`](crate::gpu::Headless::record_lit) does. `run` is what [`RunFile::run`] returns. Returns
+    /// whether the file has light; files of versions before 4 have none.
+    ///
+    /// # Errors
+    /// Returns an error if what was requested of the lighting or the shape of a sample is not valid.
+    pub fn light(
+        &self,
+        run: &Run,
+        each: &mut dyn FnMut(LitRecording<'_>),
+    ) -> Result<bool, RunFileError> {
+        lit_read::each_sample(&self.file, &run.scene, &run.recording, each)
+    }
+
+    /// Reads the noisy picture that the device denoised, and what it made of it; `None` if the file has none.
+    ///
+    /// # Errors
+    /// Returns an error if their shapes are not valid.
+    pub fn denoised(&self) -> Result<Option<[Image; 2]>, RunFileError> {
+        pictures::denoised(&self.file)
+    }
+
+    /// Reads the lit picture that people are shown; `None` if the file has none.
+    ///
+    /// # Errors
+    /// Returns an error if its shape is not valid.
+    pub fn shown(&self) -> Result<Option<ShownPicture>, RunFileError> {
+        pictures::shown(&self.file)
+    }
+}
+
+/// Reads the scene and the picture by one ray for each pixel from a run file in memory.
 ///
 /// # Errors
 /// Returns an error if the bytes are not a run file, have another version, or were altered; or if scene, film, camera
 /// or settings are not valid.
 pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
-    let file = Container::open(bytes)?;
-    Ok(Run { scene: scene(&file)?, recording: recording(&file)?, provenance: provenance(&file)? })
+    RunFile::open(&mut Cursor::new(bytes))?.run()
 }
 
 fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
@@ -30,7 +95,8 @@ fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
     let count = file.shape("spheres")?.first().copied().unwrap_or_default();
     let spheres = file.items::<f32, 4>("spheres", &[count])?;
     let colors = colors(file, count)?;
-    let scene = Scene::from_frame(DVec3::from(origin), spheres, colors.into())
+    let appearance = with_surfaces(file, colors.into(), count)?;
+    let scene = Scene::from_frame(DVec3::from(origin), spheres, appearance)
         .map_err(|error| contradiction(format!("the scene: {error}")))?;
     if file.text("scene_sha256")? != scene_sha256(&scene) {
         return Err(contradiction("`scene_sha256` is not the digest of the spheres"));
@@ -58,9 +124,6 @@ fn colors(file: &Container<'_>, spheres: usize) -> Result<Colors, RunFileError> 
 fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     let film = film(file)?;
     let shape = [film.height() as usize, film.width() as usize];
-    let [origin, right, up, forward, numbers, scene_min, scene_max] =
-        file.fixed::<f32, 3, 7>("view")?;
-    let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
     let [background] = file.fixed::<f32, 3, 1>("background")?;
     let primary = PrimarySettings {
         shading: named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?,
@@ -70,16 +133,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     };
     Ok(Recording {
         camera: camera(file)?,
-        uploaded: UploadedView {
-            origin,
-            advance,
-            right,
-            up,
-            forward,
-            numbers,
-            scene_min,
-            scene_max,
-        },
+        uploaded: lit_inputs::view(file, ["view", "advance"])?,
         film,
         primary,
         pixels: pixels(file, &shape)?,

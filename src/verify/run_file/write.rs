@@ -3,13 +3,30 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use super::container;
+use super::lit_inputs::{LitArrays, view_numbers};
+use super::lit_read::SAMPLES;
+use super::lit_samples::LitSamples;
 use super::numbers::{Array, Flag};
-use super::{LIMIT, Provenance, scene_sha256};
+use super::pictures::{self, ShownPicture};
+use super::surfaces::surface_numbers;
+use super::{LIMIT, Provenance, container, scene_sha256};
+use crate::image::Image;
+use crate::scene::material::SurfaceProperties;
 use crate::scene::{Colors, Scene};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
-/// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 or 20
+/// What a run file may hold besides the picture by one ray for each pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras<'a> {
+    /// Samples of the lit picture.
+    pub light: Option<&'a LitSamples>,
+    /// A noisy picture, and what the device's denoiser made of it.
+    pub denoised: Option<[&'a Image; 2]>,
+    /// The lit picture as it is shown to people.
+    pub shown: Option<&'a ShownPicture>,
+}
+
+/// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 to 24
 /// for each sphere.
 ///
 /// # Errors
@@ -18,6 +35,23 @@ pub fn write(
     scene: &Scene,
     recording: &Recording,
     provenance: &Provenance,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    write_with(scene, recording, provenance, Extras::default(), out)
+}
+
+/// Writes a run file with what [`write()`] writes, and with the light of the picture. Each sample has 336 bytes for each
+/// pixel of its rectangle, and for each surface to which the pixel's ray is followed 168, or in studios 164 and 24 for
+/// each 32 lights or directions.
+///
+/// # Errors
+/// The same as for [`write()`]; and if the samples have another camera or film than the recording, or the noisy picture
+/// lacks a layer.
+pub fn write_with(
+    scene: &Scene,
+    recording: &Recording,
+    provenance: &Provenance,
+    Extras { light, denoised, shown }: Extras<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let Recording { camera, uploaded, film, primary, pixels, image, rendered } = recording;
@@ -57,15 +91,7 @@ pub fn write(
     let vectors = &camera.vectors;
     let numbers = vectors.numbers.into();
     let camera = [vectors.origin, vectors.right, vectors.up, vectors.forward, numbers];
-    let view = [
-        uploaded.origin,
-        uploaded.right,
-        uploaded.up,
-        uploaded.forward,
-        uploaded.numbers,
-        uploaded.scene_min,
-        uploaded.scene_max,
-    ];
+    let view = view_numbers(uploaded);
     let (origin, advance) = ([scene.origin()], [uploaded.advance]);
     let background = [primary.background];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
@@ -82,7 +108,10 @@ pub fn write(
         Colors::Rgba8(_) => (None, None),
     };
     let indices = indices.filter(|indices| !indices.is_empty());
-    // The widest numbers come first, so that all are aligned.
+    let appearance = scene.appearance();
+    let surfaces: Vec<[f32; 5]> = appearance.surfaces().iter().map(surface_numbers).collect();
+    let given = light.and_then(LitSamples::given);
+    let lit = given.map(LitArrays::new);
     let mut arrays = vec![
         Array::new("camera", &[5], &camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
@@ -134,5 +163,28 @@ pub fn write(
     arrays.push(Array::new("traced", &shape, pixels, is_traced));
     let is_shaded = |pixel: &TracedPixel| [Flag(pixel.shading_ray.is_some().into())];
     arrays.push(Array::new("shaded", &shape, pixels, is_shaded));
-    container::write(texts, &arrays, out)
+    let has_default = *appearance.surfaces() == [SurfaceProperties::default()];
+    if !has_default || appearance.surface_indices().is_some() {
+        arrays.push(Array::new("surfaces", &[surfaces.len()], &surfaces, |surface| *surface));
+    }
+    arrays.extend(
+        appearance.surface_indices().map(|indices| {
+            Array::new("surface_index", &[indices.len()], indices, |index| [*index])
+        }),
+    );
+    if let (Some(samples), Some(given), Some(lit)) = (light, given, &lit) {
+        if (&given.camera, &given.film) != (&recording.camera, film) {
+            return Err(io::Error::other("the light is that of another camera or film"));
+        }
+        lit.add_to(&mut arrays, &mut texts)?;
+        texts.insert(SAMPLES.to_owned(), samples.count().to_string());
+        arrays.extend(samples.arrays());
+    }
+    if let Some(denoised) = denoised {
+        pictures::add_denoised(denoised, &mut arrays)?;
+    }
+    if let Some(shown) = shown {
+        pictures::add_shown(shown, &mut arrays, &mut texts)?;
+    }
+    container::write(texts, arrays, out)
 }

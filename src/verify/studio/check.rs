@@ -11,7 +11,7 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::judge::{
-    CountsOf, Judged, StageOutcome, along_choices, judge_pixels, simple, unchanged,
+    Judged, StageOutcome, along_choices, judge_pixels, simple, unchanged,
 };
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
@@ -43,8 +43,12 @@ impl Checker<'_> {
         let upload = upload::check(self.scene, &self.candidates, given)
             .and_then(|()| recording.check_size())
             .err();
-        let mut certificate =
-            LitCertificate { upload, is_studio: true, ..LitCertificate::default() };
+        let mut certificate = LitCertificate {
+            upload,
+            is_studio: true,
+            rectangles: vec![given.rectangle()],
+            ..LitCertificate::default()
+        };
         if certificate.upload.is_some() {
             return certificate;
         }
@@ -71,7 +75,7 @@ impl StudioCheck<'_> {
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
         let started = start::judge(self.inputs, &self.model, address, &state);
-        part.note(|part| &mut part.start, address, started);
+        part.note(LitStage::Start, address, started);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -80,19 +84,18 @@ impl StudioCheck<'_> {
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
                 let result = self.extend(&state, last, hit, legal);
-                part.note(|part| &mut part.extend, address, result);
+                part.note(LitStage::Extend, address, result);
                 let (result, found) = self.surface(address, &state, hit, &after);
-                part.note(|part| &mut part.surface, address, result);
+                part.note(LitStage::Surface, address, result);
                 (met, last) = (found, Some(hit));
             } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
-                part.note(|part| &mut part.surface, address, Err(mismatch));
+                part.note(LitStage::Surface, address, Err(mismatch));
             }
             for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
                 for (batch, light) in (0..).zip(lights) {
                     let found = Light { kind, first: batch * BITS, light, index };
                     self.judge_light(address, met, &after, found, part);
-                    after.slots[slot::RADIANCE] = light.radiance[index];
-                    after.slots[slot::NORMAL][3] = light.left[index];
+                    after = after.with_light(light.radiance[index], light.left[index]);
                 }
             }
             state = after;
@@ -100,11 +103,11 @@ impl StudioCheck<'_> {
         if state.has(flag::ALIVE) {
             let words = "the ray was not followed to its end".to_owned();
             let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
-            part.note(|part| &mut part.extend, address, Err(fail));
+            part.note(LitStage::Extend, address, Err(fail));
         }
         let color = Vector::recorded(state.vector(slot::RADIANCE));
         let sums = film::check(color, &state, &recorded.film, index);
-        part.note(|part| &mut part.accumulate, address, sums);
+        part.note(LitStage::Accumulate, address, sums);
     }
 
     fn extend(
@@ -173,13 +176,13 @@ impl StudioCheck<'_> {
             None => {}
             Some(Met::Nothing | Met::Emitter) => {
                 if let Err(mismatch) = found.unlit(state) {
-                    part.note(|part| &mut part.illuminate, address, Err(mismatch));
+                    part.note(LitStage::Illuminate, address, Err(mismatch));
                 }
             }
             Some(Met::Surface) => {
-                let (searches, sums): (CountsOf, CountsOf) = match found.kind {
-                    Kind::Lights => (|part| &mut part.shadow, |part| &mut part.illuminate),
-                    Kind::Ambient => (|part| &mut part.ambient, |part| &mut part.gather),
+                let (searches, sums) = match found.kind {
+                    Kind::Lights => (LitStage::Shadow, LitStage::Illuminate),
+                    Kind::Ambient => (LitStage::Ambient, LitStage::Gather),
                 };
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);

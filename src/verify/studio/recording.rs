@@ -54,7 +54,7 @@ pub(super) const BITS: u32 = 32;
 
 impl StudioRecording {
     /// Whether every list has an element for each pixel of the rectangle, and every light and direction is in a list.
-    pub(super) fn check_size(&self) -> Result<(), LitUploadError> {
+    pub(in crate::verify) fn check_size(&self) -> Result<(), LitUploadError> {
         let pixels = self.given.pixels();
         let lighting = &self.given.lighting;
         let is_whole = |length: usize| length as u64 == pixels;

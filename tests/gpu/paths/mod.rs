@@ -14,7 +14,7 @@ use pinhole::{Film, View};
 
 use crate::light::scenes::LitView;
 use crate::lit::{is_found, is_legal, is_violated};
-use crate::{headless, trial};
+use crate::{headless, replayed, trial};
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
@@ -97,7 +97,9 @@ pub(crate) fn recorded(
 }
 
 fn certify(view: &LitView, recording: &PathRecording) -> LitCertificate {
-    Checker::new(&view.scene).unwrap().certify_paths(recording)
+    let certificate = Checker::new(&view.scene).unwrap().certify_paths(recording);
+    replayed::gives(&view.scene, LitRecording::Paths(recording), &certificate);
+    certificate
 }
 
 fn legal(view: &LitView) -> Result<(), Failed> {

@@ -13,6 +13,7 @@ use pinhole::verify::{Checker, LitCertificate, LitRecording, StudioRecording};
 use crate::headless;
 use crate::light::scenes::{LitView, studios};
 use crate::lit::{is_found, is_legal, is_violated};
+use crate::replayed;
 use crate::support::random_light;
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
@@ -86,7 +87,9 @@ fn record_from(
 }
 
 fn certify(view: &LitView, recording: &StudioRecording) -> LitCertificate {
-    Checker::new(&view.scene).unwrap().certify_studio(recording)
+    let certificate = Checker::new(&view.scene).unwrap().certify_studio(recording);
+    replayed::gives(&view.scene, LitRecording::Studio(recording), &certificate);
+    certificate
 }
 
 fn legal(view: &LitView) -> Result<(), Failed> {
