@@ -232,7 +232,9 @@ impl Source {
         };
         let options = DataOptions { radius: args.radius, ..DataOptions::default() };
         check_flags(format, &options)?;
-        Ok(Self { format, size, options, ..Self::of_scene(path) })
+        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
+        let source = Self { format, size, options, bricks, ..Self::of_scene(path) };
+        source.without_bricks("`bench`")
     }
 
     /// Reads the file, and the data files that it names.

@@ -244,7 +244,7 @@ mod tests {
             let p = p.normalize_or_zero() * f64::from(random(i, 3)).cbrt() * 70.0;
             [p.x as f32, p.y as f32, p.z as f32, 0.5]
         };
-        let lattice = |i: u32| [(i % 30) as f32, (i / 30 % 30) as f32, (i / 900) as f32, 0.5];
+        let lattice = |i: u32| [(i % 20) as f32, (i / 20 % 20) as f32, (i / 400) as f32, 0.5];
         let flat = |i: u32| [random(i, 0), -3.0, random(i, 1), 0.1];
         let kinds: [(Kind<'_>, usize); 5] =
             [(&cube, 3000), (&radii, 6000), (&ball, 9000), (&lattice, 8), (&flat, 1000)];

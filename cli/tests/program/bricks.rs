@@ -155,6 +155,8 @@ fn what_bricks_cannot_do_is_refused_with_a_reason() {
         ("render a.bricks -o out.png --certify", "--certify needs all spheres in memory"),
         ("render a.bricks --print-scene", "--print-scene needs all spheres in memory"),
         ("verify a.bricks", "`verify` needs all spheres in memory"),
+        #[cfg(feature = "gpu")]
+        ("bench a.bricks", "`bench` needs all spheres in memory"),
         ("sort a.bricks -o out.bricks", "name a data file"),
         ("sort a.npy -o out.npy", "extension .bricks"),
         ("sort a.npy -o a.npy", "extension .bricks"),
