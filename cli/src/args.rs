@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::bricks::SortArgs;
 use super::camera::CameraArgs;
 use super::certify::CertifyArgs;
 use super::data::format_parser;
@@ -50,6 +51,8 @@ pub(super) enum Command {
     Bench(BenchArgs),
     /// Render on many machines: divide pictures into parts, render each, see what is done, and join them
     Job(JobArgs),
+    /// Sort the spheres of a data file into compact bricks, for data that does not fit into memory
+    Sort(SortArgs),
     /// Write an example scene file into the current folder and render it
     Demo(DemoArgs),
     /// Write a file of generated spheres, for tests and measurements

@@ -83,7 +83,7 @@ pub(super) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     check(args)?;
     threads::start()?;
     let ids = array(&args.id, pixels::ids)?;
-    let source = Source::of_view(&args.path, &args.view)?;
+    let source = Source::of_view(&args.path, &args.view)?.without_bricks("`certify`")?;
     let input = source.with_size_of_data(ids.size).load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;

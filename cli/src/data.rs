@@ -45,6 +45,17 @@ impl DataOptions {
         options
     }
 
+    /// A flag about reading data that was given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--frame", self.frame.is_some()),
+            ("--radius", self.radius.is_some()),
+            ("--topology", self.topology.is_some()),
+            ("--columns", !self.columns.is_empty()),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
     /// Refuses options that do not apply to the format. The keys of a scene file have the same names as the flags, but
     /// without the `prefix`.
     pub(super) fn check(&self, format: &Format, prefix: &str) -> Result<(), String> {

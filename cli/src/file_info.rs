@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 
+use super::bricks;
 use super::data::{self, DataOptions, as_usage, format_parser};
 use super::failure::Failure;
 use super::file_info_text as text;
@@ -114,8 +115,14 @@ pub(super) struct SceneReport {
     pub(super) files: Vec<String>,
 }
 
+const BRICKS: input_format::Format = input_format::Format::Bricks;
+
 /// Describes the file.
 pub(super) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failure> {
+    if args.format.is_none() && input_format::Format::of(path).ok() == Some(BRICKS) {
+        let text = bricks::info_lines(path, json)?;
+        return Ok(answer(text.as_bytes()).context("standard output: cannot be written")?);
+    }
     let report = report(args, path)?;
     let text = if json {
         serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
@@ -141,7 +148,8 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     input::check_flags(format, &options)?;
     match format {
         input_format::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
-        input_format::Format::Scene => of_scene(path, args),
+        // Files of bricks have a report of their own.
+        input_format::Format::Scene | BRICKS => of_scene(path, args),
     }
 }
 

@@ -21,10 +21,11 @@ pub(super) const HELP: &str = "The self-test runs computations on the adapter an
     JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, prices, limits, features), \
     `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
     outcome (ok, note, FAILED), words, figures.\n\n\
-    JSON of a file: `version`, `file`, `bytes`, `kind` (data or scene), `spheres`, `min`, `max`, `radius_min`, \
+    JSON of a file: `version`, `file`, `bytes`, `kind` (data, scene or bricks), `spheres`, `min`, `max`, `radius_min`, \
     `radius_max`, `notes`. Of data also `format`, `compressed`, `frames`, `frame`, `problem`, `colors`, `opacities`, \
     `cell`, `cell_origin`, `columns` (name, kind; of numbers min, max, nan; of text different, first). Of a scene also `width`, \
-    `height`, `camera`, `stereo`, `integrator`, `samples`, `lights`, `files`. New versions may add keys, but do not \
+    `height`, `camera`, `stereo`, `integrator`, `samples`, `lights`, `files`. Of bricks also `source`, \
+    `bricks`, `largest_brick_spheres`, `largest_brick_bytes`, `outer_spheres`, `colors`, and no `notes`. New versions may add keys, but do not \
     change these.";
 
 /// The report on this program and the machine.

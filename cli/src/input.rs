@@ -9,6 +9,7 @@ use super::annotation::AnnotationFlags;
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
+use super::bricks::BrickFile;
 use super::camera::CameraFlags;
 use super::color_flags::ColorFlags;
 use super::data::DataOptions;
@@ -29,6 +30,7 @@ use pinhole::camera::{Camera, CameraParameters, View};
 use pinhole::color_by::{ColorBy, ColorKey};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
+use pinhole::load;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene::sphere::Sphere;
@@ -58,6 +60,10 @@ pub(super) struct Input {
     pub(super) size_from: String,
     /// Notes for the user that are not errors.
     pub(super) notes: Vec<String>,
+    /// The file of bricks of which the scene has only the outermost spheres.
+    pub(super) bricks: Option<Arc<BrickFile>>,
+    /// The color of spheres without one.
+    pub(super) color: LinearRgb,
     /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
     /// What the program says about the picture.
@@ -91,6 +97,12 @@ pub(super) fn check_flags(format: Format, options: &DataOptions) -> Result<(), F
     match format {
         Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
         Format::Scene => Ok(()),
+        Format::Bricks => match options.given() {
+            Some(flag) => Err(Failure::usage(format!(
+                "{flag} applies when data is sorted into bricks; give it to `pinhole sort`"
+            ))),
+            None => Ok(()),
+        },
     }
 }
 
@@ -113,6 +125,8 @@ pub(super) struct Source {
     frames: Option<Arc<OpenFrames>>,
     /// Whether the columns of the data are kept, for the viewer.
     keeps_columns: bool,
+    /// The file of bricks, if the input is one.
+    bricks: Option<Arc<BrickFile>>,
 }
 
 impl Source {
@@ -132,7 +146,9 @@ impl Source {
         let options =
             DataOptions { frame: args.frame, radius: args.radius, color, topology, columns };
         check_flags(format, &options)?;
+        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
         Ok(Self {
+            bricks,
             path: path.to_path_buf(),
             format,
             size: args.size.as_deref().map(parse_size).transpose()?,
@@ -144,7 +160,12 @@ impl Source {
 
     /// Returns this source with light flags. Without them, data files have one ray for each pixel.
     pub(super) fn with_light(self, light: LightFlags) -> Self {
-        Self { light, style: light.style_of_data(), ..self }
+        let style = match &self.bricks {
+            // Bricks have one ray for each pixel, unless a flag asks for light, which is refused with a reason.
+            Some(_) => light.style_of_bricks(),
+            None => light.style_of_data(),
+        };
+        Self { light, style, ..self }
     }
 
     /// Returns this source with flags for colors from data.
@@ -179,6 +200,7 @@ impl Source {
             kinds: None,
             frames: None,
             keeps_columns: false,
+            bricks: None,
         }
     }
 
@@ -190,7 +212,9 @@ impl Source {
     /// Returns this source with a size, if it is a data file, and no flag gives its size.
     pub(super) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Self {
         match (self.format, self.size) {
-            (Format::Data(_), None) => Self { size: Some((width, height)), ..self },
+            (Format::Data(_) | Format::Bricks, None) => {
+                Self { size: Some((width, height)), ..self }
+            }
             _ => self,
         }
     }
@@ -208,7 +232,9 @@ impl Source {
         };
         let options = DataOptions { radius: args.radius, ..DataOptions::default() };
         check_flags(format, &options)?;
-        Ok(Self { format, size, options, ..Self::of_scene(path) })
+        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
+        let source = Self { format, size, options, bricks, ..Self::of_scene(path) };
+        source.without_bricks("`bench`")
     }
 
     /// Reads the file, and the data files that it names.
@@ -244,6 +270,7 @@ impl Source {
                 format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
                 ..Data::of_file(self.path.to_string_lossy())
             },
+            Format::Bricks => return Ok(None),
             Format::Scene => {
                 let Some(data) = file.data().cloned() else { return Ok(None) };
                 let resolved = |file: &String| self.resolve(file).to_string_lossy().into_owned();
@@ -269,12 +296,31 @@ impl Source {
         Ok(Some(data))
     }
 
+    /// The format of a data file.
+    pub(super) fn data_format(&self) -> Option<&'static load::Format> {
+        match self.format {
+            Format::Data(format) => Some(format),
+            Format::Scene | Format::Bricks => None,
+        }
+    }
+
+    /// Refuses a file of bricks, for what needs all spheres at once.
+    pub(super) fn without_bricks(self, what: &str) -> Result<Self, Failure> {
+        match self.bricks {
+            None => Ok(self),
+            Some(_) => Err(Failure::usage(format!(
+                "{}: {what} needs all spheres in memory, and bricks are read one by one; name the data that was sorted",
+                self.path.display()
+            ))),
+        }
+    }
+
     /// Resolves a path that is relative to the folder of the scene file.
     fn resolve(&self, path: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 }
 
-fn default_color() -> LinearRgb {
+pub(super) fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 
+use super::bricks::EXTENSION;
 use super::failure::Failure;
 use super::read_file::is_standard_input;
 use pinhole::load;
@@ -13,6 +14,8 @@ use pinhole::load;
 pub(super) enum Format {
     Scene,
     Data(&'static load::Format),
+    /// Spheres that `sort` divided among bricks.
+    Bricks,
 }
 
 impl Format {
@@ -20,6 +23,7 @@ impl Format {
     pub(super) fn of(path: &Path) -> Result<Self> {
         let extension = extension(path);
         match (data_format(path), extension.as_deref()) {
+            (_, Some(EXTENSION)) => Ok(Self::Bricks),
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
             _ if is_standard_input(path) => {

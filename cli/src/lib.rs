@@ -24,6 +24,7 @@ mod bench_counts;
 mod bench_report;
 #[cfg(feature = "gpu")]
 mod bench_scene;
+mod bricks;
 #[cfg(feature = "gpu")]
 mod calibrate;
 mod camera;
@@ -147,6 +148,7 @@ fn run() -> ExitCode {
         #[cfg(feature = "gpu")]
         Command::Bench(args) => bench::run(&args),
         Command::Job(args) => job::run(&args),
+        Command::Sort(args) => bricks::run(&args),
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),

@@ -166,6 +166,14 @@ impl LightFlags {
         })
     }
 
+    /// Returns the style of bricks, which have one ray for each pixel unless a flag asks for light.
+    pub(super) fn style_of_bricks(&self) -> Style {
+        match self.integrator {
+            None => self.style.unwrap_or(Style::Fast),
+            Some(_) => self.style_of_data(),
+        }
+    }
+
     /// Returns the background that takes the place of the scene's.
     pub(super) fn background(&self) -> Option<LinearRgb> {
         self.background

@@ -1,5 +1,7 @@
 //! `pinhole plan`: shows how much memory a render would need, and whether it fits. Nothing is allocated on the device.
 
+use std::sync::Arc;
+
 use anyhow::Context;
 use serde::Serialize;
 
@@ -96,7 +98,14 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     })?;
     let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
     threads::start()?;
-    let input = source.load()?;
+    let mut input = source.load()?;
+    if let Some(bricks) = input.bricks.clone() {
+        let count = bricks.len();
+        input.notes.push(format!(
+            "this is the plan of the largest of {count} bricks, which are rendered one by one"
+        ));
+        input.scene = Arc::new(bricks.largest_scene(input.color)?);
+    }
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }

@@ -9,6 +9,7 @@ use anyhow::Context;
 
 use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
+use super::bricks;
 use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
@@ -117,11 +118,13 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
                 "--certify: only single pictures are certified; render the frames one by one",
             ));
         }
-        return frames::run(args, &wanted, Job::new(args, wanted.picture())?);
+        let mut job = Job::new(args, wanted.picture())?;
+        job.source = job.source.without_bricks("a series of pictures")?;
+        return frames::run(args, &wanted, job);
     }
     let started = Instant::now();
     let quiet = args.report.quiet;
-    let job = Job::new(args, args.output.as_deref().unwrap_or(Path::new("-")))?;
+    let mut job = Job::new(args, args.output.as_deref().unwrap_or(Path::new("-")))?;
     if quiet {
         progress::close();
     }
@@ -131,6 +134,10 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         }
     };
     threads::start()?;
+    if args.certify || args.report.print_scene {
+        let flag = if args.certify { "--certify" } else { "--print-scene" };
+        job.source = job.source.without_bricks(flag)?;
+    }
     if args.report.print_scene {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
@@ -268,8 +275,28 @@ fn render_views(
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
+    check_device(input, views, layers, opened)?;
+    if let Some(bricks) = &input.bricks {
+        return bricks::render(bricks, input, views, layers, opened);
+    }
     match opened {
-        Opened::Cpu => on_cpu(input, stop_rule, views, layers),
+        #[cfg(feature = "gpu")]
+        Opened::Device { headless, choice, .. } => {
+            on_gpu(headless, input, stop_rule, views, layers, *choice)
+        }
+        _ => on_cpu(input, stop_rule, views, layers),
+    }
+}
+
+/// Refuses pictures of the CPU that do not fit into memory, and tells the user once if the device is not the expected one.
+pub(super) fn check_device(
+    input: &Input,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<(), Failure> {
+    match opened {
+        Opened::Cpu => check_on_cpu(input, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             check_on_cpu(input, views, layers)?;
@@ -279,12 +306,12 @@ fn render_views(
                     GpuError::NoAdapter
                 )
             });
-            on_cpu(input, stop_rule, views, layers)
+            Ok(())
         }
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, warning, .. } => {
+        Opened::Device { warning, .. } => {
             warning.iter().for_each(|warning| tell_once(|| warning.clone()));
-            on_gpu(headless, input, stop_rule, views, layers, *choice)
+            Ok(())
         }
     }
 }
@@ -303,7 +330,6 @@ fn on_cpu(
     views: &Views<View<'_>>,
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
-    check_on_cpu(input, views, layers)?;
     let (Input { scene, settings, .. }, film) = (input, views.film());
     let plan = SearchPlan::new(scene);
     let what = format!("a structure of {} spheres needs", scene.len());

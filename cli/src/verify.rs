@@ -158,7 +158,7 @@ mod recorded {
 
     /// Renders a scene on an adapter and records it.
     pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
-        let source = Source::of_view(path, &args.view)?;
+        let source = Source::of_view(path, &args.view)?.without_bricks("`verify`")?;
         let outputs = VerifyOutputs::new(args)?;
         let wanted = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
         threads::start()?;

@@ -30,6 +30,7 @@ def render(
     *,
     client: Any,
     tiles: tuple[int, int] = (1, 1),
+    by_depth: int | None = None,
     layers: Mapping[str, str | os.PathLike[str]] | None = None,
     units_per_task: int | None = None,
     retries: int = 3,
@@ -42,9 +43,9 @@ def render(
 
     ``frames`` is the path of a data file or a scene file. ``output`` is what ``-o`` of ``pinhole render`` is: a picture, a
     pattern such as ``f%04d.png``, or a movie; ``layers`` names files of layers, such as ``{"depth": "d%04d.npy"}``. Each
-    picture is divided into ``tiles``, columns and rows. Other arguments are flags of the program, with ``_`` for ``-``:
-    ``size="640x480"``, ``samples=16``, ``frames_range="0:100"`` for ``--frames`` (all, unless the output is one picture),
-    ``transparent=True``; a list repeats a flag.
+    picture is divided into ``tiles``, columns and rows; or the spheres of a file of bricks into ``by_depth`` groups. Other
+    arguments are flags of the program, with ``_`` for ``-``: ``size="640x480"``, ``samples=16``, ``frames_range="0:100"`` for
+    ``--frames`` (all, unless the output is one picture), ``transparent=True``; a list repeats a flag.
 
     The parts are kept in ``folder``, which all workers must see; it is removed at the end. By default it is made beside the
     output. If a folder is named, it stays, and what is in it is not rendered again.
@@ -64,7 +65,8 @@ def render(
         if not os.path.exists(os.path.join(job, "job.json")):
             exr = ["--exr"] if target.lower().endswith(".exr") else []
             columns, rows = tiles
-            _run("job", "split", path, *arguments, *exr, "--tiles", f"{columns}x{rows}", "-o", job, "-q")
+            units = ["--tiles", f"{columns}x{rows}"] if by_depth is None else ["--by-depth", str(by_depth)]
+            _run("job", "split", path, *arguments, *exr, *units, "-o", job, "-q")
         missing = _missing(job)
         if missing:
             each = units_per_task or max(1, len(missing) // 200)

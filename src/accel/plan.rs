@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use glam::Vec3;
+
 use super::binary_tree::BinaryNode;
 use super::brick::Structure;
 use super::decide::{candidates, decide};
@@ -187,6 +189,15 @@ impl AccelPlan {
     #[must_use]
     pub fn with_box_margin(self, box_margin: f32) -> Self {
         Self { box_margin, ..self }
+    }
+
+    /// The same plan for spheres that are a part of a scene with this box, in its frame: rays start in that box, and the
+    /// margin is that of the whole scene.
+    #[must_use]
+    pub fn within(mut self, (min, max): (Vec3, Vec3)) -> Self {
+        // The margin of a crowd is for rays that start in the box of these spheres.
+        (self.statistics.min, self.statistics.max, self.crowd) = (min, max, None);
+        self
     }
 
     /// The number of bytes of all buffers.

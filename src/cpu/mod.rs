@@ -9,9 +9,10 @@
 use std::ops::Range;
 
 use crate::camera::View;
-use crate::image::{Image, ImageTooLarge, LayerSet, Pixel, RowMut};
+use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, Pixel, RowMut};
+use crate::parallel;
 use crate::render::{
-    Decision, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
+    Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
 };
 
 mod denoise;
@@ -112,6 +113,32 @@ fn render_primary(
         row.set(i, &primary_pixel(search, view, primary, pixel));
     });
     Ok(image)
+}
+
+/// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is
+/// needed to put it together with those of the other parts. `None` for settings with light.
+///
+/// # Errors
+/// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.
+pub fn render_nearest<'a>(
+    search: impl Into<Search<'a>>,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    layers: LayerSet,
+) -> Result<Option<Nearest>, RenderError> {
+    let search = search.into();
+    settings.check(search.scene())?;
+    let Some(primary) = settings.primary() else { return Ok(None) };
+    let image = render_primary(search, view, &primary, layers)?;
+    let width = view.film.width() as usize;
+    let hits = parallel::map(image.color().len(), |at| {
+        let pixel = [(at % width) as u32, (at / width) as u32];
+        let hit = view.ray_through_center(pixel).and_then(|ray| trace(search, &ray));
+        hit.map_or((f64::INFINITY, NO_ID), |hit| (hit.t, hit.id))
+    });
+    let (t, ids): (Vec<f64>, Vec<u32>) = hits.into_iter().unzip();
+    let distances = t.iter().map(|t| *t as f32).collect();
+    Ok(Nearest::new(image, t, ids, distances))
 }
 
 /// Renders a picture of primary rays, and asks after some rows how to continue.

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::geometry::ray::Ray;
+
 /// An axis-aligned box in world space, never empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -49,6 +51,29 @@ impl Bounds {
     #[must_use]
     pub fn size(&self) -> DVec3 {
         self.max - self.min
+    }
+
+    /// The same box with all sides moved outwards.
+    pub(crate) fn widened(self, by: f64) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    /// The distance at which a ray enters the box, which is 0 if it starts inside; `None` if it misses the box.
+    pub(crate) fn entry(&self, ray: &Ray) -> Option<f64> {
+        let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            if direction == 0.0 {
+                if origin < self.min[axis] || origin > self.max[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let a = (self.min[axis] - origin) / direction;
+            let b = (self.max[axis] - origin) / direction;
+            (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
+        }
+        (near <= far).then_some(near)
     }
 
     /// The eight corners.

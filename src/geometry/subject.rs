@@ -16,11 +16,27 @@ pub struct Subject<'a> {
     added: usize,
     bounds: Bounds,
     free_sides: [f64; 4],
+    whole: Option<WholeSubject>,
+}
+
+/// What all spheres of the data are like, where only those that reach farthest are given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WholeSubject {
+    pub(crate) mean_radius: f64,
+    /// The corners of the box of the centres.
+    pub(crate) centers: [[f32; 3]; 2],
 }
 
 impl From<Bounds> for Subject<'_> {
     fn from(bounds: Bounds) -> Self {
-        Self { origin: DVec3::ZERO, spheres: &[], added: 0, bounds, free_sides: [0.0; 4] }
+        Self {
+            origin: DVec3::ZERO,
+            spheres: &[],
+            added: 0,
+            bounds,
+            free_sides: [0.0; 4],
+            whole: None,
+        }
     }
 }
 
@@ -34,12 +50,17 @@ impl<'a> Subject<'a> {
     /// Spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which is framed if
     /// there are no spheres.
     pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
-        Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4] }
+        Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4], whole: None }
     }
 
     /// The same spheres, of which the last `added` are framed but do not count for what the data is like.
     pub(crate) fn with_added(self, added: usize) -> Self {
         Self { added, ..self }
+    }
+
+    /// The same spheres, which reach as far as those of a larger scene.
+    pub(crate) fn with_whole(self, whole: WholeSubject) -> Self {
+        Self { whole: Some(whole), ..self }
     }
 
     /// The spheres of the data, or all if there are no such.
@@ -119,15 +140,17 @@ impl<'a> Subject<'a> {
                 ]
             })
         };
-        let extents = parallel::map_chunks(self.of_data(), of_chunk).into_iter().reduce(
-            |[low, high], [l, h]| {
-                [
-                    std::array::from_fn(|i| low[i].min(l[i])),
-                    std::array::from_fn(|i| high[i].max(h[i])),
-                ]
-            },
-        );
-        let [low, high] = extents?;
+        let extents = || {
+            parallel::map_chunks(self.of_data(), of_chunk).into_iter().reduce(
+                |[low, high], [l, h]| {
+                    [
+                        std::array::from_fn(|i| low[i].min(l[i])),
+                        std::array::from_fn(|i| high[i].max(h[i])),
+                    ]
+                },
+            )
+        };
+        let [low, high] = self.whole.map(|whole| whole.centers).or_else(extents)?;
         let sizes: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
         let widest = sizes.into_iter().fold(0.0, f32::max);
         let mut flat = (0..3).filter(|i| sizes[*i] <= 1e-6 * widest);
@@ -137,6 +160,9 @@ impl<'a> Subject<'a> {
     /// The mean radius of the spheres of the data; `None` for a box.
     #[must_use]
     pub fn mean_radius(&self) -> Option<f64> {
+        if let Some(whole) = self.whole {
+            return Some(whole.mean_radius);
+        }
         let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|s| f64::from(s[3])).sum::<f64>();
         let sum: f64 = parallel::map_chunks(self.of_data(), of_chunk).into_iter().sum();
         (!self.spheres.is_empty()).then(|| sum / self.of_data().len() as f64)

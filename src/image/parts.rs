@@ -48,6 +48,31 @@ impl Image {
         Ok(())
     }
 
+    /// Copies the pixels with these indices from a picture of the same size and layers.
+    pub(crate) fn copy_pixels(&mut self, from: &Self, pixels: &[usize]) {
+        fn copy<T: Copy>(to: Option<&mut Vec<T>>, from: Option<&Vec<T>>, pixels: &[usize]) {
+            if let (Some(to), Some(from)) = (to, from) {
+                pixels.iter().for_each(|at| to[*at] = from[*at]);
+            }
+        }
+        copy(Some(&mut self.color), Some(&from.color), pixels);
+        copy(self.alpha.as_mut(), from.alpha.as_ref(), pixels);
+        copy(self.depth.as_mut(), from.depth.as_ref(), pixels);
+        copy(self.normal.as_mut(), from.normal.as_ref(), pixels);
+        copy(self.position.as_mut(), from.position.as_ref(), pixels);
+        copy(self.albedo.as_mut(), from.albedo.as_ref(), pixels);
+        copy(self.id.as_mut(), from.id.as_ref(), pixels);
+        copy(self.samples.as_mut(), from.samples.as_ref(), pixels);
+        copy(self.variance.as_mut(), from.variance.as_ref(), pixels);
+    }
+
+    /// Sets the layer of ids, if there is one of this length.
+    pub(crate) fn set_id(&mut self, ids: &[u32]) {
+        if let Some(layer) = self.id.as_mut().filter(|layer| layer.len() == ids.len()) {
+            layer.copy_from_slice(ids);
+        }
+    }
+
     /// All layers, one after the other in the order of [`LayerSet::iter`], each row by row from the top, as little-endian
     /// numbers of 4 bytes: [`LayerSet::bytes_per_pixel`] bytes for each pixel. [`Image::from_le_bytes`] reads them back.
     #[must_use]

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::math::MAX_LENGTH;
-use crate::geometry::subject::Subject;
+use crate::geometry::subject::{Subject, WholeSubject};
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::material::SurfaceProperties;
@@ -25,6 +25,7 @@ mod material_table;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
+mod whole;
 
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
@@ -33,6 +34,7 @@ pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
+pub use whole::Whole;
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
@@ -49,6 +51,8 @@ pub struct Scene {
     bounds: Option<Bounds>,
     /// The number of spheres at the end that were added to those of the data.
     added: usize,
+    /// What this is a part of, if other spheres are not in memory.
+    whole: Option<Whole>,
 }
 
 /// Why spheres and an appearance do not make a scene.
@@ -74,6 +78,12 @@ pub enum SceneError {
     Origin {
         /// The origin as given.
         origin: DVec3,
+    },
+    /// A sphere of a part is outside of the box of the whole scene.
+    #[error("sphere {index} is outside of the scene that it should be a part of")]
+    OutsideOfWhole {
+        /// Index in the part.
+        index: usize,
     },
     /// The palette index of a sphere is out of range.
     #[error(
@@ -179,6 +189,35 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, color.into(), bounds))
     }
 
+    /// Some spheres, in input order, of a larger scene, in its frame. Pictures of parts by primary rays, put together by
+    /// [`Nearest`](crate::render::Nearest), are those of the whole, to the bit. Integrators with light need all spheres.
+    ///
+    /// # Errors
+    /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside of the whole.
+    pub fn part(
+        whole: Whole,
+        spheres: Vec<[f32; 4]>,
+        appearance: Appearance,
+    ) -> Result<Self, SceneError> {
+        let origin = whole.origin();
+        if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
+            return Err(SceneError::Origin { origin });
+        }
+        bounds_of_checked(&spheres, frame::slackened)?;
+        appearance.check(spheres.len())?;
+        if let Some(index) = spheres.iter().position(|sphere| !whole.contains(*sphere)) {
+            return Err(SceneError::OutsideOfWhole { index });
+        }
+        let scene = Self::in_frame(origin, spheres, appearance, Some(whole.bounds));
+        Ok(Self { whole: Some(whole), ..scene })
+    }
+
+    /// The scene that this is a part of; `None` if all spheres are here.
+    #[must_use]
+    pub fn whole(&self) -> Option<Whole> {
+        self.whole
+    }
+
     /// A scene from parts that have been checked.
     fn in_frame(
         origin: DVec3,
@@ -187,7 +226,7 @@ impl Scene {
         bounds: Option<Bounds>,
     ) -> Self {
         let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
-        Self { origin, spheres, appearance, bounds, added: 0 }
+        Self { origin, spheres, appearance, bounds, added: 0, whole: None }
     }
 
     /// The same spheres, all with the same surface properties.
@@ -313,7 +352,14 @@ impl Scene {
     /// What a camera should frame: all spheres, or a unit cube if there are none.
     #[must_use]
     pub fn subject(&self) -> Subject<'_> {
-        Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame()).with_added(self.added)
+        let subject = Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame());
+        match &self.whole {
+            Some(whole) => subject.with_whole(WholeSubject {
+                mean_radius: whole.mean_radius(),
+                centers: [whole.center_min.to_array(), whole.center_max.to_array()],
+            }),
+            None => subject.with_added(self.added),
+        }
     }
 
     /// The number of spheres.

@@ -49,6 +49,7 @@ mod legal_device;
 mod legal_paths;
 mod lens;
 mod light;
+mod nearest;
 mod npy;
 mod outliers;
 mod pages;

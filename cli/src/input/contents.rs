@@ -6,6 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, anyhow};
 
 use super::{Source, default_color, extension, read};
+use crate::bricks::BrickFile;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::{Format, data_format};
@@ -85,6 +86,11 @@ impl Contents {
         std::mem::take(&mut self.found.notes)
     }
 
+    /// Whether the data names chemical elements.
+    pub(crate) fn has_atoms(&self) -> bool {
+        self.found.has_atoms
+    }
+
     /// What colors mean, if a column gives them.
     pub(crate) fn color_key(&self) -> Option<&ColorKey> {
         self.found.color_key.as_ref()
@@ -113,6 +119,9 @@ impl Source {
         let _phase = profile::phase("read");
         let path = &self.path;
         progress::stage(format!("reading {}", path.display()));
+        if let Some(bricks) = &self.bricks {
+            return self.contents_of_bricks(bricks);
+        }
         let Format::Data(format) = self.format else {
             return self.contents_of_text(&self.text()?);
         };
@@ -134,7 +143,7 @@ impl Source {
             self.color.join(&mut by);
             mapping.color = Some(by);
         }
-        let color = self.options.color.unwrap_or_else(default_color);
+        let color = self.color_of_all();
         let keeps_radii = self.options.radius.is_some();
         let additions = self.structure.additions(&Additions::default(), keeps_radii);
         let made = mapping.scene_with(loaded, color, &additions);
@@ -165,6 +174,42 @@ impl Source {
             columns,
         };
         self.prepared(file, scene, found)
+    }
+
+    /// The spheres that stand for all of a file of bricks.
+    fn contents_of_bricks(&self, bricks: &BrickFile) -> Result<Contents, Failure> {
+        if let Some(flag) = self.structure.given().or(self.color.given()) {
+            return Err(Failure::usage(format!(
+                "{}: {flag} needs columns of the data or all spheres in memory, and bricks have neither; render the data \
+                 that was sorted",
+                self.path.display()
+            )));
+        }
+        if self.options.color.is_some() && bricks.has_colors() {
+            return Err(Failure::usage(format!(
+                "{}: --color applies only to data without colors; remove it",
+                self.path.display()
+            )));
+        }
+        let scene = bricks.stand_in(self.color_of_all())?;
+        let found = Found {
+            notes: Vec::new(),
+            files: vec![self.path.clone()],
+            sky_image: None,
+            has_atoms: bricks.has_atoms(),
+            color_key: None,
+            kinds: None,
+            size_from: String::new(),
+            kept: None,
+            bonds: None,
+            columns: Vec::new(),
+        };
+        self.prepared(self.scene_of_data()?, scene, found)
+    }
+
+    /// The color of spheres without one.
+    pub(super) fn color_of_all(&self) -> LinearRgb {
+        self.options.color.unwrap_or_else(default_color)
     }
 
     /// Copies the columns of the spheres that `select` keeps, if they are asked for.

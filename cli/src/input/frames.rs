@@ -40,6 +40,7 @@ impl Source {
     /// format or the place of the data.
     pub(crate) fn open_frames(&mut self) -> Result<Result<FoundFrames, String>, Failure> {
         let (path, format, options) = match self.format {
+            Format::Bricks => return Ok(Err("files of bricks have one frame".to_owned())),
             Format::Data(format) => (self.path.clone(), format, self.options.clone()),
             Format::Scene => match self.data_place(&self.parsed(&self.text()?)?)? {
                 Some(place) => (place.path, place.format, place.options),
@@ -108,7 +109,7 @@ impl Source {
 
     /// The path along which the camera of a scene file moves, and whether flags replace that camera.
     pub(crate) fn camera_path(&self) -> Result<Option<(CameraPath, bool)>, Failure> {
-        if matches!(self.format, Format::Data(_)) {
+        if matches!(self.format, Format::Data(_) | Format::Bricks) {
             return Ok(None);
         }
         let file = self.parsed(&self.text()?)?;

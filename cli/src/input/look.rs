@@ -70,7 +70,7 @@ impl Source {
         let subject = scene.subject().with_free_sides(free_sides);
         let aspect = file.film.aspect();
         // A scene file says where its camera stands.
-        let facing = matches!(self.format, Format::Data(_))
+        let facing = matches!(self.format, Format::Data(_) | Format::Bricks)
             .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis));
         let parameters = if has_flags {
             self.camera.parameters(facing, self.default_up()).map_err(Failure::usage)?
@@ -105,13 +105,14 @@ impl Source {
     pub(super) fn default_up(&self) -> DVec3 {
         match self.format {
             Format::Data(format) if format.z_is_up => DVec3::Z,
+            Format::Bricks if self.bricks.as_ref().is_some_and(|file| file.z_is_up()) => DVec3::Z,
             _ => DVec3::Y,
         }
     }
 
     /// Whether the flags say what the camera is, and not the scene file.
     pub(super) fn has_camera_of_flags(&self) -> bool {
-        self.camera.is_given || matches!(self.format, Format::Data(_))
+        self.camera.is_given || matches!(self.format, Format::Data(_) | Format::Bricks)
     }
 
     /// Makes the input from what was read and from the look of the picture.
@@ -131,7 +132,10 @@ impl Source {
         } = found;
         let report = Report {
             path: self.path.display().to_string(),
-            spheres: scene.len() - scene.added(),
+            spheres: self
+                .bricks
+                .as_ref()
+                .map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
             selected_from: kept.map(|kept| kept.of),
             bonds,
             has_atoms,
@@ -160,6 +164,8 @@ impl Source {
             data,
             own_spheres,
             sky_image,
+            bricks: self.bricks.clone(),
+            color: self.color_of_all(),
         })
     }
 

@@ -1,18 +1,21 @@
 //! Puts the parts of a picture together.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use rayon::prelude::*;
 
+use super::depth::{self, covered};
 use super::files;
 use super::folder::{Folder, PARTS};
-use super::part_file::{self, Header, Problem};
+use super::part_file::{self, Header, Pictures, Problem};
 use super::units::ranges;
 use crate::failure::Failure;
 use crate::views::Views;
 use pinhole::image::Image;
+use pinhole::render::Nearest;
 
 /// The time between two looks for parts that are not seen yet.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -24,16 +27,23 @@ pub(super) fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, 
         // Reading the folder makes a network file system look for new files.
         let _ = files::names(&folder.path().join(PARTS));
         let is_missing = |found: &Result<Header, Problem>| matches!(found, Err(Problem::Missing));
-        if Instant::now() >= end || !folder.glance().iter().any(is_missing) {
+        let joined = covered(folder);
+        let mut seen = folder.glance().into_iter().enumerate();
+        if Instant::now() >= end
+            || !seen.any(|(unit, found)| is_missing(&found) && !joined.contains_key(&unit))
+        {
             break;
         }
         std::thread::sleep(PAUSE);
     }
     let manifest = &folder.manifest;
     let units = (0..manifest.units).into_par_iter();
-    let found: Vec<Result<Header, Problem>> = units
+    let mut found: Vec<Result<Header, Problem>> = units
         .map(|unit| part_file::read(&folder.part(unit), manifest, unit).map(|(header, _)| header))
         .collect();
+    for (unit, header) in covered(folder) {
+        found[unit] = Ok(header);
+    }
     refuse(folder, &found)?;
     Ok(found.into_iter().flatten().collect())
 }
@@ -83,9 +93,17 @@ pub(super) fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<St
     Ok(devices.into_keys().map(str::to_owned).collect())
 }
 
+/// Why a part cannot be used.
+pub(super) fn unusable(path: &Path, problem: Problem) -> Failure {
+    Failure::Job(anyhow!("{}: this part is {}", path.display(), problem.word()))
+}
+
 /// The pictures of all eyes at a place among all pictures, from their parts.
 pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Failure> {
     let manifest = &folder.manifest;
+    if manifest.is_by_depth() {
+        return Ok(depth::nearest(folder, 0..manifest.units)?.1.map(Nearest::into_image));
+    }
     let [width, height] = manifest.size;
     let empty = || {
         let image = Image::new(width, height, manifest.layer_set());
@@ -95,15 +113,13 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
         2 => Views::Two([empty()?, empty()?]),
         _ => Views::One(empty()?),
     };
-    let tiles = manifest.tiles_of_picture();
+    let tiles = manifest.units_of_picture();
     for unit in place * tiles..(place + 1) * tiles {
         let (_, (origin, _)) = manifest.unit(unit);
         // It was checked, but may have changed since.
         let part = part_file::read(&folder.part(unit), manifest, unit);
-        let (_, images) = part.map_err(|problem| {
-            let path = folder.part(unit);
-            Failure::Job(anyhow!("{}: this part is {}", path.display(), problem.word()))
-        })?;
+        let (_, pictures) = part.map_err(|problem| unusable(&folder.part(unit), problem))?;
+        let Pictures::Tile(images) = pictures else { continue };
         for (whole, part) in whole.as_mut_slice().iter_mut().zip(images.as_slice()) {
             whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
         }

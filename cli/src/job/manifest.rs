@@ -20,7 +20,7 @@ const FORMAT: u32 = 1;
 /// This version of the program.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A job. Each unit of work is a tile of a picture.
+/// A job. Each unit of work is a tile of a picture, or a group of bricks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
@@ -46,6 +46,9 @@ pub(super) struct Manifest {
     pub(super) size: [u32; 2],
     /// 2 for a camera with two eyes.
     pub(super) eyes: u32,
+    /// The bricks of each unit that is a group of them: the first, and the one after the last. Empty for tiles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) groups: Vec<[usize; 2]>,
     /// Columns and rows of tiles.
     pub(super) tiles: [u32; 2],
     /// The layers of parts, which may be more than those of the pictures: outlines and denoising are guided by them.
@@ -69,6 +72,8 @@ pub(super) struct Manifest {
 pub(super) enum UnitKind {
     /// A tile of a picture.
     Tile,
+    /// Some bricks, of which every part has what is nearest in all pixels.
+    Depth,
 }
 
 /// What [`Overview`](crate::frames::Overview) holds; its numbers are in the file `overview.bin`.
@@ -131,26 +136,44 @@ impl Manifest {
     }
 
     fn is_consistent(&self) -> bool {
+        if self.unit == UnitKind::Depth {
+            let follows = self.groups.windows(2).all(|pair| pair[0][1] == pair[1][0]);
+            let are_some = self.groups.iter().all(|[first, end]| first < end);
+            let is_one = self.pictures.is_none() && self.tiles == [1, 1] && self.units > 0;
+            return follows && are_some && is_one && self.groups.len() == self.units;
+        }
         let pictures = self.pictures.as_ref().map_or(1, Vec::len);
         let [columns, rows] = self.tiles.map(|side| side as usize);
-        let has_tiles = (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
+        let has_tiles = self.groups.is_empty()
+            && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
         has_tiles && pictures.checked_mul(columns * rows) == Some(self.units) && self.units > 0
     }
 
-    /// How many tiles a picture has.
-    pub(super) fn tiles_of_picture(&self) -> usize {
+    /// Whether units are groups of bricks.
+    pub(super) fn is_by_depth(&self) -> bool {
+        self.unit == UnitKind::Depth
+    }
+
+    /// How many units a picture has.
+    pub(super) fn units_of_picture(&self) -> usize {
+        if self.is_by_depth() {
+            return self.units;
+        }
         self.tiles[0] as usize * self.tiles[1] as usize
     }
 
     /// The place among all pictures, and the tile, of a unit.
     pub(super) fn unit(&self, index: usize) -> (usize, Rectangle) {
-        let tiles = self.tiles_of_picture();
+        if self.is_by_depth() {
+            return (0, ([0, 0], self.size));
+        }
+        let tiles = self.units_of_picture();
         (index / tiles, tile(self.size, self.tiles, index % tiles))
     }
 
     /// The number of the picture of a unit; `None` for a single picture.
     pub(super) fn number(&self, index: usize) -> Option<usize> {
-        self.pictures.as_ref()?.get(index / self.tiles_of_picture()).copied()
+        self.pictures.as_ref()?.get(index / self.units_of_picture()).copied()
     }
 
     /// The layers of parts.

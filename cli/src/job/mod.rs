@@ -4,6 +4,7 @@
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
+mod depth;
 mod digest;
 mod files;
 mod folder;
@@ -49,6 +50,8 @@ enum JobCommand {
     Status(StatusArgs),
     /// Put the parts together: the same bytes as `render` writes on one machine
     Merge(MergeArgs),
+    /// Join parts of a job that was split by depth into one, so that machines can merge them in a tree
+    Join(JoinArgs),
     /// Hand the parts to a scheduler, and what puts them together after them
     Submit(SubmitArgs),
 }
@@ -78,6 +81,10 @@ struct SplitArgs {
     /// Divide each picture into columns and rows of tiles, such as 4x4
     #[arg(long, value_name = "CxR", default_value = "1x1")]
     tiles: String,
+    /// Divide the spheres of a file of bricks into this many groups, and not the picture into tiles: each part reads one
+    /// group, and `merge` keeps what is nearest. For pictures with one ray for each pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "tiles")]
+    by_depth: Option<u32>,
     /// Prepare for EXR pictures, whose cameras leave no room for legends
     #[arg(long)]
     exr: bool,
@@ -97,6 +104,19 @@ struct PartArgs {
     /// End with exit code 5 if a unit takes longer than this, in seconds, for drivers that hang
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     timeout: Option<f64>,
+    /// Say nothing but warnings and errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct JoinArgs {
+    /// Folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// Indices of units that follow each other, such as 0-3
+    #[arg(value_name = "INDEX")]
+    units: String,
     /// Say nothing but warnings and errors
     #[arg(short, long)]
     quiet: bool,
@@ -179,6 +199,7 @@ pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
         JobCommand::Split(args) => split::run(args),
         JobCommand::Part(args) => part::run(args),
         JobCommand::Status(args) => status::run(args),
+        JobCommand::Join(args) => depth::run(args),
         JobCommand::Merge(args) => merge::run(args),
         JobCommand::Submit(args) => slurm::run(args),
     }

@@ -1,25 +1,31 @@
 //! `pinhole job part`: renders units, each into a file that appears whole or not at all.
 
 use std::io::{BufWriter, Write};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
+
 use super::PartArgs;
+use super::depth::covered;
 use super::folder::{Folder, PARTS};
 use super::manifest::VERSION;
 use super::marks::{Mark, clear_failed, set_failed, sweep};
-use super::part_file::{self, Header, payload};
+use super::part_file::{self, Header, Pictures, payload};
 use super::pieces;
 use super::recipe::{Recipe, check_same};
 use super::units::parse_list;
+use crate::bricks::nearest_of;
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, ready};
 use crate::input::Input;
 use crate::interrupt;
 use crate::output::{name_all, unnamed_with};
-use crate::render::render_part;
+use crate::render::{check_device, render_part};
 use crate::speak::tell;
 use crate::threads;
+use crate::views::Views;
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -44,8 +50,11 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
         })
     });
     let limit = limit.transpose()?;
-    let is_missing =
-        |unit: &usize| part_file::read(&folder.part(*unit), &folder.manifest, *unit).is_err();
+    let joined = covered(&folder);
+    let is_missing = |unit: &usize| {
+        let of = || part_file::read(&folder.part(*unit), &folder.manifest, *unit);
+        !joined.contains_key(unit) && of().is_err()
+    };
     let units: Vec<usize> = asked.iter().copied().filter(is_missing).collect();
     if units.is_empty() {
         return Ok(());
@@ -128,28 +137,43 @@ impl Work<'_> {
         let (_, rectangle) = manifest.unit(unit);
         // The layers that guide outlines and denoising are in the job already.
         let layers = manifest.layer_set();
-        let images = pieces::render(rectangle, layers, &mut |(origin, size)| {
-            let part = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
-            render_part(input, part, layers, opened)
-        })?;
+        let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
+            let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
+            let views = Views::of(input);
+            check_device(input, &views, layers, opened)?;
+            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
+            Pictures::Depth(nearest)
+        } else {
+            let tile = pieces::render(rectangle, layers, &mut |(origin, size)| {
+                let part =
+                    input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
+                render_part(input, part, layers, opened)
+            })?;
+            Pictures::Tile(tile)
+        };
         let header = Header {
             version: VERSION.to_owned(),
             job: manifest.sha256.clone(),
             unit,
+            last: None,
             device: described(opened),
             adapter: opened.adapter().map(str::to_owned),
             milliseconds: started.elapsed().as_millis() as u64,
             bytes: payload(manifest, unit),
         };
-        let path = self.folder.part(unit);
-        let file = unnamed_with(&path, |file| {
-            let mut out = BufWriter::new(file);
-            part_file::write(&header, &images, &mut out)?;
-            // Nothing waits for the disk: a part that a crash of the machine cut off is known by its digest.
-            out.flush()
-        })?;
-        Ok(name_all(vec![(&path, file)])?)
+        write(&self.folder.part(unit), &header, &pictures)
     }
+}
+
+/// Writes the file of a part, whole or not at all.
+pub(super) fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
+    let file = unnamed_with(path, |file| {
+        let mut out = BufWriter::new(file);
+        part_file::write(header, pictures, &mut out)?;
+        // Nothing waits for the disk: a part that a crash of the machine cut off is known by its digest.
+        out.flush()
+    })?;
+    Ok(name_all(vec![(path, file)])?)
 }
 
 /// What rendered, such that equal words mean equal bits: an adapter with its driver, or the CPU.

@@ -11,6 +11,7 @@ use super::files;
 use super::manifest::{Manifest, VERSION};
 use crate::views::Views;
 use pinhole::image::Image;
+use pinhole::render::Nearest;
 
 const START: &[u8] = b"pinhole part 1\n";
 
@@ -29,6 +30,9 @@ pub(super) struct Header {
     /// The digest of the job.
     pub(super) job: String,
     pub(super) unit: usize,
+    /// The last unit of a part that was joined from several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) last: Option<usize>,
     /// What rendered: an adapter with its driver, or the CPU.
     pub(super) device: String,
     /// The name of the adapter, as files of pictures have it.
@@ -63,15 +67,20 @@ impl Problem {
 pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
     let (_, (_, [width, height])) = manifest.unit(unit);
     let pixels = u64::from(width) * u64::from(height) * u64::from(manifest.eyes);
-    pixels * manifest.layer_set().bytes_per_pixel()
+    let more = if manifest.is_by_depth() { Nearest::BYTES_PER_PIXEL } else { 0 };
+    pixels * (manifest.layer_set().bytes_per_pixel() + more)
+}
+
+/// What a part shows, for each eye.
+pub(super) enum Pictures {
+    /// A tile.
+    Tile(Views<Image>),
+    /// The whole film, with what is nearest of some bricks.
+    Depth(Views<Nearest>),
 }
 
 /// Writes a part.
-pub(super) fn write(
-    header: &Header,
-    images: &Views<Image>,
-    out: &mut impl Write,
-) -> io::Result<()> {
+pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) -> io::Result<()> {
     let mut digest = Sha256::new();
     let text = serde_json::to_vec(header)?;
     let length = (text.len() as u64).to_le_bytes();
@@ -82,7 +91,14 @@ pub(super) fn write(
     put(START)?;
     put(&length)?;
     put(&text)?;
-    images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
+    match pictures {
+        Pictures::Tile(images) => {
+            images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
+        }
+        Pictures::Depth(images) => {
+            images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
+        }
+    }
     out.write_all(&digest.finalize())
 }
 
@@ -101,7 +117,7 @@ pub(super) fn read(
     path: &Path,
     manifest: &Manifest,
     unit: usize,
-) -> Result<(Header, Views<Image>), Problem> {
+) -> Result<(Header, Pictures), Problem> {
     let mut bytes = Vec::new();
     let file = open(path)?;
     // A file that is longer than a part can be is not read to its end.
@@ -117,14 +133,19 @@ pub(super) fn read(
     let (_, (_, size)) = manifest.unit(unit);
     let layers = manifest.layer_set();
     let of_eye = rest.len() / manifest.eyes.max(1) as usize;
-    let image = |bytes: &[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(Problem::Damaged);
-    let images = if manifest.eyes == 2 {
-        let (left, right) = rest.split_at(of_eye);
-        Views::Two([image(left)?, image(right)?])
-    } else {
-        Views::One(image(rest)?)
+    let eyes = match manifest.eyes {
+        2 => Views::Two(rest.split_at(of_eye).into()),
+        _ => Views::One(rest),
     };
-    Ok((header, images))
+    let damaged = Problem::Damaged;
+    let pictures = if manifest.is_by_depth() {
+        let nearest = |bytes: &&[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(damaged);
+        Pictures::Depth(eyes.try_each(nearest)?)
+    } else {
+        let image = |bytes: &&[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(damaged);
+        Pictures::Tile(eyes.try_each(image)?)
+    };
+    Ok((header, pictures))
 }
 
 fn open(path: &Path) -> Result<files::File, Problem> {

@@ -53,18 +53,25 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let Found { input, layers, pictures, overview } = found(recipe)?;
     let size = [input.film.width(), input.film.height()];
     let tiles = parse_tiles(&args.tiles, size)?;
+    let groups = groups(args.by_depth, &input, pictures.is_some())?;
     let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
     let stored = overview.as_ref().map(packed);
-    let units =
-        pictures.as_ref().map_or(1, Vec::len).checked_mul(tiles[0] as usize * tiles[1] as usize);
+    let units = match groups.len() {
+        0 => {
+            pictures.as_ref().map_or(1, Vec::len).checked_mul(tiles[0] as usize * tiles[1] as usize)
+        }
+        count => Some(count),
+    };
     let units =
         units.ok_or_else(|| Failure::usage("these are too many units; choose fewer tiles"))?;
     let (_, [width, height]) = tile(size, tiles, 0);
+    let pixels = u64::from(width) * u64::from(height);
+    let expected_milliseconds = expected(&input, pixels, groups.len());
     let manifest = Manifest {
         pinhole_job: 1,
         version: VERSION.to_owned(),
         sha256: String::new(),
-        unit: UnitKind::Tile,
+        unit: if groups.is_empty() { UnitKind::Tile } else { UnitKind::Depth },
         units,
         arguments,
         folder,
@@ -72,6 +79,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         pictures,
         size,
         eyes: if input.eyes.is_some() { 2 } else { 1 },
+        groups,
         tiles,
         layers: layer_names(input.settings.layers_for(merged)),
         merged_layers: layer_names(merged),
@@ -79,7 +87,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         samples: input.settings.sampling.samples,
         seed: input.settings.sampling.seed,
         denoised: input.settings.is_denoised,
-        expected_milliseconds: expected(&input, u64::from(width) * u64::from(height)),
+        expected_milliseconds,
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
     };
     let (manifest, text) = manifest.sealed()?;
@@ -152,7 +160,10 @@ fn check_new(job: &Path) -> Result<PathBuf, Failure> {
 
 /// Reads the input of the first picture.
 fn found(recipe: Recipe) -> Result<Found, Failure> {
-    let Recipe { args, wanted, job } = recipe;
+    let Recipe { args, wanted, mut job } = recipe;
+    if wanted.is_some() {
+        job.source = job.source.without_bricks("a series of pictures")?;
+    }
     let note = |note: &dyn std::fmt::Display| {
         if !args.report.quiet {
             tell(format_args!("note: {note}"));
@@ -169,6 +180,38 @@ fn found(recipe: Recipe) -> Result<Found, Failure> {
     let Ready { series, writing, overview, all, .. } =
         ready(&args, &wanted, job, Known::default())?.ok_or_else(none)?;
     Ok(Found { input: series.input, layers: writing.layers, pictures: Some(all), overview })
+}
+
+/// The bricks of each unit; none if units are tiles.
+fn groups(
+    by_depth: Option<u32>,
+    input: &Input,
+    are_several: bool,
+) -> Result<Vec<[usize; 2]>, Failure> {
+    let Some(groups) = by_depth else { return Ok(Vec::new()) };
+    let refused = |why: String| Err(Failure::usage(format!("--by-depth {groups}: {why}")));
+    let Some(bricks) = &input.bricks else {
+        return refused("this divides files of bricks; make one with `pinhole sort`".to_owned());
+    };
+    if are_several {
+        return refused(
+            "a file of bricks makes one picture; remove the flags of frames".to_owned(),
+        );
+    }
+    if !input.settings.integrator.is_primary() {
+        return refused(
+            "with light and with several samples, what one group adds depends on the others; choose --style fast \
+             without --samples"
+                .to_owned(),
+        );
+    }
+    if groups as usize > bricks.len() {
+        return refused(format!(
+            "the file has {} bricks; choose as many or fewer groups, or sort it into more bricks",
+            bricks.len()
+        ));
+    }
+    Ok(bricks.groups(groups as usize))
 }
 
 /// The files that parts read, with their digests.
@@ -188,9 +231,17 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
     Ok(files)
 }
 
+/// About how long a software device takes for each sphere of a brick.
+const NANOSECONDS_OF_SPHERE: u64 = 600;
+
 /// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
 /// each sample has the rays that its integrator traces.
-fn expected(input: &Input, pixels: u64) -> u64 {
+fn expected(input: &Input, pixels: u64, groups: usize) -> u64 {
+    if let Some(bricks) = &input.bricks {
+        // Reading, building and copying are nearly all of it.
+        let spheres = bricks.whole().count / groups.max(1) as u64;
+        return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
+    }
     let rays = pixels.saturating_mul(rays_of_pixel(&input.settings));
     let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
     let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
@@ -240,13 +291,16 @@ fn said(folder: &Folder) {
     let pictures = manifest.pictures.as_ref().map_or(1, Vec::len);
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let [columns, rows] = manifest.tiles;
+    let what = match manifest.is_by_depth() {
+        true => "1 picture of groups of bricks".to_owned(),
+        false => format!("{pictures} picture{} of {columns}x{rows} tiles", plural(pictures)),
+    };
     tell(format_args!(
-        "{}: {} unit{}, {pictures} picture{} of {columns}x{rows} tiles, each expected to take {:.1} s on a software \
+        "{}: {} unit{}, {what}, each expected to take {:.1} s on a software \
          device; render them with `pinhole job part {} {}`",
         folder.path().display(),
         manifest.units,
         plural(manifest.units),
-        plural(pictures),
         manifest.expected_milliseconds as f64 / 1e3,
         folder.path().display(),
         ranges(&all)

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::StatusArgs;
+use super::depth::covered;
 use super::folder::Folder;
 use super::manifest::VERSION;
 use super::marks::{Marks, failures};
@@ -57,6 +58,10 @@ pub(super) fn run(args: &StatusArgs) -> Result<(), Failure> {
     } else {
         folder.glance()
     };
+    let mut found = found;
+    for (unit, header) in covered(&folder) {
+        found[unit] = Ok(header);
+    }
     let mut marks = Marks::read(&folder);
     // A unit may have been done by another try.
     marks.running.retain(|unit| found[*unit].is_err());

@@ -233,7 +233,8 @@ impl RenderFlags {
 
     /// The job of `pinhole render` with these flags.
     pub(super) fn job(&self) -> Result<Job, ViewError> {
-        Ok(Job::new(&*self.render_args("-")?, Path::new("-"))?)
+        let job = Job::new(&*self.render_args("-")?, Path::new("-"))?;
+        Ok(Job { source: job.source.without_bricks("the viewer")?, ..job })
     }
 }
 

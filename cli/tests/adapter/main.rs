@@ -3,6 +3,7 @@
 //! The tests fail if there is no adapter. With `PINHOLE_NO_GPU_TESTS=1`, every test here is ignored.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
+mod bricks;
 #[path = "../../../tests/support/harness.rs"]
 mod harness;
 mod job;
@@ -33,6 +34,7 @@ fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
 fn main() {
     harness::run(|| {
         let groups = [
+            bricks::trials(),
             job::trials(),
             light::trials(),
             plan::trials(),

@@ -8,6 +8,7 @@ mod npy_files;
 
 mod arrays;
 mod bad_input;
+mod bricks;
 mod camera_path;
 mod certified;
 mod certify;
@@ -18,6 +19,7 @@ mod generate;
 mod good_input;
 mod interrupt;
 mod job;
+mod job_depth;
 #[cfg(unix)]
 mod job_faults;
 mod job_input;

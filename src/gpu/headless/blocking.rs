@@ -16,7 +16,7 @@ use crate::gpu::scene::structures::Structures;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport};
 use crate::gpu::waiting::block_on;
 use crate::image::{Image, LayerSet};
-use crate::render::RenderSettings;
+use crate::render::{Nearest, RenderSettings};
 use crate::scene::{Scene, SceneUpdate};
 use crate::verify::{Certificate, Recording};
 
@@ -107,6 +107,24 @@ impl Headless {
         watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
     ) -> Result<Picture, GpuError> {
         block_on(self.render_planned_async(scene, plan, view, settings, layers, watches))
+    }
+
+    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`]), with what is needed to put it together
+    /// with those of the other parts. Each planned brick is built, traced and dropped before the next. A large picture is
+    /// rendered in tiles, for each of which the bricks are built again.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
+    pub fn render_nearest(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Nearest, GpuError> {
+        block_on(self.render_nearest_async(scene, plan, view, settings, layers, watches))
     }
 
     /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers

@@ -1,9 +1,7 @@
 //! Which bricks cannot change a picture, because all of their pixels show something nearer.
 
-use glam::DVec3;
-
 use crate::camera::View;
-use crate::geometry::ray::Ray;
+use crate::geometry::bounds::Bounds;
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 use crate::gpu::shader::records::{Hit, SceneSpace};
 use crate::image::NO_ID;
@@ -41,11 +39,12 @@ impl SeenPixels {
             let side = WORKGROUP_SIDE;
             first * side..((first + count) * side).min(self.size[axis])
         });
-        let (min, max) = (space.origin + space.min.as_dvec3(), space.origin + space.max.as_dvec3());
+        let [min, max] = [space.min, space.max].map(|corner| space.origin + corner.as_dvec3());
+        let bounds = Bounds::between(min, max);
         let is_hidden = |column: u32, row: u32| {
             let place = row as usize * self.size[0] as usize + column as usize;
             let ray = view.ray_through_center([column, row]);
-            let entry = ray.and_then(|ray| entry(&ray, min, max));
+            let entry = ray.and_then(|ray| bounds.entry(&ray));
             entry.is_none_or(|entry| f64::from(self.distances[place]) < entry * (1.0 - FARTHER))
         };
         let is_row_hidden =
@@ -54,26 +53,9 @@ impl SeenPixels {
     }
 }
 
-/// The distance at which a ray enters a box, which is 0 if it starts inside; `None` if it misses the box.
-fn entry(ray: &Ray, min: DVec3, max: DVec3) -> Option<f64> {
-    let (mut near, mut far) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
-        if direction == 0.0 {
-            if origin < min[axis] || origin > max[axis] {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((min[axis] - origin) / direction, (max[axis] - origin) / direction);
-        (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
-    }
-    (near <= far).then_some(near)
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     use super::*;
     use crate::camera::film::Film;

@@ -15,6 +15,7 @@ pub(in crate::gpu) mod lit_picture;
 pub(in crate::gpu) mod lit_recording;
 mod lit_states;
 pub(in crate::gpu) mod measure;
+mod nearest_picture;
 pub(in crate::gpu) mod one_picture;
 mod path_recording;
 pub(in crate::gpu) mod plan;

@@ -25,9 +25,13 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, UploadedBricks};
 use crate::gpu::scene::shape_ids::ShapeIds;
+use crate::gpu::shader::records::Hit;
 use crate::image::{Image, LayerSet};
 use crate::render::RenderSettings;
 use crate::scene::Scene;
+
+/// Is told the hit of each pixel that was traced, by its index in the picture.
+pub(in crate::gpu) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
 
 impl Headless {
     /// Builds the planned structures and renders one picture like [`Headless::render_planned`], without blocking the
@@ -46,7 +50,8 @@ impl Headless {
     ) -> Result<Picture, GpuError> {
         if self.drops_bricks(plan, view, settings) {
             let watches = (upload_watch, watch);
-            return self.render_by_brick(scene, plan, view, settings, layers, watches).await;
+            let image = self.render_by_brick(scene, plan, view, settings, layers, watches, None);
+            return Ok(Picture { image: image.await?, samples: 1, noise: None, hits: None });
         }
         let key_of = |kind: BrickKind, several_bricks: bool| {
             RendererKey::of_picture(vec![kind], several_bricks, view.camera, layers)
@@ -69,7 +74,13 @@ impl Headless {
             && rows_per_band(&self.device().limits(), size, false) == size[1]
     }
 
-    async fn render_by_brick(
+    /// Renders a picture whose hits are in one buffer. Copies the hits of the pixels that were traced to `traced`, by
+    /// their indices in the picture.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a picture has a scene, a plan, a view and settings"
+    )]
+    pub(in crate::gpu) async fn render_by_brick(
         &self,
         scene: &Scene,
         plan: &RenderPlan,
@@ -77,7 +88,8 @@ impl Headless {
         settings: &RenderSettings,
         layers: LayerSet,
         (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
-    ) -> Result<Picture, GpuError> {
+        mut traced: Option<&mut KeepHit<'_>>,
+    ) -> Result<Image, GpuError> {
         let data_layers = layers != LayerSet::COLOR;
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
         let device_type = self.info.device_type;
@@ -171,6 +183,15 @@ impl Headless {
                 self.run_timed(encoder, times, &[seen_buffer.buffer()]).await?;
                 seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
             }
+            if let (Some(traced), Some(first)) = (&mut traced, parts.first()) {
+                let mut encoder = self.encoder();
+                seen_buffer.record_copy(&mut encoder, frame.traced().0);
+                self.run(encoder, &[seen_buffer.buffer()]).await?;
+                seen_buffer.read(|hits: &[Hit]| {
+                    let groups = frame.traced_groups(first.slot);
+                    groups.indices(size).for_each(|at| traced(at, &hits[at]));
+                })?;
+            }
             let mut encoder = self.encoder();
             let mapped = textures.record_read_back(&mut encoder, &frame, size);
             self.run(encoder, &mapped).await?;
@@ -179,7 +200,7 @@ impl Headless {
             textures.read_into(&mut image, tile, &derived)?;
             // Where nothing is traced, the picture is complete only now.
             done.add(Groups::NONE, watch)?;
-            Ok(Picture { image, samples: 1, noise: None, hits: None })
+            Ok(image)
         })
         .await
     }

@@ -76,9 +76,13 @@ impl Headless {
     #[must_use]
     pub fn plan_for_rays(&self, scene: &Scene, choice: AccelChoice, rays: u64) -> AccelPlan {
         let binding = binding_limit(&self.device().limits());
-        quirks::plan(self.adapter_info(), scene, choice, |choice| {
+        let plan = quirks::plan(self.adapter_info(), scene, choice, |choice| {
             AccelPlan::with_prices(scene.spheres(), choice, binding, rays, self.prices())
-        })
+        });
+        match scene.whole() {
+            Some(whole) => plan.within((whole.min, whole.max)),
+            None => plan,
+        }
     }
 
     /// Returns the properties of this device that bound the size of pictures and scenes.

@@ -33,6 +33,17 @@ impl Groups {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
 
+    /// The indices, row by row, of the pixels of a picture of this size that the workgroups cover.
+    pub(in crate::gpu) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
+        let range = move |axis: usize| {
+            let (first, count) = (self.first[axis], self.size[axis]);
+            let end = ((first + count) * WORKGROUP_SIDE).min(size[axis]);
+            (first * WORKGROUP_SIDE).min(end) as usize..end as usize
+        };
+        let width = size[0] as usize;
+        range(1).flat_map(move |row| range(0).map(move |column| row * width + column))
+    }
+
     /// Number of workgroups.
     pub(in crate::gpu) fn count(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])

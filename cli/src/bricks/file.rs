@@ -1,0 +1,187 @@
+//! What a file of bricks holds: a line that names the format, where the header is, the spheres brick by brick, the header
+//! as JSON, and the digest of both. Numbers of the header are the bits of f64 and f32.
+
+use pinhole::geometry::bounds::Bounds;
+use pinhole::glam::{DVec3, Vec3};
+use pinhole::scene::Whole;
+use serde::{Deserialize, Serialize};
+
+/// The first bytes of a file of this version.
+pub(super) const START: &[u8; 17] = b"pinhole bricks 1\n";
+
+/// How much of it all versions share.
+pub(super) const NAME: &[u8] = b"pinhole bricks ";
+
+/// Where the place and the length of the header are, in eight bytes each.
+pub(super) const PLACE: usize = 24;
+
+/// Bytes before the first brick.
+pub(super) const BEFORE: u64 = 40;
+
+/// The length of a digest.
+pub(super) const DIGEST: usize = 32;
+
+/// No header is longer.
+pub(super) const LONGEST_HEADER: u64 = 1 << 26;
+
+/// Bytes of a sphere, its id, and its colour if there are colours.
+pub(super) const SPHERE: u64 = 16;
+pub(super) const ID: u64 = 4;
+pub(super) const COLOR: u64 = 4;
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Header {
+    /// The version of the program.
+    pub(super) version: String,
+    /// The file that was sorted.
+    pub(super) source: String,
+    pub(super) z_is_up: bool,
+    pub(super) has_atoms: bool,
+    pub(super) whole: WholeBits,
+    pub(super) colors: StoredColors,
+    /// The spheres that reach farthest in some direction, after the bricks, without ids.
+    pub(super) outer: Section,
+    pub(super) bricks: Vec<Brick>,
+}
+
+/// A part of the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Section {
+    /// The number of spheres.
+    pub(super) count: u64,
+    /// The first byte.
+    pub(super) offset: u64,
+    pub(super) sha256: String,
+}
+
+/// A brick: its spheres, then their ids in ascending order, then their colours.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Brick {
+    pub(super) section: Section,
+    /// The corners of the box of the spheres in the frame.
+    pub(super) min: [u32; 3],
+    pub(super) max: [u32; 3],
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum StoredColors {
+    /// Spheres have no colours.
+    None,
+    /// One linear colour for all.
+    One([u32; 3]),
+    /// Each sphere has an index into these linear colours.
+    Palette(Vec<[u32; 3]>),
+    /// Each sphere has a colour in four bytes.
+    Rgba8,
+}
+
+/// The bits of [`Whole`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WholeBits {
+    pub(super) count: u64,
+    /// The corners of the box in world space.
+    bounds: [[u64; 3]; 2],
+    /// The corners of the boxes of spheres and of centres in the frame.
+    spheres: [[u32; 3]; 2],
+    centers: [[u32; 3]; 2],
+    pub(super) radii: [u32; 2],
+    radius_sum: u64,
+}
+
+pub(super) fn bits(corner: Vec3) -> [u32; 3] {
+    corner.to_array().map(f32::to_bits)
+}
+
+pub(super) fn corner(bits: [u32; 3]) -> Vec3 {
+    bits.map(f32::from_bits).into()
+}
+
+impl WholeBits {
+    pub(super) fn of(whole: &Whole) -> Self {
+        let wide = |corner: DVec3| corner.to_array().map(f64::to_bits);
+        Self {
+            count: whole.count,
+            bounds: [wide(whole.bounds.min()), wide(whole.bounds.max())],
+            spheres: [bits(whole.min), bits(whole.max)],
+            centers: [bits(whole.center_min), bits(whole.center_max)],
+            radii: [whole.radius_min, whole.radius_max].map(f32::to_bits),
+            radius_sum: whole.radius_sum.to_bits(),
+        }
+    }
+
+    /// The whole; `None` if the numbers are not finite or the corners are in the wrong order.
+    pub(super) fn whole(&self) -> Option<Whole> {
+        let [min, max] = self.bounds.map(|bits| DVec3::from(bits.map(f64::from_bits)));
+        let bounds = extent(min, max)?;
+        let [low, high] = self.spheres.map(corner);
+        let [center_min, center_max] = self.centers.map(corner);
+        let ordered =
+            |low: Vec3, high: Vec3| low.is_finite() && high.is_finite() && low.cmple(high).all();
+        let [radius_min, radius_max] = self.radii.map(f32::from_bits);
+        let is_whole = ordered(low, high) && ordered(center_min, center_max) && self.count > 0;
+        is_whole.then_some(Whole {
+            count: self.count,
+            min: low,
+            max: high,
+            center_min,
+            center_max,
+            radius_min,
+            radius_max,
+            radius_sum: f64::from_bits(self.radius_sum),
+            ..Whole::new(bounds)
+        })
+    }
+}
+
+impl StoredColors {
+    /// Bytes of a sphere beside its four numbers and its id.
+    pub(super) fn bytes(&self) -> u64 {
+        match self {
+            Self::None | Self::One(_) => 0,
+            Self::Palette(_) | Self::Rgba8 => COLOR,
+        }
+    }
+
+    /// Bytes of a sphere of a brick.
+    pub(super) fn sphere_bytes(&self) -> u64 {
+        SPHERE + ID + self.bytes()
+    }
+}
+
+/// The box between two corners; `None` if they are not finite or in the wrong order.
+pub(super) fn extent(min: DVec3, max: DVec3) -> Option<Bounds> {
+    let is_box = min.is_finite() && max.is_finite() && min.cmple(max).all();
+    is_box.then(|| Bounds::of_sphere(min, 0.0).union(Bounds::of_sphere(max, 0.0)))
+}
+
+impl Header {
+    /// Whether the parts of the file follow each other without gaps, up to `end`, and have all spheres.
+    pub(super) fn is_consistent(&self, end: u64) -> bool {
+        let mut next = BEFORE;
+        let mut follows = |section: &Section, each: u64| {
+            let is_next = section.offset == next && section.count > 0;
+            let bytes = section.count.checked_mul(each).and_then(|bytes| next.checked_add(bytes));
+            next = bytes.unwrap_or(u64::MAX);
+            is_next && bytes.is_some()
+        };
+        let each = self.colors.sphere_bytes();
+        let all = self.bricks.iter().all(|brick| follows(&brick.section, each));
+        let all = all && follows(&self.outer, SPHERE);
+        let counts =
+            self.bricks.iter().try_fold(0_u64, |sum, brick| sum.checked_add(brick.section.count));
+        let Some(whole) = self.whole.whole() else { return false };
+        let is_inside = |brick: &Brick| {
+            let [min, max] = [corner(brick.min), corner(brick.max)];
+            min.cmpge(whole.min).all() && max.cmple(whole.max).all() && min.cmple(max).all()
+        };
+        all && next == end
+            && counts == Some(whole.count)
+            && whole.count < u64::from(u32::MAX)
+            && self.bricks.iter().all(is_inside)
+    }
+}

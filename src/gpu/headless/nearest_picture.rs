@@ -1,0 +1,72 @@
+//! Pictures of parts of a scene, with the distances by which the nearest of all parts is found.
+
+use crate::camera::View;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::one_picture::KeepHit;
+use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::headless::progress::{UploadWatch, Watch};
+use crate::gpu::passes::bands::{rows_per_band, tile_size};
+use crate::gpu::passes::tiles::tiles;
+use crate::gpu::shader::records::Hit;
+use crate::image::{LayerSet, NO_ID};
+use crate::render::{Nearest, RenderSettings};
+use crate::scene::Scene;
+
+impl Headless {
+    /// Renders a part of a scene like [`Headless::render_nearest`], without blocking the thread while the device works.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::render_nearest`].
+    pub async fn render_nearest_async(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Nearest, GpuError> {
+        let film = &view.film;
+        let mut whole = Nearest::misses([film.width(), film.height()], layers)?;
+        let limits = self.device().limits();
+        // The hits of a tile are in one buffer.
+        let [width, height] = tile_size(&limits, self.shape(), film, false);
+        let rows = rows_per_band(&limits, [width, height], false);
+        for tile in tiles(film, [width, rows]) {
+            // A tile of a film always fits into it.
+            let Ok(part) = film.part(tile.origin, tile.size) else { continue };
+            let view = View::new(view.camera, part);
+            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (upload_watch, watch);
+            let part = self.nearest_of_tile(scene, plan, &view, settings, layers, watches);
+            // A part of the picture always fits into it.
+            let _ = whole.put(&part.await?, tile.origin);
+        }
+        Ok(whole)
+    }
+
+    async fn nearest_of_tile(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Nearest, GpuError> {
+        let pixels = view.film.pixel_count() as usize;
+        let mut t = vec![f64::INFINITY; pixels];
+        let (mut ids, mut distances) = (vec![NO_ID; pixels], vec![f32::INFINITY; pixels]);
+        let mut keep = |at: usize, [along, id, _, before]: &Hit| {
+            if *id != NO_ID {
+                let (along, before) = (f32::from_bits(*along), f32::from_bits(*before));
+                (t[at], ids[at], distances[at]) = (along.into(), *id, along + before);
+            }
+        };
+        let traced: Option<&mut KeepHit<'_>> = Some(&mut keep);
+        let image = self.render_by_brick(scene, plan, view, settings, layers, watches, traced);
+        let image = image.await?;
+        Nearest::new(image, t, ids, distances)
+            .ok_or(GpuError::NotPrimary { integrator: settings.integrator.name() })
+    }
+}
