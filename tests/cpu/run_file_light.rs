@@ -169,7 +169,7 @@ fn hostile_contents_with_a_right_digest() {
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"0\"", "there are 0 samples"),
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"5000\"", "there must be 1 to 4096"),
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"two\"", "`lit_samples` is not a valid number"),
-        ("\"sample_0_open\"", "\"sample_0_opem\"", "`sample_0_open` is missing"),
+        ("\"sample_0_open\"", "\"sample_0_oven\"", "`sample_0_open` is missing"),
         ("\"tables\"", "\"tablet\"", "the array `tables` is missing"),
         ("\"request_sha256\"", "\"request_sha257\"", "the text `request_sha256` is missing"),
         ("\"sample_0_start\"", "\"sample_1_start\"", "header"),
