@@ -9,6 +9,7 @@ use super::camera::CameraArgs;
 use super::certify::CertifyArgs;
 use super::data::format_parser;
 use super::encoding::EncodingArgs;
+use super::excluded_flags::{CAMERA, RENDERING, not_of_pictures};
 use super::file_info::FileArgs;
 use super::frames::FramesArgs;
 use super::generate::GenerateArgs;
@@ -230,58 +231,8 @@ impl From<Structure> for AccelChoice {
     }
 }
 
-/// Arguments of `verify` that say nothing about a picture that was written.
-fn not_of_pictures() -> impl IntoIterator<Item = &'static str> {
-    RENDERING.into_iter().chain(CAMERA).filter(|id| *id != "path").chain(["report"])
-}
-
-/// Arguments that describe the camera and the size of the picture.
-pub(super) const CAMERA: [&str; 21] = [
-    "size",
-    "camera",
-    "eye",
-    "look_at",
-    "direction",
-    "view",
-    "turn",
-    "margin",
-    "zoom",
-    "up",
-    "fov",
-    "distance",
-    "half_extent",
-    "aperture_radius",
-    "f_stop",
-    "focal_length",
-    "focus_distance",
-    "focus_on",
-    "angle",
-    "separation",
-    "convergence",
-];
-
-/// The other arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay`
-/// excludes them, as it does those of the camera.
-const RENDERING: [&str; 13] = [
-    "path",
-    "format",
-    "radius",
-    "color",
-    "frame",
-    "topology",
-    "columns",
-    "adapter",
-    "limits",
-    "accel",
-    "paths",
-    "save",
-    "tile_seed",
-];
-
 #[derive(Debug, Args)]
-#[command(
-    after_help = AFTER_HELP
-)]
+#[command(after_help = AFTER_HELP)]
 pub(super) struct VerifyArgs {
     /// File to check: a scene file or a data file, as for `render`; or with --scene a picture
     #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 
-use super::args::{CAMERA, ViewArgs};
+use super::args::ViewArgs;
 use super::certify_report::Report;
+use super::excluded_flags::CAMERA;
 use super::failure::Failure;
 use super::input::{Input, Source, read};
 use super::output::{check_not_inputs, check_writable, name_all, unnamed};

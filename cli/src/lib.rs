@@ -38,6 +38,7 @@ mod device;
 #[cfg(feature = "gpu")]
 mod dump_shaders;
 mod encoding;
+mod excluded_flags;
 mod failure;
 mod file_info;
 mod file_info_text;

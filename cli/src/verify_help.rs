@@ -1,7 +1,7 @@
 //! What `pinhole verify --help` says at its end.
 
-pub(super) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and color. It computes in \
-    f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
+pub(super) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and \
+    color. It computes in f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
     given one of them. The CPU reference never replaces an adapter here.\n\n\
     Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
     or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
@@ -14,5 +14,5 @@ pub(super) const AFTER_HELP: &str = "The check covers the data on the device and
     outcome, legal), `studio` (only with the integrator `studio`: samples, \
      stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
      outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
-    (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program that rendered. New versions may add \
-    keys, but do not change these.";
+    (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program \
+    that rendered. New versions may add keys, but do not change these.";
