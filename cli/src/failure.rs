@@ -42,10 +42,6 @@ pub(super) enum Failure {
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only devices are asked again"))]
     Memory(anyhow::Error),
     /// The user stopped it while a device was at work.
-    #[cfg_attr(
-        not(feature = "gpu"),
-        expect(dead_code, reason = "without a device the program exits at once")
-    )]
     Stopped,
     /// The user stopped it after some of several files were complete, as the message says.
     StoppedBetween(&'static str),

@@ -2,7 +2,9 @@
 
 use crate::camera::View;
 use crate::geometry::bounds::Bounds;
-use crate::image::{DoesNotFit, Image, ImageTooLarge, LayerSet, NO_ID};
+#[cfg(feature = "gpu")]
+use crate::image::{DoesNotFit, ImageTooLarge};
+use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 
 /// A picture by primary rays of some spheres of a scene, with the distance at which each ray hits. Of the pictures of all
@@ -112,6 +114,7 @@ impl Nearest {
     }
 
     /// Copies a part of the film into this picture, with its first pixel at `origin`.
+    #[cfg(feature = "gpu")]
     pub(crate) fn put(&mut self, part: &Self, origin: [u32; 2]) -> Result<(), DoesNotFit> {
         self.image.put(&part.image, origin)?;
         let width = self.image.width() as usize;
@@ -130,6 +133,7 @@ impl Nearest {
     }
 
     /// A picture in which every ray misses.
+    #[cfg(feature = "gpu")]
     pub(crate) fn misses(
         [width, height]: [u32; 2],
         layers: LayerSet,
