@@ -59,6 +59,14 @@ fn the_checker_knows_no_structure_and_no_renderer() {
     }
 }
 
+/// Lines are drawn by the host and judged by the checker, which finds them by itself.
+#[test]
+fn the_checker_does_not_draw_outlines() {
+    assert_absent("src/verify", &["image::outline", "outline::draw"], &[]);
+    let named = ["crate::verify", "verify::"];
+    assert_absent("src/image/outline", &named, &[]);
+}
+
 #[test]
 fn only_the_gpu_module_names_wgpu() {
     for (path, text) in sources("src") {
@@ -142,6 +150,7 @@ fn readers_and_writers_touch_no_files() {
         "demo.rs",
         "interrupt.rs",
         "job/files.rs",
+        "memory/control_group.rs",
         "prices.rs",
         "process.rs",
     ];

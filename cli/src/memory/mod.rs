@@ -1,8 +1,10 @@
 //! Checks that a picture or a scene fits into memory before work on it begins.
 
+mod control_group;
+
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-use super::failure::Failure;
+use crate::failure::Failure;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
@@ -57,18 +59,22 @@ pub(super) fn check_reading(what: &str, size: u64) -> Result<(), String> {
 pub(super) fn available() -> Option<u64> {
     let what = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(what);
-    let in_group = system
-        .cgroup_limits()
-        .map_or(u64::MAX, |limits| limits.total_memory.saturating_sub(limits.rss));
+    let in_group = control_group::free().unwrap_or(u64::MAX);
     match system.available_memory() {
         0 => None,
         free => Some(free.min(in_group)),
     }
 }
 
-/// Formats a number of bytes in MiB or GiB.
+/// Formats a number of bytes in KiB, MiB or GiB.
 pub(super) fn readable(bytes: u64) -> String {
-    const MIB: f64 = (1 << 20) as f64;
-    let mib = bytes as f64 / MIB;
-    if mib < 1024.0 { format!("{mib:.0} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+    const KIB: f64 = 1024.0;
+    let kib = bytes as f64 / KIB;
+    if kib < KIB {
+        format!("{kib:.0} KiB")
+    } else if kib < KIB * KIB {
+        format!("{:.0} MiB", kib / KIB)
+    } else {
+        format!("{:.1} GiB", kib / KIB / KIB)
+    }
 }
