@@ -32,6 +32,11 @@ impl From<&DenoiseCertificate> for DenoiserReport {
 }
 
 impl DenoiserReport {
+    /// Whether a pixel is not legal.
+    pub(super) fn is_violated(&self) -> bool {
+        self.violation_count > 0
+    }
+
     /// The report as one line of text.
     pub(super) fn line(&self) -> String {
         let Self { pixels, undecided, violation_count, .. } = self;
@@ -48,7 +53,7 @@ pub(super) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
 }
 
 #[cfg(feature = "gpu")]
-pub(super) use rendered::render;
+pub(super) use rendered::{render, shrunk};
 
 #[cfg(feature = "gpu")]
 mod rendered {
@@ -60,7 +65,7 @@ mod rendered {
     use crate::{interrupt, progress};
     use pinhole::accel::AccelChoice;
     use pinhole::camera::View;
-    use pinhole::camera::film::Film;
+    use pinhole::camera::film::{Film, FilmError};
     use pinhole::gpu::Headless;
     use pinhole::image::denoise::GUIDES;
 
@@ -76,14 +81,8 @@ mod rendered {
     ) -> Result<[Image; 2], Failure> {
         let mut settings = input.settings.unfinished();
         settings.sampling.samples = settings.sampling.samples.min(SAMPLES);
-        let (width, height) = (input.film.width(), input.film.height());
-        let shrink = |side: u32| {
-            let side = u64::from(side) * u64::from(SIDE) / u64::from(width.max(height).max(SIDE));
-            side.max(1) as u32
-        };
-        let film = Film::new(shrink(width), shrink(height))
-            .context("the picture is too narrow for its denoiser to be checked")?
-            .with_y_axis(input.film.y_axis());
+        let film = shrunk(&input.film, SIDE)
+            .context("the picture is too narrow for its denoiser to be checked")?;
         let view = View::new(input.camera.as_ref(), film);
         let plan = |choice| headless.plan(&input.scene, &view, &settings, GUIDES, choice, 0);
         let done = with_structures(headless, choice, plan, |plan| {
@@ -99,5 +98,16 @@ mod rendered {
         })?;
         let (pictures, _) = done.map_err(|error| explained_alone(headless, &error))?;
         Ok(pictures)
+    }
+
+    /// The same picture with a longer side of at most this many pixels.
+    pub(crate) fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
+        let (width, height) = (film.width(), film.height());
+        let shrink = |side: u32| {
+            let side =
+                u64::from(side) * u64::from(longest) / u64::from(width.max(height).max(longest));
+            side.max(1) as u32
+        };
+        Ok(Film::new(shrink(width), shrink(height))?.with_y_axis(film.y_axis()))
     }
 }

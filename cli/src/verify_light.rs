@@ -7,6 +7,9 @@ use serde::Serialize;
 use super::verify_report::LISTED;
 use pinhole::verify::{LitCertificate, LitOpen, LitViolation, StageCounts};
 
+/// The largest number of open searches in the table.
+const LINES: usize = 3;
+
 /// The object `paths` or `studio` of the JSON document.
 #[derive(Serialize)]
 pub(super) struct LightReport {
@@ -27,16 +30,50 @@ pub(super) struct LightReport {
     #[serde(skip)]
     pub(super) line: String,
     /// The first stages with several legal results, and those of which the check says little.
-    #[serde(skip)]
-    pub(super) open: Vec<LitOpen>,
+    pub(super) open: Vec<ListedOpen>,
     /// The stages in the order in which a sample passes through them.
     #[serde(skip)]
     pub(super) order: Vec<&'static str>,
 }
 
 impl LightReport {
+    /// Lines of text about the counts, and about the first open searches.
+    pub(super) fn lines(&self) -> String {
+        let open = self.open.iter().filter(|open| !open.legal.is_empty());
+        let lines = open.take(LINES).map(|open| format!("open: {}\n", open.line));
+        std::iter::once(format!("{}\n", self.line)).chain(lines).collect()
+    }
+
+    /// Whether nothing is known to be wrong.
+    pub(super) fn is_without_fault(&self) -> bool {
+        self.violation_count == 0 && self.upload.is_none()
+    }
+
     pub(super) fn is_studio(&self) -> bool {
         self.samples.is_some()
+    }
+}
+
+/// A stage that is open, or of which the check says little.
+#[derive(Serialize)]
+pub(super) struct ListedOpen {
+    pub(super) pixel: [u32; 2],
+    pub(super) sample: u32,
+    pub(super) surface: u32,
+    pub(super) stage: &'static str,
+    pub(super) is_undecided: bool,
+    /// Of an open search, up to four legal answers.
+    pub(super) legal: Vec<String>,
+    /// The same as one line of text.
+    #[serde(skip)]
+    pub(super) line: String,
+}
+
+impl From<&LitOpen> for ListedOpen {
+    fn from(open: &LitOpen) -> Self {
+        let LitOpen { pixel, sample, surface, stage, is_undecided, ref legal, .. } = *open;
+        let (stage, legal, line) = (stage.name(), legal.clone(), open.to_string());
+        Self { pixel, sample, surface, stage, is_undecided, legal, line }
     }
 }
 
@@ -81,7 +118,7 @@ impl From<&LitCertificate> for LightReport {
             order: stages.iter().map(|(name, _)| *name).collect(),
             stages: stages.into_iter().map(|(name, counts)| (name, counts.into())).collect(),
             rectangles: certificate.rectangles.clone(),
-            open: certificate.open.clone(),
+            open: certificate.open.iter().map(ListedOpen::from).collect(),
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violation_count: certificate.violation_count,
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use serde::Serialize;
 
-use super::verify_light::{Counts, LightReport, Listed};
+use super::verify_light::{Counts, LightReport, Listed, ListedOpen};
 use super::verify_page::grouped;
 use super::verify_page_spot::{Area, Spot};
 use super::verify_pictures::Window;
@@ -22,9 +22,9 @@ pub(super) struct LightSection<'a> {
     checked: String,
     upload: Option<&'a str>,
     /// The first violations.
-    violations: Vec<Zoom<'a>>,
+    violations: Vec<Zoom>,
     /// The first stages that are open or undecided.
-    open: Vec<Zoom<'a>>,
+    open: Vec<Zoom>,
     /// What was checked of the picture, if that is not all of it.
     areas: Vec<Area>,
     legal: bool,
@@ -32,7 +32,7 @@ pub(super) struct LightSection<'a> {
 
 /// A stage of a sample, with the pixels around it.
 #[derive(Serialize)]
-struct Zoom<'a> {
+struct Zoom {
     number: usize,
     pixel: [u32; 2],
     sample: u32,
@@ -40,7 +40,7 @@ struct Zoom<'a> {
     stage: &'static str,
     /// What the stage is about.
     meaning: &'static str,
-    message: &'a str,
+    message: String,
     color: String,
     #[serde(flatten)]
     spot: Spot,
@@ -76,6 +76,15 @@ const OPEN: &str = "several results are legal here, as at a silhouette or at a r
 
 const UNDECIDED: &str = "the result is legal, but its bounds are so wide that this says little";
 
+/// What is said about a stage that is open or undecided.
+fn message_of(open: &ListedOpen) -> String {
+    match (open.is_undecided, open.legal.is_empty()) {
+        (true, _) => UNDECIDED.to_owned(),
+        (false, true) => OPEN.to_owned(),
+        (false, false) => format!("legal is {}", open.legal.join(", or ")),
+    }
+}
+
 fn meaning(stage: &str) -> &'static str {
     STAGES.into_iter().find(|(name, _)| *name == stage).map_or("", |(_, meaning)| meaning)
 }
@@ -97,12 +106,12 @@ impl<'a> LightSection<'a> {
         };
         let violations = report.violations.iter().map(|violation| {
             let Listed { pixel, sample, surface, stage, message } = violation;
-            (*pixel, *sample, *surface, *stage, &**message)
+            (*pixel, *sample, *surface, *stage, message.clone())
         });
-        let open = report.open.iter().map(|open| {
-            let message = if open.is_undecided { UNDECIDED } else { OPEN };
-            (open.pixel, open.sample, open.surface, open.stage.name(), message)
-        });
+        let open = report
+            .open
+            .iter()
+            .map(|open| (open.pixel, open.sample, open.surface, open.stage, message_of(open)));
         let zoom = |(number, (pixel, sample, surface, stage, message))| {
             let (window, spot) = Spot::around(pixel, film);
             let (color, meaning) = (draw(window)?, meaning(stage));

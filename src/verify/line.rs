@@ -27,6 +27,14 @@ impl Line {
         Self { origin, direction, bend }
     }
 
+    /// How far beside the silhouette of a sphere the ray is, as a fraction of its radius.
+    pub(super) fn beside_silhouette(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
+        let to_center = wide([x, y, z]) - self.origin;
+        let foot = to_center.cross(self.direction).length() / self.direction.length();
+        let radius = f64::from(radius.abs());
+        (foot - radius).abs() / radius
+    }
+
     /// The reciprocal of each component of the direction.
     pub(super) fn inverse(&self) -> DVec3 {
         let size = self.direction.abs().max(DVec3::splat(SMALLEST_COMPONENT));

@@ -52,6 +52,7 @@ mod light;
 mod nearest;
 mod npy;
 mod outliers;
+mod outlined;
 mod pages;
 mod perspective;
 mod pictures;

@@ -89,7 +89,7 @@ impl fmt::Display for LitViolation {
 pub(super) const OPEN_KEPT: usize = 32;
 
 /// A stage of which several results are legal, or whose bounds are so wide that its check says little.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LitOpen {
     /// Column and row in the film, from the top left.
@@ -102,6 +102,18 @@ pub struct LitOpen {
     pub stage: LitStage,
     /// Whether its check says little; otherwise the device gave one of several legal results.
     pub is_undecided: bool,
+    /// Of searches, up to four legal answers in words: spheres that may be the nearest, or that may hide a light and need
+    /// not. Of other stages none are listed.
+    pub legal: Vec<String>,
+}
+
+impl fmt::Display for LitOpen {
+    /// Writes where the stage is and what is legal, on one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pixel: [i, j], sample, surface, stage, legal, .. } = self;
+        let (stage, legal) = (stage.name(), legal.join(", or "));
+        write!(f, "pixel ({i}, {j}), sample {sample}, surface {surface}, {stage}: {legal}")
+    }
 }
 
 /// The number of stages that were judged, by verdict. A stage counts once for each sample

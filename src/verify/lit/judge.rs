@@ -22,13 +22,15 @@ pub(in crate::verify) enum StageOutcome {
 /// A stage without an illegal result.
 pub(in crate::verify) struct Judged {
     verdict: StageOutcome,
+    /// The legal answers of an open search, in words.
+    alternatives: Vec<String>,
     /// How far numbers are from the middle of their bounds, if these say something.
     deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
 impl From<StageOutcome> for Judged {
     fn from(verdict: StageOutcome) -> Self {
-        Self { verdict, deviations: Vec::new() }
+        Self { verdict, alternatives: Vec::new(), deviations: Vec::new() }
     }
 }
 
@@ -38,7 +40,7 @@ impl From<Expected> for Judged {
         if expected.is_wide {
             return StageOutcome::Undecided.into();
         }
-        Self { verdict: StageOutcome::Decided, deviations: expected.deviations }
+        Self { deviations: expected.deviations, ..StageOutcome::Decided.into() }
     }
 }
 
@@ -114,11 +116,12 @@ impl LitCertificate {
         result: Result<Judged, Mismatch>,
     ) {
         match result {
-            Ok(Judged { verdict, deviations }) => {
+            Ok(Judged { verdict, alternatives, deviations }) => {
                 self.counts(stage).count(&verdict);
                 let is_undecided = matches!(verdict, StageOutcome::Undecided);
                 if is_undecided || matches!(verdict, StageOutcome::Open) {
-                    self.add_open(LitOpen { pixel, sample, surface, stage, is_undecided });
+                    let legal = alternatives;
+                    self.add_open(LitOpen { pixel, sample, surface, stage, is_undecided, legal });
                 }
                 for (stage, what, deviation) in deviations {
                     self.deviations.add(stage.name(), what, deviation);
@@ -190,6 +193,13 @@ pub(in crate::verify) fn unchanged(
     (0..PathState::SLOTS).try_for_each(|slot| expected.same(name, [before, after], slot))
 }
 
-pub(in crate::verify) fn simple(is_open: bool) -> Judged {
-    if is_open { StageOutcome::Open } else { StageOutcome::Decided }.into()
+/// A search; `alternatives` names the legal answers if there are several.
+pub(in crate::verify) fn searched(
+    is_open: bool,
+    alternatives: impl FnOnce() -> Vec<String>,
+) -> Judged {
+    match is_open {
+        true => Judged { alternatives: alternatives(), ..StageOutcome::Open.into() },
+        false => StageOutcome::Decided.into(),
+    }
 }

@@ -7,6 +7,7 @@
 //! Kernels that shade are evaluated with intervals, number by number (`verify/number`), once for every combination of
 //! decisions that the intervals leave open, such as which side of a sphere is hit, or which point of a light is chosen.
 
+pub(super) mod alternatives;
 pub(super) mod certificate;
 pub(super) mod expected;
 pub(super) mod film;

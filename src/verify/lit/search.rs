@@ -3,6 +3,7 @@
 
 use glam::{DVec3, Vec4};
 
+use super::alternatives::Doubts;
 use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
 use super::kernel::Hit;
@@ -141,7 +142,12 @@ pub(in crate::verify) fn check_hit(
     Ok(is_open)
 }
 
-/// Judges the occlusion of a light; returns whether both answers are legal. `sphere_of_light` is the emitter, if the
+/// Whether a sphere may hide a light at this distance, and whether it must.
+pub(in crate::verify) fn hides(hit: &LegalHit, may_miss: bool, light: Interval) -> (bool, bool) {
+    (hit.lowest() < light.high, !may_miss && hit.highest() < light.low)
+}
+
+/// Judges the occlusion of a light; if both answers are legal, returns why. `sphere_of_light` is the emitter, if the
 /// light is one.
 pub(in crate::verify) fn check_open(
     Searched { model, scene, candidates }: Searched<'_>,
@@ -149,7 +155,7 @@ pub(in crate::verify) fn check_open(
     sphere_of_light: Option<[f32; 4]>,
     open: f32,
     expected: &mut Expected,
-) -> Result<bool, Mismatch> {
+) -> Result<Option<Doubts>, Mismatch> {
     const OPEN: (LitStage, &str) = (LitStage::Occlude, "the visibility of the light");
     let before = state.number(slot::PENDING);
     let [x, y, z, distance] = four(state, slot::SHADOW);
@@ -157,6 +163,7 @@ pub(in crate::verify) fn check_open(
     let Interval { low, high } = entry.entered.enter;
     let rest = (Number::recorded(distance) - Number::between(low, high)).interval();
     let (mut may_be_hidden, mut must_be_hidden) = (false, false);
+    let mut doubts = Doubts::NONE;
     let departure = state.departure();
     let is_exempt = |sphere: [f32; 4]| {
         let departed = scene.spheres().get(departure.id as usize);
@@ -170,8 +177,12 @@ pub(in crate::verify) fn check_open(
                 return rest.high;
             }
             if let Some((hit, may_miss)) = legal_hit(candidate, &entry.line, entry.slack) {
-                may_be_hidden |= hit.lowest() < rest.high;
-                must_be_hidden |= !may_miss && hit.highest() < rest.low;
+                let (may, must) = hides(&hit, may_miss, rest);
+                may_be_hidden |= may;
+                must_be_hidden |= must;
+                if may && !must {
+                    doubts.add(candidate, &entry.line, may_miss);
+                }
             }
             // A certain answer ends the search.
             if must_be_hidden { -1.0 } else { rest.high }
@@ -190,5 +201,5 @@ pub(in crate::verify) fn check_open(
     if !is_hidden {
         expected.bits(OPEN, open.to_bits(), before.to_bits())?;
     }
-    Ok(may_be_hidden && !must_be_hidden)
+    Ok((may_be_hidden && !must_be_hidden).then_some(doubts))
 }

@@ -9,7 +9,7 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::film;
-use crate::verify::lit::judge::{Judged, along_choices, judge_pixels, simple, unchanged};
+use crate::verify::lit::judge::{Judged, along_choices, judge_pixels, searched, unchanged};
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
@@ -128,7 +128,8 @@ impl PathCheck<'_> {
         legal: &mut LegalHits,
     ) -> Result<Judged, Mismatch> {
         let mut expected = Expected::default();
-        search::check_hit(self.searched(), state, last, hit, &mut expected, legal).map(simple)
+        let is_open = search::check_hit(self.searched(), state, last, hit, &mut expected, legal)?;
+        Ok(searched(is_open, || legal.alternatives()))
     }
 
     fn scatter(
@@ -163,6 +164,8 @@ impl PathCheck<'_> {
             .then(|| emitters.get((emitter as usize).saturating_mul(3)))
             .flatten()
             .map(|sphere| sphere.map(f32::from_bits));
-        search::check_open(self.searched(), state, sphere_of_light, open, &mut expected).map(simple)
+        let doubts =
+            search::check_open(self.searched(), state, sphere_of_light, open, &mut expected)?;
+        Ok(searched(doubts.is_some(), || doubts.unwrap_or_default().alternatives()))
     }
 }

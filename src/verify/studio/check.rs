@@ -11,7 +11,7 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::judge::{
-    Judged, StageOutcome, along_choices, judge_pixels, simple, unchanged,
+    Judged, StageOutcome, along_choices, judge_pixels, searched, unchanged,
 };
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
@@ -118,9 +118,10 @@ impl StudioCheck<'_> {
         legal: &mut LegalHits,
     ) -> Result<Judged, Mismatch> {
         let Checker { scene, candidates, .. } = self.checker;
-        let searched = Searched { model: &self.model, scene, candidates };
+        let given = Searched { model: &self.model, scene, candidates };
         let mut expected = Expected::default();
-        search::check_hit(searched, state, last, hit, &mut expected, legal).map(simple)
+        let is_open = search::check_hit(given, state, last, hit, &mut expected, legal)?;
+        Ok(searched(is_open, || legal.alternatives()))
     }
 
     /// Judges what is seen of a surface, and says what was met, if that is known.
@@ -215,9 +216,9 @@ impl StudioCheck<'_> {
                 Kind::Ambient => kernel.is_direction_hidden(candidates, index),
             })
         } else {
-            Some(Hidden { may: false, must: false })
+            Some(Hidden::NEVER)
         };
-        let Some(Hidden { may, must }) = legal else {
+        let Some(Hidden { may, must, doubts }) = legal else {
             return Ok(Some(StageOutcome::Undecided.into()));
         };
         let answer = match (is_hidden, may, must) {
@@ -225,7 +226,7 @@ impl StudioCheck<'_> {
             (true, false, _) => "hidden, but nothing is in between",
             (false, _, true) => "visible, but something is in between",
             _ if !is_searched => return Ok(None),
-            _ => return Ok(Some(simple(may && !must))),
+            _ => return Ok(Some(searched(may && !must, || doubts.alternatives()))),
         };
         let (stage, what) = match found.kind {
             Kind::Lights => (LitStage::Shadow, "light"),

@@ -6,27 +6,34 @@ use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
 use crate::verify::candidates::Candidates;
 use crate::verify::hit::legal_hit;
+use crate::verify::lit::alternatives::Doubts;
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::lamp::Lamp;
 use crate::verify::lit::recording::{flag, slot};
-use crate::verify::lit::search::is_same;
+use crate::verify::lit::search::{hides, is_same};
 use crate::verify::lit::warp::{axes_around, cosine_direction};
 use crate::verify::number::{Number, Vector};
 
 /// Whether light may be hidden, and whether it must be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hidden {
     pub(super) may: bool,
     pub(super) must: bool,
+    /// The spheres that may hide it and need not.
+    pub(super) doubts: Doubts,
 }
 
 impl Hidden {
-    const NEVER: Self = Self { may: false, must: false };
-    const ALWAYS: Self = Self { may: true, must: true };
+    pub(super) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
+    const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
 
     /// The answers to several questions of which one is asked.
     pub(super) fn or(self, other: Self) -> Self {
-        Self { may: self.may || other.may, must: self.must && other.must }
+        Self {
+            may: self.may || other.may,
+            must: self.must && other.must,
+            doubts: self.doubts.and(other.doubts),
+        }
     }
 }
 
@@ -105,7 +112,7 @@ impl Kernel<'_> {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
         let Some(ray) = Aimed::new(corners, wide(state.vector(slot::ORIGIN)), direction) else {
-            return Hidden { may: true, must: false };
+            return Hidden { must: false, ..Hidden::ALWAYS };
         };
         let rest = (distance - Number::between(ray.enter.low, ray.enter.high)).interval();
         if !ray.may_hit_box || rest.high <= 0.0 {
@@ -121,8 +128,12 @@ impl Kernel<'_> {
                 return rest.high;
             }
             if let Some((hit, may_miss)) = legal_hit(candidate, &ray.line, ray.slack) {
-                found.may |= hit.lowest() < rest.high;
-                found.must |= !may_miss && hit.highest() < rest.low;
+                let (may, must) = hides(&hit, may_miss, rest);
+                found.may |= may;
+                found.must |= must;
+                if may && !must {
+                    found.doubts.add(candidate, &ray.line, may_miss);
+                }
             }
             // A certain answer ends the search.
             if found.must { -1.0 } else { rest.high }
