@@ -277,6 +277,12 @@ fn render_views(
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
     if let Some(bricks) = &input.bricks {
+        let partial = stop_rule.keeps_partial().then_some("--keep-partial");
+        if let Some(flag) = stop_rule.open_end().or(partial) {
+            return Err(Failure::usage(format!(
+                "{flag}: all samples of a file of bricks are complete at the same time; choose --samples"
+            )));
+        }
         return bricks::render(bricks, input, views, layers, opened);
     }
     match opened {

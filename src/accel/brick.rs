@@ -30,19 +30,7 @@ pub enum Structure {
 }
 
 impl Structure {
-    /// All structures that any device can search: not [`Structure::RayQuery`].
-    pub const ALL: &'static [Self] = &[
-        Self::List,
-        Self::Grid(ListLayout::Referenced),
-        Self::Grid(ListLayout::Balls),
-        Self::NestedGrid(ListLayout::Referenced),
-        Self::NestedGrid(ListLayout::Balls),
-        Self::WideTree,
-        Self::BinaryTree,
-    ];
-
-    /// All structures for which there are kernels.
-    #[cfg(feature = "gpu")]
+    /// All structures for which there are kernels; the last needs more than any device has.
     pub(crate) const WITH_KERNELS: &'static [Self] = &[
         Self::List,
         Self::Grid(ListLayout::Referenced),
@@ -53,6 +41,12 @@ impl Structure {
         Self::BinaryTree,
         Self::RayQuery,
     ];
+
+    /// All structures that any device can search: not [`Structure::RayQuery`].
+    pub const ALL: &'static [Self] = match Self::WITH_KERNELS {
+        [any @ .., Self::RayQuery] => any,
+        all => all,
+    };
 
     /// The structures that [`AccelChoice::Auto`](super::AccelChoice::Auto) chooses among. The binary
     /// tree is built only if it is asked for.

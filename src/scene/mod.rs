@@ -22,6 +22,7 @@ mod duplicates;
 mod frame;
 pub mod material;
 mod material_table;
+mod parts;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
@@ -33,6 +34,7 @@ pub use appearance::{Appearance, Colors};
 pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
+pub use parts::{PartExtent, ScenePart, SceneParts};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 pub use whole::Whole;
 

@@ -7,7 +7,7 @@ use pinhole::scene::Whole;
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of a file of this version.
-pub(super) const START: &[u8; 17] = b"pinhole bricks 1\n";
+pub(super) const START: &[u8; 17] = b"pinhole bricks 2\n";
 
 /// How much of it all versions share.
 pub(super) const NAME: &[u8] = b"pinhole bricks ";

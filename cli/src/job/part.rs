@@ -15,7 +15,7 @@ use super::part_file::{self, Header, Pictures, payload};
 use super::pieces;
 use super::recipe::{Recipe, check_same};
 use super::units::parse_list;
-use crate::bricks::nearest_of;
+use crate::bricks::{Look, nearest_of};
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, ready};
@@ -141,7 +141,8 @@ impl Work<'_> {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
             let views = Views::of(input);
             check_device(input, &views, layers, opened)?;
-            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
+            let nearest =
+                nearest_of(&bricks, *first..*end, Look::of(input), &views, layers, opened)?;
             Pictures::Depth(nearest)
         } else {
             let tile = pieces::render(rectangle, layers, &mut |(origin, size)| {

@@ -144,9 +144,15 @@ fn assert_refused(folder: &Folder, run: &Run, code: i32, says: &str) {
 fn what_bricks_cannot_do_is_refused_with_a_reason() {
     let folder = sorted("a.npy", &f32_array(&spheres(50, [0.0; 3])), "--bricks 4");
     let cases = [
-        ("render a.bricks -o out.png --style studio", "light needs all spheres in memory"),
+        ("render a.bricks -o out.png --style studio", "light in bricks needs an adapter"),
         ("render a.bricks -o out.png --samples 4", "--samples applies only to"),
-        ("render a.bricks -o out.png --integrator path", "light needs all spheres in memory"),
+        ("render a.bricks -o out.png --integrator path", "light in bricks needs an adapter"),
+        ("render a.bricks -o out.png --style default --time 2s", "--time: all samples"),
+        ("render a.bricks -o out.png --style default --noise 0.1", "--noise: all samples"),
+        (
+            "render a.bricks -o out.png --style default --keep-partial",
+            "--keep-partial: all samples",
+        ),
         ("render a.bricks -o out.png --color-by index", "--color-by needs columns"),
         ("render a.bricks -o out.png --select x>0", "--select needs columns"),
         ("render a.bricks -o out.png --radius 1", "--radius applies when data is sorted"),
@@ -223,7 +229,7 @@ fn no_changed_file_of_bricks_is_used() {
     longer.push(0);
     assert_refused(&folder, &render(&longer), 1, "damaged or cut off");
     assert_refused(&folder, &render(b"x,y,z\n1,2,3\n"), 1, "this is not a file of bricks");
-    let other = [b"pinhole bricks 2\n", &good[17..]].concat();
+    let other = [b"pinhole bricks 1\n", &good[17..]].concat();
     assert_refused(&folder, &render(&other), 1, "of another version of its format");
     assert_refused(&folder, &folder.run("render c.bricks -o out.png"), 1, "c.bricks");
 }

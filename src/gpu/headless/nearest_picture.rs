@@ -34,13 +34,11 @@ impl Headless {
         let [width, height] = tile_size(&limits, self.shape(), film, false);
         let rows = rows_per_band(&limits, [width, height], false);
         for tile in tiles(film, [width, rows]) {
-            // A tile of a film always fits into it.
-            let Ok(part) = film.part(tile.origin, tile.size) else { continue };
+            let part = film.part(tile.origin, tile.size)?;
             let view = View::new(view.camera, part);
             let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (upload_watch, watch);
             let part = self.nearest_of_tile(scene, plan, &view, settings, layers, watches);
-            // A part of the picture always fits into it.
-            let _ = whole.put(&part.await?, tile.origin);
+            whole.put(&part.await?, tile.origin)?;
         }
         Ok(whole)
     }
