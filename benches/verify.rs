@@ -5,9 +5,10 @@
 //! cargo bench --bench verify -- cost        # the checker against the CPU reference
 //! cargo bench --bench verify -- fences      # tracing with and without fences, in turns
 //! cargo bench --bench verify -- margins    # ray queries, where there are any: the margin of boxes at which they fail
-//! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
-//! cargo bench --bench verify -- lit-campaign 500    # light paths of this number of random scenes; ends at a violation
-//! cargo bench --bench verify -- studio-campaign 500    # the same in random studios
+//! cargo bench --bench verify -- campaign 3    # as many times 100 million rays over many scenes; ends at a violation
+//! cargo bench --bench verify -- lit-campaign 500 1000    # light paths of 500 random scenes, the seeds from 1000 on;
+//!                                                        # ends at a violation
+//! cargo bench --bench verify -- studio-campaign 500 1000    # the same in random studios
 //! cargo bench --bench verify -- adversary 100    # devices that round as they like: all scenes of the campaign in small,
 //!                                                # and this number of random scenes and studios for each
 //! ```
@@ -18,12 +19,13 @@
     reason = "a benchmark may panic, and prints"
 )]
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
-use pinhole::glam::DVec3;
+use pinhole::glam::{DQuat, DVec3};
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, Structures};
 use pinhole::internals::ShaderEdit;
@@ -67,20 +69,20 @@ fn main() {
         margins();
     }
     // The campaign runs only if it is named, because it takes minutes.
-    if wanted.iter().any(|wanted| wanted == "campaign") {
-        campaign(&headless, 1080);
+    let number = |at: usize, default| wanted.get(at).map_or(default, |n| n.parse().unwrap());
+    if let Some(at) = wanted.iter().position(|wanted| wanted == "campaign") {
+        (0..number(at + 1, 1)).for_each(|round| campaign(&headless, 1080, round));
     }
     let campaigns: [(&str, ViewOf); 2] =
         [("lit-campaign", random_light::view), ("studio-campaign", random_light::studio)];
     for (name, view) in campaigns {
         if let Some(at) = wanted.iter().position(|wanted| wanted == name) {
-            let count = wanted.get(at + 1).map_or(500, |count| count.parse().unwrap());
-            lit_campaign(&headless, count, view);
+            let first = number(at + 2, 0);
+            lit_campaign(&headless, first..first + number(at + 1, 500), view);
         }
     }
     if let Some(at) = wanted.iter().position(|wanted| wanted == "adversary") {
-        let count = wanted.get(at + 1).map_or(100, |count| count.parse().unwrap());
-        adversaries(count);
+        adversaries(number(at + 1, 100));
     }
 }
 
@@ -91,9 +93,9 @@ fn adversaries(count: u64) {
         let options = HeadlessOptions { rewrite, ..HeadlessOptions::default() };
         let headless = Headless::open(&options).unwrap();
         println!("{rounding:?}");
-        campaign(&headless, 128);
+        campaign(&headless, 128, 0);
         for view in [random_light::view as ViewOf, random_light::studio] {
-            lit_campaign(&headless, count, view);
+            lit_campaign(&headless, 0..count, view);
         }
     }
 }
@@ -141,7 +143,8 @@ fn standard(headless: &Headless) {
         let checker = Checker::new(&scene).unwrap();
         let prepared = started.elapsed();
         let bounds = scene.bounds().unwrap();
-        let far = far(bounds.center(), bounds.size().max_element(), 100.0);
+        let away = DVec3::new(0.48, 0.36, -0.8);
+        let far = far(bounds.center(), bounds.size().max_element(), away, 100.0);
         let near = standard.camera().unwrap();
         let views: [(&str, &dyn Camera); 2] = [("", &near), (", from 100 times as far", &far)];
         for (from, camera) in views {
@@ -163,9 +166,9 @@ fn standard(headless: &Headless) {
     println!();
 }
 
-/// Returns a camera at a distance of `times` the size, which sees as much of the scene as a near one.
-fn far(center: DVec3, size: f64, times: f64) -> PinholeCamera {
-    let eye = center + DVec3::new(0.48, 0.36, -0.8) * times * size;
+/// Returns a camera at a distance of `times` the size in a direction, which sees as much of the scene as a near one.
+fn far(center: DVec3, size: f64, away: DVec3, times: f64) -> PinholeCamera {
+    let eye = center + away * times * size;
     let pose = Pose::looking_at(eye, center, [0.0, 1.0, 0.0]).unwrap();
     PinholeCamera::new(pose, times * size, [0.8 * size, 0.8 * size]).unwrap()
 }
@@ -266,13 +269,13 @@ fn margins() {
     PARTS.iter().for_each(|part| print!("{part:>9.5}"));
     println!();
     let mut sums = [0; PARTS.len()];
-    for (name, scene) in campaign_scenes() {
+    for (name, scene) in campaign_scenes(0) {
         if scene.spheres().len() > 10_000 {
             // A list of as many spheres takes too long.
             continue;
         }
         let (mut rays, mut missed) = (0, [0; PARTS.len()]);
-        for (_, camera) in campaign_views(&scene) {
+        for (_, camera) in campaign_views(&scene, 0) {
             let view = View::new(camera.as_ref(), Film::new(256, 256).unwrap());
             let hits = |choice, part| {
                 let plan = headless.plan_accel(&scene, choice).with_box_margin(part);
@@ -301,8 +304,10 @@ fn margins() {
 
 type Named = (&'static str, Scene);
 
-fn campaign_scenes() -> Vec<Named> {
-    let made = |kind: Kind, count| kind.spheres(count, 7).unwrap();
+/// The scenes of a round; each round has random numbers of its own.
+fn campaign_scenes(round: u64) -> Vec<Named> {
+    let seed = 7 + 100 * round;
+    let made = |kind: Kind, count| kind.spheres(count, seed).unwrap();
     let offset = |spheres: Vec<[f32; 4]>| {
         spheres.into_iter().map(|[x, y, z, r]| [x + 1e6, y - 2e6, z + 5e5, r]).collect()
     };
@@ -325,10 +330,10 @@ fn campaign_scenes() -> Vec<Named> {
         ("one around all", spheres::one_around_all(3000)),
         ("dense in places", spheres::clusters(20, 500)),
         ("two to the 45", spheres::scaled(&spheres::four_decades(3000), 2_f32.powi(45))),
-        ("two to the -40", spheres::scaled(&spheres::random(3000, 2, |_| 0.02), 2_f32.powi(-40))),
-        ("offset by a million", offset(spheres::random(500, 3, |_| 64.0))),
+        ("two to the -40", spheres::scaled(&spheres::random(3000, seed - 5, |_| 0.02), 2_f32.powi(-40))),
+        ("offset by a million", offset(spheres::random(500, seed - 4, |_| 64.0))),
         ("a ground of radius a million", {
-            let mut spheres = spheres::random(500, 4, |_| 0.03);
+            let mut spheres = spheres::random(500, seed - 3, |_| 0.03);
             spheres.push([0.5, -1e6, 0.5, 1e6]);
             spheres
         }),
@@ -338,29 +343,33 @@ fn campaign_scenes() -> Vec<Named> {
     .into()
 }
 
-/// Returns views from outside, from 100 times as far away, from within, and with parallel rays.
-fn campaign_views(scene: &Scene) -> Vec<(&'static str, Box<dyn Camera>)> {
+/// Returns views from outside, from 100 times as far away, from within, and with parallel rays; each round looks from
+/// elsewhere.
+fn campaign_views(scene: &Scene, round: u64) -> Vec<(&'static str, Box<dyn Camera>)> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let up = [0.1, 1.0, 0.2];
-    let outside = Pose::looking_at(center + DVec3::new(0.9, 0.6, 1.4) * size, center, up).unwrap();
-    let within = Pose::looking_along(center, [0.3, -0.4, 0.8], up).unwrap();
+    let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.64, 0.48), round as f64);
+    let from = turn * DVec3::new(0.9, 0.6, 1.4);
+    let outside = Pose::looking_at(center + from * size, center, up).unwrap();
+    let within = Pose::looking_along(center, turn * DVec3::new(0.3, -0.4, 0.8), up).unwrap();
+    let away = turn * DVec3::new(0.48, 0.36, -0.8);
     vec![
         ("near", Box::new(PinholeCamera::with_vertical_fov(outside, 0.7, 1.0).unwrap())),
-        ("far", Box::new(far(center, size, 100.0))),
+        ("far", Box::new(far(center, size, away, 100.0))),
         ("within", Box::new(PinholeCamera::with_vertical_fov(within, 1.9, 1.0).unwrap())),
         ("parallel", Box::new(OrthographicCamera::new(outside, [0.8 * size, 0.8 * size]).unwrap())),
     ]
 }
 
-fn campaign(headless: &Headless, side: u32) {
+fn campaign(headless: &Headless, side: u32, round: u64) {
     heading();
     let film = Film::new(side, side).unwrap();
     let (mut rays, mut pictures) = (0, 0);
     let started = Instant::now();
-    for (name, scene) in campaign_scenes() {
+    for (name, scene) in campaign_scenes(round) {
         let checker = Checker::new(&scene).unwrap();
-        for (from, camera) in campaign_views(&scene) {
+        for (from, camera) in campaign_views(&scene, round) {
             let recording = record(headless, &scene, camera.as_ref(), &film);
             let certificate = checker.certify(&recording);
             row(&format!("{name}, {from}"), &certificate);
@@ -372,12 +381,13 @@ fn campaign(headless: &Headless, side: u32) {
     println!("{rays} rays in {pictures} pictures, {:.0} s\n", started.elapsed().as_secs_f64());
 }
 
-/// Checks the light of `count` random scenes, with the seeds from 0 on.
-fn lit_campaign(headless: &Headless, count: u64, view: ViewOf) {
+/// Checks the light of random scenes with these seeds.
+fn lit_campaign(headless: &Headless, seeds: Range<u64>, view: ViewOf) {
     let mut all = LitCertificate::default();
     let (mut undecided, mut worst) = (0, 0.0);
     let started = Instant::now();
-    for seed in 0..count {
+    let count = seeds.end - seeds.start;
+    for seed in seeds {
         let RandomView { scene, camera, film, settings, name } = view(seed);
         let go_on = &mut |_: &_| Decision::GoOn;
         let view = View::new(camera.as_ref(), film);
