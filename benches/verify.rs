@@ -330,7 +330,10 @@ fn campaign_scenes(round: u64) -> Vec<Named> {
         ("one around all", spheres::one_around_all(3000)),
         ("dense in places", spheres::clusters(20, 500)),
         ("two to the 45", spheres::scaled(&spheres::four_decades(3000), 2_f32.powi(45))),
-        ("two to the -40", spheres::scaled(&spheres::random(3000, seed - 5, |_| 0.02), 2_f32.powi(-40))),
+        (
+            "two to the -40",
+            spheres::scaled(&spheres::random(3000, seed - 5, |_| 0.02), 2_f32.powi(-40)),
+        ),
         ("offset by a million", offset(spheres::random(500, seed - 4, |_| 64.0))),
         ("a ground of radius a million", {
             let mut spheres = spheres::random(500, seed - 3, |_| 0.03);

@@ -42,7 +42,7 @@ use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, LayerSet};
+use pinhole::image::{Image, LayerSet, SampleMean};
 #[cfg(feature = "gpu")]
 use pinhole::render::Watch;
 use pinhole::render::{Picture, RenderSettings};
@@ -276,9 +276,15 @@ fn render_views(
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
+    if stop_rule.samples_per_part().is_some() {
+        let sums = SampledPicture::BYTES_PER_PIXEL + SampleMean::BYTES_PER_PIXEL;
+        let extra = views.extra_bytes_per_pixel(layers) + sums + layers.bytes_per_pixel();
+        memory::check(&views.film(), &input.size_from, layers, extra)?;
+    }
     if let Some(bricks) = &input.bricks {
         let partial = stop_rule.keeps_partial().then_some("--keep-partial");
-        if let Some(flag) = stop_rule.open_end().or(partial) {
+        let parts = stop_rule.samples_per_part().map(|_| "--samples-per-part");
+        if let Some(flag) = stop_rule.open_end().or(partial).or(parts) {
             return Err(Failure::usage(format!(
                 "{flag}: all samples of a file of bricks are complete at the same time; choose --samples"
             )));
@@ -351,7 +357,10 @@ fn on_cpu(
         views.try_each(|view| {
             let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
             let watch = &mut |progress: &_| watching.decide(progress);
-            let picture = cpu::render_watched(&structure, view, settings, layers, watch);
+            let picture = match stop_rule.samples_per_part() {
+                Some(n) => cpu::render_in_parts(&structure, view, settings, layers, n, watch),
+                None => cpu::render_watched(&structure, view, settings, layers, watch),
+            };
             too_short = watching.too_short();
             Ok((picture?, watching))
         })
@@ -408,7 +417,10 @@ fn on_gpu(
             views.try_each(|view| {
                 let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
+                let picture = match stop_rule.samples_per_part() {
+                    Some(n) => headless.render_in_parts(&buffers, view, settings, layers, n, watch),
+                    None => headless.render_uploaded(&buffers, view, settings, layers, watch),
+                };
                 too_short = watching.too_short();
                 Ok((picture?, watching))
             })

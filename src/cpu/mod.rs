@@ -9,10 +9,11 @@
 use std::ops::Range;
 
 use crate::camera::View;
-use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, Pixel, RowMut};
+use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, NoMean, Pixel, RowMut};
 use crate::parallel;
 use crate::render::{
-    Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
+    Decision, InParts, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError,
+    Watch, to_the_end,
 };
 
 mod denoise;
@@ -48,6 +49,9 @@ pub enum RenderError {
     /// There is not enough memory for the image.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
+    /// The pictures of the parts of the samples have no mean.
+    #[error(transparent)]
+    Mean(#[from] NoMean),
     /// The caller ended the work.
     #[error("rendering was stopped")]
     Stopped,
@@ -100,6 +104,33 @@ pub fn render_watched<'a>(
 ) -> Result<Picture, RenderError> {
     let search = search.into();
     SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
+}
+
+/// Renders a lit picture in parts of `samples_per_part` samples, each a picture of its own, and takes the mean of all as
+/// [`SampleMean`](crate::image::SampleMean) does: these are the bits of parts that several machines render. Else it is like
+/// [`render_watched`], except that the picture cannot be finished early.
+///
+/// # Errors
+/// As for [`render_watched`].
+pub fn render_in_parts<'a>(
+    search: impl Into<Search<'a>>,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    layers: LayerSet,
+    samples_per_part: u32,
+    watch: &mut Watch<'_>,
+) -> Result<Picture, RenderError> {
+    let search = search.into();
+    let mut whole = InParts::new(settings.sampling.samples);
+    for sampling in settings.sampling.parts(samples_per_part) {
+        let part = RenderSettings { sampling, ..settings.unfinished() };
+        let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
+        let picture = render_watched(search, view, &part, settings.layers_for(layers), watch)?;
+        whole.add(picture)?;
+    }
+    let (image, samples, hits) = whole.finish().ok_or(RenderError::Stopped)?;
+    let image = finish(image, settings, layers);
+    Ok(Picture { image, samples, noise: None, hits: Some(hits) })
 }
 
 fn render_primary(

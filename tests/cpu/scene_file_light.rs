@@ -284,7 +284,8 @@ fn paths_and_samples() {
     let Integrator::Path(path) = found.integrator else { panic!("{found:?}") };
     assert_eq!((path.max_depth, path.roulette_from), (20, 5));
     assert_eq!(path.light_sampling, LightSampling::Direct);
-    assert_eq!(found.sampling, Sampling { samples: 100, seed: 7, filter: PixelFilter::Gaussian });
+    let filter = PixelFilter::Gaussian;
+    assert_eq!(found.sampling, Sampling { samples: 100, first: 0, seed: 7, filter });
 }
 
 #[test]

@@ -36,6 +36,7 @@ mod planted;
 mod profile;
 mod ray_query;
 mod replayed;
+mod sample_parts;
 mod scenes;
 mod self_test;
 mod structures;
@@ -73,6 +74,7 @@ fn main() {
             plan::trials(),
             profile::trials(),
             ray_query::trials(),
+            sample_parts::trials(),
             self_test::trials(),
             twin::trials(),
             update::trials(),

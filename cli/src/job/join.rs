@@ -1,6 +1,7 @@
 //! Puts the parts of a picture together.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -14,7 +15,7 @@ use super::part_file::{self, Header, Pictures, Problem};
 use super::units::ranges;
 use crate::failure::Failure;
 use crate::views::Views;
-use pinhole::image::Image;
+use pinhole::image::{Image, NoMean, SampleMean};
 use pinhole::render::Nearest;
 
 /// The time between two looks for parts that are not seen yet.
@@ -113,16 +114,46 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
         2 => Views::Two([empty()?, empty()?]),
         _ => Views::One(empty()?),
     };
-    let tiles = manifest.units_of_picture();
-    for unit in place * tiles..(place + 1) * tiles {
-        let (_, (origin, _)) = manifest.unit(unit);
-        // It was checked, but may have changed since.
-        let part = part_file::read(&folder.part(unit), manifest, unit);
-        let (_, pictures) = part.map_err(|problem| unusable(&folder.part(unit), problem))?;
-        let Pictures::Tile(images) = pictures else { continue };
-        for (whole, part) in whole.as_mut_slice().iter_mut().zip(images.as_slice()) {
+    let (units, parts) = (manifest.units_of_picture(), manifest.sample_parts());
+    for first in (place * units..(place + 1) * units).step_by(parts) {
+        let (_, (origin, _)) = manifest.unit(first);
+        let mut tile = tile(folder, first)?;
+        if parts > 1 {
+            tile = mean(folder, &tile, first..first + parts)?;
+        }
+        for (whole, part) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
             whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
         }
     }
     Ok(whole)
+}
+
+/// The mean of units that have the samples of a tile, of which `first` are the pictures of the first.
+fn mean(
+    folder: &Folder,
+    first: &Views<Image>,
+    units: Range<usize>,
+) -> Result<Views<Image>, Failure> {
+    let refused = |error: NoMean| Failure::Job(error.into());
+    let samples = |unit| folder.manifest.samples_of(unit).1;
+    let begin = |image: &Image| SampleMean::new(image.clone(), samples(units.start));
+    let mut means = first.try_each(begin).map_err(refused)?;
+    for unit in units.start + 1..units.end {
+        let images = tile(folder, unit)?;
+        for (mean, image) in means.as_mut_slice().iter_mut().zip(images.as_slice()) {
+            mean.add(image, samples(unit)).map_err(refused)?;
+        }
+    }
+    Ok(means.map(SampleMean::into_image))
+}
+
+/// The pictures of a unit that is a tile.
+fn tile(folder: &Folder, unit: usize) -> Result<Views<Image>, Failure> {
+    let path = folder.part(unit);
+    // It was checked, but may have changed since.
+    match part_file::read(&path, &folder.manifest, unit) {
+        Ok((_, Pictures::Tile(images))) => Ok(images),
+        Ok((_, Pictures::Depth(_))) => Err(unusable(&path, Problem::Foreign)),
+        Err(problem) => Err(unusable(&path, problem)),
+    }
 }

@@ -10,6 +10,7 @@ use super::digest::{self, InputFile};
 use super::files;
 use super::units::{Rectangle, tile};
 use pinhole::image::{Layer, LayerSet};
+use pinhole::render::Sampling;
 
 /// The name of the file in the folder of a job.
 pub(super) const NAME: &str = "job.json";
@@ -20,7 +21,7 @@ const FORMAT: u32 = 1;
 /// This version of the program.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A job. Each unit of work is a tile of a picture, or a group of bricks.
+/// A job. Each unit of work is a tile of a picture with all its samples or a part of them, or a group of bricks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
@@ -57,6 +58,9 @@ pub(super) struct Manifest {
     pub(super) merged_layers: Vec<String>,
     pub(super) integrator: String,
     pub(super) samples: u32,
+    /// The most samples of a unit; without it, each unit has all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) samples_per_part: Option<u32>,
     pub(super) seed: u32,
     /// Whether noise is removed when parts are merged.
     pub(super) denoised: bool,
@@ -145,8 +149,11 @@ impl Manifest {
         let pictures = self.pictures.as_ref().map_or(1, Vec::len);
         let [columns, rows] = self.tiles.map(|side| side as usize);
         let has_tiles = self.groups.is_empty()
+            && self.samples_per_part != Some(0)
             && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
-        has_tiles && pictures.checked_mul(columns * rows) == Some(self.units) && self.units > 0
+        let units = pictures.checked_mul(columns * rows);
+        let units = units.and_then(|units| units.checked_mul(self.sample_parts()));
+        has_tiles && units == Some(self.units) && self.units > 0
     }
 
     /// Whether units are groups of bricks.
@@ -154,21 +161,38 @@ impl Manifest {
         self.unit == UnitKind::Depth
     }
 
+    /// Into how many parts the samples of a tile are divided.
+    pub(super) fn sample_parts(&self) -> usize {
+        self.sampling().parts(self.samples_per_part.unwrap_or(0)).len()
+    }
+
+    /// The numbers of samples of the whole picture.
+    fn sampling(&self) -> Sampling {
+        Sampling { samples: self.samples, ..Sampling::default() }
+    }
+
     /// How many units a picture has.
     pub(super) fn units_of_picture(&self) -> usize {
         if self.is_by_depth() {
             return self.units;
         }
-        self.tiles[0] as usize * self.tiles[1] as usize
+        self.tiles[0] as usize * self.tiles[1] as usize * self.sample_parts()
     }
 
-    /// The place among all pictures, and the tile, of a unit.
+    /// The place among all pictures, and the tile, of a unit. The parts of the samples of a tile follow each other.
     pub(super) fn unit(&self, index: usize) -> (usize, Rectangle) {
         if self.is_by_depth() {
             return (0, ([0, 0], self.size));
         }
-        let tiles = self.units_of_picture();
-        (index / tiles, tile(self.size, self.tiles, index % tiles))
+        let units = self.units_of_picture();
+        (index / units, tile(self.size, self.tiles, index % units / self.sample_parts()))
+    }
+
+    /// The first sample of a unit, and how many it has.
+    pub(super) fn samples_of(&self, index: usize) -> (u32, u32) {
+        let mut parts = self.sampling().parts(self.samples_per_part.unwrap_or(0));
+        let part = parts.nth(index % parts.len()).unwrap_or(self.sampling());
+        (part.first, part.samples)
     }
 
     /// The number of the picture of a unit; `None` for a single picture.

@@ -88,9 +88,6 @@ struct SplitArgs {
     /// Prepare for EXR pictures, whose cameras leave no room for legends
     #[arg(long)]
     exr: bool,
-    /// Refused: the sums of a part of the samples cannot be added to the same bits as on one machine
-    #[arg(long, value_name = "N", hide = true)]
-    samples_per_part: Option<u32>,
 }
 
 #[derive(Debug, Args)]

@@ -26,6 +26,7 @@ use crate::render::{check_device, render_part};
 use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
+use pinhole::render::Sampling;
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -145,12 +146,18 @@ impl Work<'_> {
                 nearest_of(&bricks, *first..*end, Look::of(input), &views, layers, opened)?;
             Pictures::Depth(nearest)
         } else {
+            let whole = input.settings.sampling;
+            if !manifest.is_by_depth() && manifest.sample_parts() > 1 {
+                let (first, samples) = manifest.samples_of(unit);
+                input.settings.sampling = Sampling { first, samples, ..whole };
+            }
             let tile = pieces::render(rectangle, layers, &mut |(origin, size)| {
                 let part =
                     input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
                 render_part(input, part, layers, opened)
-            })?;
-            Pictures::Tile(tile)
+            });
+            input.settings.sampling = whole;
+            Pictures::Tile(tile?)
         };
         let header = Header {
             version: VERSION.to_owned(),

@@ -56,17 +56,29 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let groups = groups(args.by_depth, &input, pictures.is_some())?;
     let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
     let stored = overview.as_ref().map(packed);
+    let sampling = input.settings.sampling;
+    let samples_per_part = args.render.stop_rule.samples_per_part;
+    if samples_per_part.is_some() && input.bricks.is_some() {
+        return Err(Failure::usage(
+            "--samples-per-part: all samples of a file of bricks are complete at the same time; choose --tiles",
+        ));
+    }
     let units = match groups.len() {
-        0 => {
-            pictures.as_ref().map_or(1, Vec::len).checked_mul(tiles[0] as usize * tiles[1] as usize)
-        }
+        0 => pictures
+            .as_ref()
+            .map_or(1, Vec::len)
+            .checked_mul(tiles[0] as usize * tiles[1] as usize)
+            .and_then(|units| {
+                units.checked_mul(sampling.parts(samples_per_part.unwrap_or(0)).len())
+            }),
         count => Some(count),
     };
     let units =
         units.ok_or_else(|| Failure::usage("these are too many units; choose fewer tiles"))?;
     let (_, [width, height]) = tile(size, tiles, 0);
     let pixels = u64::from(width) * u64::from(height);
-    let expected_milliseconds = expected(&input, pixels, groups.len());
+    let samples = sampling.samples.min(samples_per_part.unwrap_or(u32::MAX));
+    let expected_milliseconds = expected(&input, pixels, samples, groups.len());
     let manifest = Manifest {
         pinhole_job: 1,
         version: VERSION.to_owned(),
@@ -84,8 +96,9 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         layers: layer_names(input.settings.layers_for(merged)),
         merged_layers: layer_names(merged),
         integrator: input.settings.integrator.name().to_owned(),
-        samples: input.settings.sampling.samples,
-        seed: input.settings.sampling.seed,
+        samples: sampling.samples,
+        samples_per_part,
+        seed: sampling.seed,
         denoised: input.settings.is_denoised,
         expected_milliseconds,
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
@@ -103,12 +116,6 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
 /// Refuses flags that have no meaning for parts.
 fn refuse(args: &SplitArgs) -> Result<(), Failure> {
     let render = &args.render;
-    if args.samples_per_part.is_some() {
-        return Err(Failure::usage(
-            "--samples-per-part: one machine adds the samples of a pixel one after the other, and the sums of parts of \
-             them round differently, so the bytes would not be the same; choose more --tiles",
-        ));
-    }
     if let Some(flag) = render.stop_rule.given() {
         return Err(Failure::usage(format!(
             "{flag}: all parts must have the same samples, so they cannot depend on time or noise; choose --samples N"
@@ -236,13 +243,13 @@ const NANOSECONDS_OF_SPHERE: u64 = 600;
 
 /// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
 /// each sample has the rays that its integrator traces.
-fn expected(input: &Input, pixels: u64, groups: usize) -> u64 {
+fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
     if let Some(bricks) = &input.bricks {
         // Reading, building and copying are nearly all of it.
         let spheres = bricks.whole().count / groups.max(1) as u64;
         return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
     }
-    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings));
+    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings, samples));
     let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
     let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
     // Few spheres need no structure, and a test takes some nanoseconds.
@@ -251,8 +258,8 @@ fn expected(input: &Input, pixels: u64, groups: usize) -> u64 {
     ((nanoseconds / 1e6).ceil() as u64).max(1)
 }
 
-/// About how many rays a pixel needs.
-fn rays_of_pixel(settings: &RenderSettings) -> u64 {
+/// About how many rays a pixel needs for some samples.
+fn rays_of_pixel(settings: &RenderSettings, samples: u32) -> u64 {
     let lights = settings.lights.len() as u64;
     let of_sample = match &settings.integrator {
         Integrator::Primary(_) => return 1,
@@ -263,7 +270,7 @@ fn rays_of_pixel(settings: &RenderSettings) -> u64 {
         // What a later version may add, and paths: one of mean length has a ray to a light at each of its surfaces.
         _ => 8,
     };
-    of_sample.saturating_mul(settings.sampling.samples.into())
+    of_sample.saturating_mul(samples.into())
 }
 
 /// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
@@ -293,7 +300,13 @@ fn said(folder: &Folder) {
     let [columns, rows] = manifest.tiles;
     let what = match manifest.is_by_depth() {
         true => "1 picture of groups of bricks".to_owned(),
-        false => format!("{pictures} picture{} of {columns}x{rows} tiles", plural(pictures)),
+        false => {
+            let parts = match manifest.sample_parts() {
+                1 => String::new(),
+                parts => format!(" with {parts} parts of the samples each"),
+            };
+            format!("{pictures} picture{} of {columns}x{rows} tiles{parts}", plural(pictures))
+        }
     };
     tell(format_args!(
         "{}: {} unit{}, {what}, each expected to take {:.1} s on a software \

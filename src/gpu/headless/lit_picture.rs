@@ -16,7 +16,7 @@ use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
-use crate::render::{PrimarySettings, RenderSettings, Totals, batch};
+use crate::render::{InParts, PrimarySettings, RenderSettings, Totals, batch, to_the_end};
 
 impl Headless {
     /// Renders a lit picture of a scene that is already on this device.
@@ -69,6 +69,32 @@ impl Headless {
         }
         image.keep(layers);
         Ok(image)
+    }
+
+    /// Renders a lit picture in parts of its samples like [`Headless::render_in_parts`], without blocking the thread.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::render_uploaded`].
+    pub async fn render_in_parts_async(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        samples_per_part: u32,
+        watch: &mut Watch<'_>,
+    ) -> Result<Picture, GpuError> {
+        let mut whole = InParts::new(settings.sampling.samples);
+        for sampling in settings.sampling.parts(samples_per_part) {
+            let part = RenderSettings { sampling, ..settings.unfinished() };
+            let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
+            let layers = settings.layers_for(layers);
+            let picture = self.render_uploaded_async(scene, view, &part, layers, watch).await?;
+            whole.add(picture)?;
+        }
+        let (image, samples, hits) = whole.finish().ok_or(GpuError::Stopped)?;
+        let image = self.finish_async(image, settings, layers).await?;
+        Ok(Picture { image, samples, noise: None, hits: Some(hits) })
     }
 
     /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples

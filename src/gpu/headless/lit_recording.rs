@@ -71,7 +71,9 @@ impl Headless {
         }
         check_whole(&view.film)?;
         settings.check_with(scene.appearance())?;
-        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let mut lighting = LightingData::new(settings, scene.summary(), view.camera);
+        // What is recorded has the numbers that `samples` names, wherever the samples of the picture begin.
+        lighting.first_sample = 0;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let side = if lighting.mode.is_studio() { longest_side(&lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
