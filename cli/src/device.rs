@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::{interrupt, prices, profile, self_test};
+use super::{deadline, interrupt, prices, profile, self_test};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -116,17 +116,17 @@ impl Device {
         match self {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
-            Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
-                Ok(mut headless) => {
-                    let _phase = profile::phase("self-test");
-                    let warning = interrupt::on_device(|| self_test::quick_warning(&headless))?;
-                    let (_, note) = prices::use_measured(&mut headless);
-                    let (headless, choice) = (Box::new(headless), *choice);
-                    Ok(Opened::Device { headless, choice, warning, note })
+            Self::Adapter { wanted, choice, or_cpu } => {
+                match deadline::opening(|| wanted.tested())? {
+                    Ok((mut headless, warning)) => {
+                        let (_, note) = prices::use_measured(&mut headless);
+                        let (headless, choice) = (Box::new(headless), *choice);
+                        Ok(Opened::Device { headless, choice, warning, note })
+                    }
+                    Err(_) if *or_cpu => Ok(Opened::CpuInstead),
+                    Err(error) => Err(Failure::Job(error.into())),
                 }
-                Err(_) if *or_cpu => Ok(Opened::CpuInstead),
-                Err(error) => Err(Failure::Job(error.into())),
-            },
+            }
             #[cfg(not(feature = "gpu"))]
             Self::Adapter { or_cpu: true, .. } => Ok(Opened::Cpu),
             #[cfg(not(feature = "gpu"))]
@@ -201,6 +201,18 @@ impl WantedAdapter {
         }
     }
 
+    /// Opens the adapter and runs the quick part of its self-test, which may give a warning.
+    #[cfg(feature = "gpu")]
+    fn tested(&self) -> Result<Result<(Headless, Option<String>), GpuError>, Failure> {
+        let headless = match self.open()? {
+            Ok(headless) => headless,
+            Err(error) => return Ok(Err(error)),
+        };
+        let _phase = profile::phase("self-test");
+        let warning = interrupt::on_device(|| self_test::quick_warning(&headless))??;
+        Ok(Ok((headless, warning)))
+    }
+
     /// Opens the adapter; it is a failure if there is none.
     #[cfg(feature = "gpu")]
     pub(super) fn open_any(&self) -> Result<Headless, Failure> {
@@ -235,6 +247,10 @@ pub(super) fn explained_alone(headless: &Headless, error: &GpuError) -> Failure 
 #[cfg(feature = "gpu")]
 fn named(headless: &Headless, error: &GpuError, remedy: &str) -> Failure {
     let adapter = &headless.adapter_info().name;
+    let remedy = match error {
+        GpuError::DeviceLost { .. } | GpuError::Timeout { .. } => "; try again",
+        _ => remedy,
+    };
     of_kind(error, anyhow::anyhow!("{adapter}: {error}{remedy}"))
 }
 

@@ -33,6 +33,7 @@ mod certify;
 mod certify_report;
 mod color_flags;
 mod data;
+mod deadline;
 mod demo;
 mod device;
 #[cfg(feature = "gpu")]
@@ -114,7 +115,20 @@ use speak::{answer, tell, tell_all};
 pub fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
     quieten_device_select();
+    #[cfg(feature = "gpu")]
+    quieten_lost_devices();
     run()
+}
+
+/// Leaves the loss of a device to the one line that says so: wgpu panics, and the library catches that.
+#[cfg(feature = "gpu")]
+fn quieten_lost_devices() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !pinhole::gpu::catches_panics() {
+            usual(panic);
+        }
+    }));
 }
 
 /// Switches off Mesa's device-select layer where it would only print errors.

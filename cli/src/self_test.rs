@@ -101,8 +101,16 @@ fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
 }
 
 /// Runs the quick part of the test. Returns a warning if the pictures of the adapter may be wrong.
-pub(super) fn quick_warning(headless: &Headless) -> Option<String> {
-    warning(&headless.adapter_info().name, headless.self_test(SelfTestExtent::Quick))
+///
+/// # Errors
+/// If the device was lost or does not answer, so that it cannot render either.
+pub(super) fn quick_warning(headless: &Headless) -> Result<Option<String>, Failure> {
+    match headless.self_test(SelfTestExtent::Quick) {
+        Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => {
+            Err(explained_alone(headless, &error))
+        }
+        tested => Ok(warning(&headless.adapter_info().name, tested)),
+    }
 }
 
 fn warning(adapter: &str, tested: Result<SelfTestReport, GpuError>) -> Option<String> {
@@ -175,7 +183,7 @@ mod tests {
             warning("some", Ok(report(PropertyOutcome::Failed))).unwrap(),
             "warning: some fails the self-test (fence: the words); check its pictures with `pinhole verify`"
         );
-        let lost = GpuError::DeviceLost { message: "gone".to_owned() };
-        assert!(warning("some", Err(lost)).unwrap().contains("cannot run the self-test"));
+        let failed = warning("some", Err(GpuError::OutOfMemory));
+        assert!(failed.unwrap().contains("cannot run the self-test"));
     }
 }

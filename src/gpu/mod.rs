@@ -41,6 +41,8 @@ pub use headless::progress::{
     Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
 };
 pub use headless::timer::TraceTime;
+#[cfg(not(target_arch = "wasm32"))]
+pub use headless::waiting::catches_panics;
 pub use host::composite::{Composite, CompositePicture};
 pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
 pub use host::depth_test::{DepthTest, HostDepth};

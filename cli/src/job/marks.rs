@@ -9,9 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 use super::files;
 use super::folder::{FAILED, Folder, PARTS, RUNNING};
 use super::units;
-use crate::failure::DEVICE;
-use crate::progress;
-use crate::speak::tell;
+use crate::deadline::give_up;
 
 /// The time after which a mark is written again.
 const BEAT: Duration = Duration::from_secs(5);
@@ -46,15 +44,7 @@ impl Mark {
                     let why = format!("unit {unit} did not end within {} s", limit.as_secs_f64());
                     files::mark(&failed, &why);
                     files::unmark(&marked);
-                    progress::close();
-                    tell(format_args!("error: {why}; the device may hang: try again"));
-                    // What a driver does at the end of a process may hang as well.
-                    let _ = std::thread::Builder::new().spawn(|| {
-                        std::thread::sleep(BEAT);
-                        std::process::abort();
-                    });
-                    // The lock of signals is not held, so a file that is being renamed is renamed or not.
-                    std::process::exit(DEVICE.into());
+                    give_up(&why);
                 }
                 write(&marked);
             }

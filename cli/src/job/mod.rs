@@ -98,7 +98,7 @@ struct PartArgs {
     /// Indices of the units to render, such as 7, or 0-15,20 as for sbatch --array
     #[arg(value_name = "INDEX")]
     units: String,
-    /// End with exit code 5 if a unit takes longer than this, in seconds, for drivers that hang
+    /// End with exit code 5 if a unit, or opening the device, takes longer than this, in seconds, for drivers that hang
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     timeout: Option<f64>,
     /// Say nothing but warnings and errors

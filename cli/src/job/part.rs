@@ -60,6 +60,10 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     if units.is_empty() {
         return Ok(());
     }
+    #[cfg(feature = "gpu")]
+    if let Some(limit) = limit {
+        crate::deadline::limit_opening(limit);
+    }
     threads::start()?;
     folder.enter()?;
     folder.check_inputs()?;
@@ -151,7 +155,7 @@ impl Work<'_> {
                 let (first, samples) = manifest.samples_of(unit);
                 input.settings.sampling = Sampling { first, samples, ..whole };
             }
-            let tile = pieces::render(rectangle, layers, &mut |(origin, size)| {
+            let tile = pieces::render(rectangle, layers, self.quiet, &mut |(origin, size)| {
                 let part =
                     input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
                 render_part(input, part, layers, opened)

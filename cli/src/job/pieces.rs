@@ -9,13 +9,23 @@ use pinhole::image::{Image, LayerSet};
 /// How often a unit is halved. What does not fit into an eighth of a tile does not fit because of the spheres.
 const HALVINGS: u32 = 3;
 
-/// Renders a rectangle at once, or in halves if there is not enough memory. The pixels are the same.
+/// Renders a rectangle at once, or in halves if there is not enough memory, and says so unless it is to be quiet. The
+/// pixels are the same.
 pub(super) fn render(
-    (origin, size): Rectangle,
+    rectangle: Rectangle,
     layers: LayerSet,
+    quiet: bool,
     at_once: &mut dyn FnMut(Rectangle) -> Result<Views<Image>, Failure>,
 ) -> Result<Views<Image>, Failure> {
-    halved((origin, size), layers, HALVINGS, at_once)
+    let mut is_told = quiet;
+    halved(rectangle, layers, HALVINGS, &mut |rectangle| {
+        let done = at_once(rectangle);
+        if let (Err(failure @ Failure::Memory(_)), false) = (&done, is_told) {
+            is_told = true;
+            tell(format_args!("note: {}; trying smaller tiles", failure.message()));
+        }
+        done
+    })
 }
 
 fn halved(
@@ -30,9 +40,6 @@ fn halved(
         }
         done => return done,
     };
-    if halvings == HALVINGS {
-        tell(format_args!("note: {}; trying smaller tiles", failure.message()));
-    }
     let axis = usize::from(size[1] > size[0]);
     let (mut first, mut last, mut middle) = (size, size, origin);
     first[axis] = size[axis] / 2;
@@ -82,13 +89,13 @@ mod tests {
                     false => Ok(at(rectangle)),
                 }
             };
-            let found = render(whole, LayerSet::COLOR, &mut at_once).unwrap();
+            let found = render(whole, LayerSet::COLOR, true, &mut at_once).unwrap();
             assert_eq!(found.as_slice(), at(whole).as_slice(), "{most}");
             assert_eq!(tries == 1, most >= 414, "{most}");
         }
         let never = &mut |_| Err(Failure::Memory(anyhow::anyhow!("too large")));
-        assert!(matches!(render(whole, LayerSet::COLOR, never), Err(Failure::Memory(_))));
+        assert!(matches!(render(whole, LayerSet::COLOR, true, never), Err(Failure::Memory(_))));
         let pixel = &mut |_| Err(Failure::Memory(anyhow::anyhow!("too large")));
-        assert!(render(([0, 0], [1, 1]), LayerSet::COLOR, pixel).is_err());
+        assert!(render(([0, 0], [1, 1]), LayerSet::COLOR, true, pixel).is_err());
     }
 }

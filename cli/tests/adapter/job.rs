@@ -67,10 +67,10 @@ fn hangs(headless: &'static Headless) {
     let split = "job split a.toml -o job -q --size 3000x3000 --integrator path --samples 4096";
     succeed(&mut command_on(headless, &folder, split));
     for _ in 0..3 {
-        let output = command(&folder, "job part job 0 --timeout 1 -q").output().unwrap();
+        let output = command(&folder, "job part job 0 --timeout 2 -q").output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(5), "{said}");
-        let line = "error: unit 0 did not end within 1 s; the device may hang: try again\n";
+        let line = "error: unit 0 did not end within 2 s; the device may hang: try again\n";
         assert!(said.ends_with(line), "{said}");
         assert!(fs::read_dir(folder.path().join("job/parts")).unwrap().next().is_none());
     }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
 mod bricks;
+mod faults;
 #[path = "../../../tests/support/harness.rs"]
 mod harness;
 mod job;
@@ -32,9 +33,13 @@ fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
 }
 
 fn main() {
+    if faults::is_child() {
+        return;
+    }
     harness::run(|| {
         let groups = [
             bricks::trials(),
+            faults::trials(),
             job::trials(),
             light::trials(),
             plan::trials(),

@@ -1,15 +1,62 @@
 //! Waiting for a device, for callbacks and for turns, by futures.
 
+#[cfg(not(target_arch = "wasm32"))]
+use std::cell::Cell;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-use wgpu::{Device, PollError, Queue, SubmissionIndex};
+use wgpu::{Device, Queue, SubmissionIndex};
+
+use crate::gpu::error::GpuError;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub(in crate::gpu) use std::time::Instant;
 #[cfg(target_arch = "wasm32")]
 pub(in crate::gpu) use web_time::Instant;
+
+#[cfg(not(target_arch = "wasm32"))]
+thread_local! {
+    /// Whether this thread polls a device.
+    static POLLS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread is in a call of wgpu whose panics are caught and become errors.
+///
+/// Wgpu panics when a device is lost while the library waits for it; the library then returns
+/// [`GpuError::DeviceLost`]. A program whose panic hook prints nothing while this is true says so only once.
+#[cfg(not(target_arch = "wasm32"))]
+#[must_use]
+pub fn catches_panics() -> bool {
+    POLLS.get()
+}
+
+/// Polls a device. If it is lost, its callback has been called when this returns an error.
+#[cfg(not(target_arch = "wasm32"))]
+fn poll(device: &Device, how: wgpu::PollType, timeout: Duration) -> Result<(), GpuError> {
+    // Wgpu panics after it has left all of its locks.
+    let polling = std::panic::AssertUnwindSafe(|| device.poll(how));
+    POLLS.set(true);
+    let polled = std::panic::catch_unwind(polling);
+    POLLS.set(false);
+    match polled {
+        Ok(Ok(_)) => Ok(()),
+        Ok(Err(wgpu::PollError::Timeout)) => Err(GpuError::Timeout { waited: timeout }),
+        Ok(Err(error)) => Err(GpuError::Device { message: error.to_string() }),
+        Err(panic) => {
+            let message = panic.downcast_ref::<String>().map_or("a panic", String::as_str);
+            Err(GpuError::Device { message: message.to_owned() })
+        }
+    }
+}
+
+/// Lets the device call callbacks of what has happened already.
+pub(in crate::gpu) fn call_back(device: &Device) {
+    #[cfg(not(target_arch = "wasm32"))]
+    let _ = poll(device, wgpu::PollType::Poll, Duration::ZERO);
+    #[cfg(target_arch = "wasm32")]
+    let _ = device.poll(wgpu::PollType::Poll);
+}
 
 /// Waits until the device has finished a submission.
 ///
@@ -20,18 +67,18 @@ pub(in crate::gpu) async fn until_done(
     _: &Queue,
     submission: SubmissionIndex,
     timeout: Duration,
-) -> Result<(), PollError> {
+) -> Result<(), GpuError> {
     let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(timeout) };
     if crate::gpu::waiting::may_block() {
-        return device.poll(wait).map(|_| ());
+        return poll(device, wait, timeout);
     }
     let (answer, to_answer) = answer();
     let (waiting, how) = (device.clone(), wait.clone());
     let thread = std::thread::Builder::new().name("pinhole: wait".to_owned());
-    match thread.spawn(move || to_answer.give(waiting.poll(how).map(|_| ()))) {
+    match thread.spawn(move || to_answer.give(poll(&waiting, how, timeout))) {
         Ok(_) => answer.await,
         // The system has no thread left.
-        Err(_) => device.poll(wait).map(|_| ()),
+        Err(_) => poll(device, wait, timeout),
     }
 }
 
@@ -42,7 +89,7 @@ pub(in crate::gpu) async fn until_done(
     queue: &Queue,
     _: SubmissionIndex,
     _: Duration,
-) -> Result<(), PollError> {
+) -> Result<(), GpuError> {
     let (answer, to_answer) = answer();
     queue.on_submitted_work_done(move || to_answer.give(()));
     answer.await;
