@@ -70,7 +70,7 @@ mod rendered {
     use pinhole::image::denoise::GUIDES;
 
     /// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
-    const SIDE: u32 = 256;
+    const SIDE: u32 = 160;
     const SAMPLES: u32 = 4;
 
     /// Renders a small noisy picture, and what the device makes of it.

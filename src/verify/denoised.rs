@@ -31,6 +31,12 @@ const NO_NOISE: f64 = 1e-8;
 /// Roundings of a sum of 25 products of weights and light, of the sum of weights, and of the quotient.
 const OF_MEANS: u32 = 60;
 
+/// A weight that is too small to matter beside that of the pixel in the middle, 0.14.
+const NO_WEIGHT: f64 = 1e-20;
+
+/// What flushing of 25 products to zero may change.
+const MOST_FLUSHED: f64 = 25.0 * FLUSH;
+
 /// The widest interval about which something is said, relative to the light, or to a hundredth of white if that is more.
 const WIDEST: f64 = 0.05;
 
@@ -157,7 +163,8 @@ impl Filter {
         let base: [f64; 3] = std::array::from_fn(|i| 0.5 * (light[i].low + light[i].high));
         let mut sums = [Interval { low: 0.0, high: 0.0 }; 4];
         let mut weights = Interval { low: 0.0, high: 0.0 };
-        let mut largest = [0.0_f64; 3];
+        // The sums of what is added, of which rounding may change a part.
+        let mut sizes = [0.0_f64; 3];
         for dy in -2..=2_i64 {
             for dx in -2..=2_i64 {
                 let (x, y) = (at[0] + dx * step, at[1] + dy * step);
@@ -168,7 +175,12 @@ impl Filter {
                 let other = lights[index];
                 let distance = step as f64 * ((dx * dx + dy * dy) as f64).sqrt();
                 let same = self.likeness(middle, index, distance.max(1.0));
-                let alike = if index == middle { ONE } else { alike(&light, &other) };
+                let alike = match index == middle {
+                    true => ONE,
+                    // Such a weight changes no sum, whatever the lights.
+                    false if same.high <= NO_WEIGHT => UP_TO_ONE,
+                    false => alike(&light, &other),
+                };
                 let spline = spline(dx) * spline(dy);
                 let relative = PAD * gamma(4);
                 let weight = Interval {
@@ -181,7 +193,8 @@ impl Filter {
                         (other[channel].low - base[channel], other[channel].high - base[channel]);
                     sums[channel].low += low * if low < 0.0 { weight.high } else { weight.low };
                     sums[channel].high += high * if high > 0.0 { weight.high } else { weight.low };
-                    largest[channel] = largest[channel].max(other[channel].high.abs());
+                    let size = other[channel].low.abs().max(other[channel].high.abs());
+                    sizes[channel] += weight.high * size;
                 }
                 sums[3].low += weight.low * weight.low * other[3].low;
                 sums[3].high += weight.high * weight.high * other[3].high;
@@ -194,7 +207,7 @@ impl Filter {
             let Interval { low, high } = sums[i];
             let low = low / if low < 0.0 { weights.low } else { weights.high };
             let high = high / if high > 0.0 { weights.low } else { weights.high };
-            let error = rounding * largest[i] + FLUSH;
+            let error = (rounding * sizes[i] + MOST_FLUSHED) / weights.low;
             Interval { low: base[i] + low - error, high: base[i] + high + error }
         });
         let variance = Interval {
@@ -247,6 +260,7 @@ impl Filter {
 }
 
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
+const UP_TO_ONE: Interval = Interval { low: 0.0, high: 1.0 };
 
 /// The similarity of lights, relative to their noise.
 fn alike(light: &Light, other: &Light) -> Interval {

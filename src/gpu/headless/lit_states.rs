@@ -13,10 +13,60 @@ use crate::verify::{LitRecording, PathState, PixelSums, RecordedFilm};
 /// host memory.
 pub(super) const LONGEST_SIDE: u32 = 256;
 
-/// The states and hits of all paths between two dispatches.
-pub(super) struct States {
-    pub(super) states: Vec<PathState>,
-    pub(super) hits: Vec<[u32; 4]>,
+/// The states of all paths between two dispatches, of which only what is asked for is copied.
+pub(super) struct States<'a> {
+    /// The slots on the device, one after the other.
+    vectors: &'a [[u32; 4]],
+    pixels: usize,
+    slots: [SlotSource; PathState::SLOTS],
+}
+
+impl States<'_> {
+    /// The whole states.
+    pub(super) fn all(&self) -> Vec<PathState> {
+        let of = |index: usize| {
+            let slots = self.slots.map(|source| match source {
+                SlotSource::Device(slot) => self.vectors[slot * self.pixels + index],
+                SlotSource::Constant(bits) => bits,
+            });
+            PathState { slots }
+        };
+        (0..self.pixels).map(of).collect()
+    }
+
+    /// What the rays hit.
+    pub(super) fn hits(&self) -> Vec<[u32; 4]> {
+        self.vectors[HIT * self.pixels..][..self.pixels].to_vec()
+    }
+
+    /// One slot of each state.
+    pub(super) fn slot(&self, slot: usize) -> Vec<[u32; 4]> {
+        match self.slots[slot] {
+            SlotSource::Device(slot) => self.vectors[slot * self.pixels..][..self.pixels].to_vec(),
+            SlotSource::Constant(bits) => vec![bits; self.pixels],
+        }
+    }
+
+    /// The last word of a slot of each state.
+    pub(super) fn last_words(&self, slot: usize) -> Vec<u32> {
+        match self.slots[slot] {
+            SlotSource::Device(slot) => {
+                let vectors = &self.vectors[slot * self.pixels..][..self.pixels];
+                vectors.iter().map(|vector| vector[3]).collect()
+            }
+            SlotSource::Constant(bits) => vec![bits[3]; self.pixels],
+        }
+    }
+}
+
+/// What is needed of the states of paths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Nothing,
+    Hits,
+    /// One slot of each state.
+    Slot(usize),
+    All,
 }
 
 /// Keeps what is recorded of a sample.
@@ -24,11 +74,11 @@ pub(super) trait Keep {
     /// Begins the sample with this index.
     fn begin(&mut self, sample: u32);
 
-    /// Whether the states after a pass are needed.
-    fn wants(&mut self, moment: Moment) -> bool;
+    /// What is needed of the states after a pass.
+    fn wants(&mut self, moment: Moment) -> Wanted;
 
     /// Keeps the states after a pass.
-    fn keep(&mut self, moment: Moment, states: States);
+    fn keep(&mut self, moment: Moment, states: &States<'_>);
 
     /// Keeps the sums of the pixels, and ends the sample.
     fn end(&mut self, film: RecordedFilm);
@@ -98,22 +148,29 @@ impl<'a> Reader<'a> {
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
     }
 
-    pub(super) async fn states(&self, flow: &mut Flow<'_>) -> Result<States, GpuError> {
-        self.paths.record_copy(flow.encoder(), &self.frame.tiles[0].in_flight.paths);
+    /// Reads what is wanted of the states, and calls `keep` with them.
+    pub(super) async fn states(
+        &self,
+        flow: &mut Flow<'_>,
+        wanted: Wanted,
+        keep: impl FnOnce(&States<'_>),
+    ) -> Result<(), GpuError> {
+        let Self { pixels, slots, .. } = *self;
+        let bytes = pixels as u64 * size_of::<[u32; 4]>() as u64;
+        let of_slot = |slot: usize| slot as u64 * bytes..(slot as u64 + 1) * bytes;
+        let range = match wanted {
+            Wanted::Nothing => return Ok(()),
+            Wanted::Hits => of_slot(HIT),
+            Wanted::Slot(slot) => match slots[slot] {
+                SlotSource::Device(slot) => of_slot(slot),
+                SlotSource::Constant(_) => 0..0,
+            },
+            Wanted::All => 0..self.paths.buffer().size(),
+        };
+        let paths = &self.frame.tiles[0].in_flight.paths;
+        let (start, size) = (range.start, range.end - range.start);
+        flow.encoder().copy_buffer_to_buffer(paths, start, self.paths.buffer(), start, size);
         flow.finish(&[self.paths.buffer()]).await?;
-        let pixels = self.pixels;
-        self.paths.read(|vectors: &[[u32; 4]]| {
-            let slot = |which: usize, index: usize| vectors[which * pixels + index];
-            let state = |index| PathState {
-                slots: self.slots.map(|source| match source {
-                    SlotSource::Device(which) => slot(which, index),
-                    SlotSource::Constant(bits) => bits,
-                }),
-            };
-            States {
-                states: (0..pixels).map(state).collect(),
-                hits: (0..pixels).map(|index| slot(HIT, index)).collect(),
-            }
-        })
+        self.paths.read(|vectors: &[[u32; 4]]| keep(&States { vectors, pixels, slots }))
     }
 }

@@ -1,6 +1,6 @@
 //! Recording paths for the checker: their state after every pass.
 
-use crate::gpu::headless::lit_states::{Keep, States};
+use crate::gpu::headless::lit_states::{Keep, States, Wanted};
 use crate::gpu::passes::lit::Moment;
 use crate::verify::{
     LitInputs, LitRecording, PathRecording, PathState, RecordedFilm, RecordedSample,
@@ -26,24 +26,28 @@ impl Keep for PathKeeper {
         self.sample = RecordedSample { sample, ..RecordedSample::default() };
     }
 
-    fn wants(&mut self, _: Moment) -> bool {
-        true
+    fn wants(&mut self, moment: Moment) -> Wanted {
+        match moment {
+            Moment::Extended => Wanted::Hits,
+            Moment::Occluded => Wanted::Slot(PathState::PENDING),
+            _ => Wanted::All,
+        }
     }
 
-    fn keep(&mut self, moment: Moment, States { states, hits }: States) {
-        let open = |states: &[PathState]| {
-            states.iter().map(|state| state.slots[PathState::PENDING][3]).collect()
-        };
+    fn keep(&mut self, moment: Moment, states: &States<'_>) {
         match (moment, self.sample.surfaces.last_mut()) {
             (Moment::Extended, _) => {
+                let hits = states.hits();
                 self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
             }
             (Moment::Shaded, Some(surface)) => {
-                surface.open = open(&states);
-                surface.scattered = states;
+                surface.open = states.last_words(PathState::PENDING);
+                surface.scattered = states.all();
             }
-            (Moment::Occluded, Some(surface)) => surface.open = open(&states),
-            _ => self.sample.start = states,
+            (Moment::Occluded, Some(surface)) => {
+                surface.open = states.last_words(PathState::PENDING);
+            }
+            _ => self.sample.start = states.all(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Recording studios for the checker: the state of every ray after every pass.
 
-use crate::gpu::headless::lit_states::{Keep, LONGEST_SIDE, States};
+use crate::gpu::headless::lit_states::{Keep, LONGEST_SIDE, States, Wanted};
 use crate::gpu::passes::lit::{LightingData, Moment};
 use crate::verify::{
     LitInputs, LitRecording, PathState, RecordedFilm, StudioLight, StudioRecording, StudioSample,
@@ -61,16 +61,16 @@ impl StudioKeeper {
     }
 
     /// The light of a batch of lights or directions.
-    fn light(&mut self, states: &[PathState]) -> StudioLight {
-        let hidden = self.hidden.take().unwrap_or_else(|| vec![0; states.len()]);
-        let radiance = states.iter().map(|state| state.slots[PathState::RADIANCE]).collect();
-        StudioLight { hidden, radiance, left: hidden_of(states) }
+    fn light(&mut self, states: &States<'_>) -> StudioLight {
+        let (left, radiance) = (hidden_of(states), states.slot(PathState::RADIANCE));
+        let hidden = self.hidden.take().unwrap_or_else(|| vec![0; left.len()]);
+        StudioLight { hidden, radiance, left }
     }
 }
 
 /// The bits of hidden lights.
-fn hidden_of(states: &[PathState]) -> Vec<u32> {
-    states.iter().map(|state| state.slots[PathState::NORMAL][3]).collect()
+fn hidden_of(states: &States<'_>) -> Vec<u32> {
+    states.last_words(PathState::NORMAL)
 }
 
 impl Keep for StudioKeeper {
@@ -81,33 +81,32 @@ impl Keep for StudioKeeper {
     }
 
     /// Once every ray has ended, no state changes any more.
-    fn wants(&mut self, moment: Moment) -> bool {
+    fn wants(&mut self, moment: Moment) -> Wanted {
         self.is_over |= moment == Moment::Extended && !self.is_any_alive;
-        !self.is_over
+        match moment {
+            _ if self.is_over => Wanted::Nothing,
+            Moment::Extended => Wanted::Hits,
+            Moment::Shadowed | Moment::Searched => Wanted::Slot(PathState::NORMAL),
+            _ => Wanted::All,
+        }
     }
 
-    fn keep(&mut self, moment: Moment, States { states, hits }: States) {
-        match moment {
-            Moment::Extended => {
-                self.sample.surfaces.push(StudioSurface { hits, ..StudioSurface::default() });
-                return;
-            }
-            Moment::Shadowed | Moment::Searched => {
-                self.hidden = Some(hidden_of(&states));
-                return;
-            }
-            _ => {}
-        }
+    fn keep(&mut self, moment: Moment, states: &States<'_>) {
         let light =
-            matches!(moment, Moment::Illuminated | Moment::Gathered).then(|| self.light(&states));
+            matches!(moment, Moment::Illuminated | Moment::Gathered).then(|| self.light(states));
         match (moment, self.sample.surfaces.last_mut(), light) {
+            (Moment::Extended, ..) => {
+                let hits = states.hits();
+                self.sample.surfaces.push(StudioSurface { hits, ..StudioSurface::default() });
+            }
+            (Moment::Shadowed | Moment::Searched, ..) => self.hidden = Some(hidden_of(states)),
             (Moment::Shaded, Some(surface), _) => {
-                self.is_any_alive = Self::is_any_alive(&states);
-                surface.shaded = states;
+                surface.shaded = states.all();
+                self.is_any_alive = Self::is_any_alive(&surface.shaded);
             }
             (Moment::Illuminated, Some(surface), Some(light)) => surface.lights.push(light),
             (Moment::Gathered, Some(surface), Some(light)) => surface.ambient.push(light),
-            _ => self.sample.start = states,
+            _ => self.sample.start = states.all(),
         }
     }
 

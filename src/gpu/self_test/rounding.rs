@@ -114,11 +114,11 @@ const RELATIVE: Measure =
     };
 
 /// Judges results whose errors are bounded. Each has a description, the result of the device and the exact value.
-fn within(
+fn within<W: Fn() -> String>(
     name: &'static str,
     bound: f64,
     Measure { of, unit, figures: [found, allowed] }: Measure,
-    results: impl Iterator<Item = (String, f32, f64)>,
+    results: impl Iterator<Item = (W, f32, f64)>,
 ) -> TestedProperty {
     let mut tally = Tally::default();
     let mut worst = 0.0_f64;
@@ -129,7 +129,9 @@ fn within(
             of(got, exact)
         };
         // A NaN fails this comparison.
-        tally.check(error <= bound + PAD, || format!("{what} = {got:e}, off by {error:.2} {unit}"));
+        tally.check(error <= bound + PAD, || {
+            format!("{} = {got:e}, off by {error:.2} {unit}", what())
+        });
         worst = worst.max(error);
     }
     let words =
@@ -138,25 +140,25 @@ fn within(
 }
 
 fn divide(pairs: &[Pair<'_>]) -> TestedProperty {
-    let results = pairs.iter().map(|(o, answer)| {
+    let results = pairs.iter().map(|&(o, answer)| {
         let exact = f64::from(o.dividend) / f64::from(o.divisor);
-        (format!("{:e} / {:e}", o.dividend, o.divisor), answer.quotient, exact)
+        (move || format!("{:e} / {:e}", o.dividend, o.divisor), answer.quotient, exact)
     });
     within("divide", DIVIDE_UNITS, RELATIVE, results)
 }
 
 fn sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
-    let results = pairs.iter().map(|(o, answer)| {
-        (format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt())
+    let results = pairs.iter().map(|&(o, answer)| {
+        (move || format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt())
     });
     within("sqrt", SQRT_ULP, IN_ULP, results)
 }
 
 fn inverse_sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
     // The kernel replaces 0 by 1.
-    let results = pairs.iter().filter(|(o, _)| o.radicand != 0.0).map(|(o, answer)| {
+    let results = pairs.iter().filter(|(o, _)| o.radicand != 0.0).map(|&(o, answer)| {
         let exact = 1.0 / f64::from(o.radicand).sqrt();
-        (format!("inverseSqrt({:e})", o.radicand), answer.inverse_root, exact)
+        (move || format!("inverseSqrt({:e})", o.radicand), answer.inverse_root, exact)
     });
     within("inverse_sqrt", INVERSE_SQRT, IN_ULP, results)
 }

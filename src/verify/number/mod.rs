@@ -78,6 +78,10 @@ impl Number {
     }
 
     fn bounded(self) -> Self {
+        // No end is larger than the magnitudes of the terms together.
+        if self.size <= LARGEST && self.flushed <= LARGEST {
+            return self;
+        }
         let within = |number: f64| number.clamp(-LARGEST, LARGEST);
         Self {
             low: within(self.low),
@@ -238,19 +242,23 @@ impl Mul for Number {
         if is_one(other) {
             return self;
         }
-        let ends = [
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        ];
+        let (a, b, c, d) = (self.low, self.high, other.low, other.high);
+        let (low, high) = if a >= 0.0 && c >= 0.0 {
+            (a * c, b * d)
+        } else {
+            let ends = [a * c, a * d, b * c, b * d];
+            (
+                ends.into_iter().fold(f64::INFINITY, f64::min),
+                ends.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            )
+        };
         let flushed = self.flushed * other.size
             + other.flushed * self.size
             + self.flushed * other.flushed
             + FLUSH;
         let product = Self {
-            low: ends.into_iter().fold(f64::INFINITY, f64::min),
-            high: ends.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            low,
+            high,
             size: self.size * other.size,
             flushed,
             terms: self.terms + other.terms - 1,
