@@ -59,6 +59,12 @@ impl Layer {
         }
     }
 
+    /// Whether its values belong to the ray through the centre of each pixel, also where other layers are means over samples.
+    #[must_use]
+    pub const fn is_of_one_ray(self) -> bool {
+        matches!(self, Self::Depth | Self::Normal | Self::Id | Self::Position)
+    }
+
     /// The number of bytes for each pixel of this layer.
     #[must_use]
     pub const fn bytes_per_pixel(self) -> u64 {

@@ -84,8 +84,7 @@ fn by_one_ray(
     wanted: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
-    let of_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
-    if of_one_ray.iter().any(|layer| wanted.contains(*layer)) {
+    if wanted.iter().any(Layer::is_of_one_ray) {
         let look = Look { color: input.color, settings: &RenderSettings::default() };
         let nearest = nearest_of(file, 0..file.len(), look, views, wanted, opened)?;
         return Ok(nearest.map(Nearest::into_image));

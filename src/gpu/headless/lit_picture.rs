@@ -135,8 +135,7 @@ impl Headless {
         layers: LayerSet,
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
-        let by_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
-        if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
+        if !layers.iter().any(Layer::is_of_one_ray) {
             return Ok(Image::new(view.film.width(), view.film.height(), layers)?);
         }
         // There is no sample yet, so the render cannot finish early.
