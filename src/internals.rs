@@ -15,6 +15,8 @@ pub use crate::accel::wide_tree::{WIDE_LEVELS, WideTree};
 pub use crate::cpu::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+pub use crate::gpu::edited_composite;
 pub use crate::verify::lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
 pub use crate::verify::paths::{RecordedSample, RecordedSurface};
 pub use crate::verify::studio::{StudioLight, StudioSample, StudioSurface};

@@ -282,13 +282,7 @@ fn render_views(
         memory::check(&views.film(), &input.size_from, layers, extra)?;
     }
     if let Some(bricks) = &input.bricks {
-        let partial = stop_rule.keeps_partial().then_some("--keep-partial");
-        let parts = stop_rule.samples_per_part().map(|_| "--samples-per-part");
-        if let Some(flag) = stop_rule.open_end().or(partial).or(parts) {
-            return Err(Failure::usage(format!(
-                "{flag}: all samples of a file of bricks are complete at the same time; choose --samples"
-            )));
-        }
+        stop_rule.check_for_bricks()?;
         return bricks::render(bricks, input, views, layers, opened);
     }
     match opened {

@@ -88,10 +88,25 @@ impl StopRule {
         self.samples_per_part
     }
 
+    /// A flag other than those of [`StopRule::open_end`], if there is one.
+    fn other_flag(&self) -> Option<&'static str> {
+        let parts = self.samples_per_part.map(|_| "--samples-per-part");
+        self.keep_partial.then_some("--keep-partial").or(parts)
+    }
+
+    /// Refuses flags that do not apply to files of bricks.
+    pub(super) fn check_for_bricks(&self) -> Result<(), Failure> {
+        match self.open_end().or(self.other_flag()) {
+            Some(flag) => Err(Failure::usage(format!(
+                "{flag}: all samples of a file of bricks are complete at the same time; choose --samples"
+            ))),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses flags that do not apply to a picture without light.
     pub(super) fn check_without_light(&self) -> Result<(), Failure> {
-        let parts = self.samples_per_part.map(|_| "--samples-per-part");
-        match self.keep_partial.then_some("--keep-partial").or(parts) {
+        match self.other_flag() {
             Some(flag) => Err(Failure::usage(format!(
                 "{flag} applies only to lit pictures, but this one has one sample per pixel; remove it, \
                  or ask for light, for example with --integrator studio",

@@ -43,6 +43,9 @@ pub use headless::progress::{
 pub use headless::timer::TraceTime;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::waiting::catches_panics;
+#[cfg(not(target_arch = "wasm32"))]
+#[doc(hidden)]
+pub use host::composite::edited_composite;
 pub use host::composite::{Composite, CompositePicture};
 pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
 pub use host::depth_test::{DepthTest, HostDepth};

@@ -4,6 +4,9 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, RenderPass, Render
 
 use crate::camera::HostCamera;
 use crate::gpu::checks::scoped;
+use crate::gpu::edit::Edits;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
 use crate::gpu::host::composite_options::{CompositeOptions, Coverage, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
@@ -74,6 +77,20 @@ pub(in crate::gpu) fn composite_kernel(
     Kernel { entry_point: "composite", parts }
 }
 
+/// Builds the pipeline like [`Composite::new`], but with edited shaders.
+///
+/// # Errors
+/// The same as for [`Composite::new`], and if a shader lacks the text of its edit.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn edited_composite(
+    device: &Device,
+    options: &CompositeOptions,
+    edits: Vec<ShaderEdit>,
+) -> Result<Composite, GpuError> {
+    let edits = Edits { replacements: edits, ..Edits::default() };
+    block_on(Composite::edited(device, options, &edits))
+}
+
 impl Composite {
     /// Builds the pipeline on a device that the caller owns.
     ///
@@ -89,10 +106,21 @@ impl Composite {
     /// # Errors
     /// The same as for [`Composite::new`].
     pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
+        Self::edited(device, options, &Edits::default()).await
+    }
+
+    async fn edited(
+        device: &Device,
+        options: &CompositeOptions,
+        edits: &Edits,
+    ) -> Result<Self, GpuError> {
         let CompositeOptions { source, encoding, .. } = *options;
         let has_depth = options.depth.is_some();
         let coverage = options.depth.map(|_| options.coverage);
-        let kernels = [cover_kernel(), composite_kernel(source, encoding, coverage)];
+        let kernels = [
+            cover_kernel().edited(edits)?,
+            composite_kernel(source, encoding, coverage).edited(edits)?,
+        ];
         let texture = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,

@@ -2,9 +2,10 @@
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{Composite, CompositeOptions, Headless, wgpu};
+use pinhole::internals::{ShaderEdit, edited_composite};
 use wgpu::TextureFormat;
 
-use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, begin, pixels};
+use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, begin_over, pixels};
 use crate::embedding::view_of;
 use crate::support::hosts::Convention;
 use crate::trial;
@@ -12,7 +13,8 @@ use crate::trial;
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("host::blended::blends_and_has_the_depth_of_its_surroundings", right),
-        trial("host::blended::faults_are_found", faults),
+        trial("host::blended::faults_in_the_truth_are_found", faults),
+        trial("host::blended::faults_in_shaders_are_found", planted),
     ]
 }
 
@@ -22,8 +24,11 @@ struct Picture {
     distances: Vec<f32>,
 }
 
-/// What the host has drawn before: the black of `begin`.
-const UNDER: [u8; 4] = [0, 0, 0, 255];
+const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+
+/// What the host has drawn before. It is not black, so that too little of it is seen.
+const UNDER: [u8; 4] = [51, 102, 204, 255];
 
 /// What is planted into the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,8 +101,46 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
     (!is_behind).then(|| depth.clamp(0.0, 1.0))
 }
 
+/// Faults in the shaders of composites: the file, a text in it, and what replaces it.
+const PLANTED: [[&str; 3]; 20] = [
+    ["composite", "- view.first_pixel;", "- view.first_pixel + vec2f(1.0, 0.0);"],
+    ["composite", "floor(covered.place.xy)", "floor(covered.place.yx)"],
+    ["composite", "| is_behind(view, drawn.depth, view.far)", ""],
+    ["composite", "| !drawn.is_drawn", ""],
+    ["composite", "color_for_host(color.rgb), color.a)", "color_for_host(color.rgb), 1.0)"],
+    ["composite", "color_for_host(color.rgb), ", "color.a * color_for_host(color.rgb), "],
+    ["composite", "clamp(drawn.depth, 0.0, 1.0)", "clamp(1.00001 * drawn.depth, 0.0, 1.0)"],
+    ["cover", "3.0, vertex == 1u", "0.9, vertex == 1u"],
+    ["cover", "vec4f(view.film_depth, ", "vec4f(view.film_depth.yxz, "],
+    ["cover", "vec4f(view.row, view.slope)", "vec4f(view.column, view.slope)"],
+    ["clip_depth", "2.0 * pixel + (1.0 - view.size)", "2.0 * pixel - view.size"],
+    ["clip_depth", "center.y * view.film_depth.y", "center.x * view.film_depth.y"],
+    [
+        "clip_depth",
+        "length(center.x * view.column + center.y * view.row + view.forward)",
+        "length(view.forward)",
+    ],
+    [
+        "clip_depth",
+        "(view.film_depth.z + change) + depth_aside(view, center)",
+        "view.film_depth.z + change",
+    ],
+    ["clip_depth", "depth < other, view.far == 0.0", "depth > other, view.far == 0.0"],
+    ["picture_depth#lit", "i < 9", "i < 8"],
+    ["picture_depth#lit", "vec2f(vec2i(i % 3, i / 3) - 1)", "vec2f(vec2i(i % 3, i / 3))"],
+    ["picture_depth#lit", "distance < 1e30 && all(abs(center) < view.size)", "distance < 1e30"],
+    ["picture_depth#lit", "is_behind(view, depth, here)", "is_behind(view, here, depth)"],
+    ["picture_depth#lit", "alpha > 0.0);", "alpha > 0.01);"],
+];
+
 /// Number of pixels whose colour or depth is not what it must be.
 fn wrong(stage: &Stage, fault: Fault) -> usize {
+    let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
+    wrong_by(stage, &Composite::new(&stage.host.device, &options).unwrap(), fault)
+}
+
+/// Number of pixels that a pipeline draws with a colour or depth that is not what it must be.
+fn wrong_by(stage: &Stage, composite: &Composite, fault: Fault) -> usize {
     let picture = random_picture(5);
     let queue = &stage.host.queue;
     for (texture, bytes) in [
@@ -111,17 +154,16 @@ fn wrong(stage: &Stage, fault: Fault) -> usize {
         };
         queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
     }
-    let format = TextureFormat::Rgba8Unorm;
-    let color = stage.attachment(format, 1);
-    let depth = stage.attachment(TextureFormat::Depth32Float, 1);
-    let options = CompositeOptions::lit(format, stage.composite_depth(depth.format()));
-    let composite = Composite::new(&stage.host.device, &options).unwrap();
-    let mut drawn = stage.picture(&composite);
+    let color = stage.attachment(FORMAT, 1);
+    let depth = stage.attachment(DEPTH, 1);
+    let mut drawn = stage.picture(composite);
     drawn.set_camera(queue, &stage.camera, FIRST);
     let mut encoder = stage.host.encoder();
     {
         let (color, depth) = (view_of(&color), view_of(&depth));
-        let mut pass = begin(&mut encoder, &color, None, &depth, Some(stage.far()));
+        let [r, g, b, a] = UNDER.map(|value| f64::from(value) / 255.0);
+        let under = wgpu::Color { r, g, b, a };
+        let mut pass = begin_over(&mut encoder, [&color, &depth], None, Some(stage.far()), under);
         composite.draw(&mut pass, &drawn).unwrap();
     }
     let colors = stage.host.submit_and_read(encoder, &color);
@@ -173,5 +215,27 @@ fn faults(_: &'static Headless) {
         {
             assert!(wrong(&stage, fault) > 0, "{convention:?}: {fault:?}");
         }
+    }
+}
+
+fn planted(_: &'static Headless) {
+    let stages = [Convention::Perspective, Convention::InfiniteReversed]
+        .map(|convention| [Stage::new(convention), Stage::oblique(convention)]);
+    for [file, find, replace] in PLANTED {
+        let (name, variant) = file.split_once('#').unwrap_or((file, ""));
+        let separator = if variant.is_empty() { "" } else { "#" };
+        let edit = ShaderEdit {
+            file: format!("host/{name}.wgsl{separator}{variant}"),
+            find: find.to_owned(),
+            replace: replace.to_owned(),
+        };
+        let of = |stage: &Stage| {
+            let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
+            let device = &stage.host.device;
+            let composite = edited_composite(device, &options, vec![edit.clone()]).unwrap();
+            wrong_by(stage, &composite, Fault::None)
+        };
+        let found: usize = stages.iter().flatten().map(of).sum();
+        assert!(found > 0, "{file}: `{find}`");
     }
 }

@@ -263,13 +263,24 @@ pub(super) fn pixels() -> impl Iterator<Item = [u32; 2]> {
     (0..SIZE[1]).flat_map(|row| (0..SIZE[0]).map(move |column| [column, row]))
 }
 
-/// A render pass over the viewport of the picture.
+/// A render pass over the viewport of the picture. What is cleared is black.
 pub(super) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     color: &wgpu::TextureView,
     resolved: Option<&wgpu::TextureView>,
     depth: &wgpu::TextureView,
     cleared: Option<f32>,
+) -> wgpu::RenderPass<'a> {
+    begin_over(encoder, [color, depth], resolved, cleared, wgpu::Color::BLACK)
+}
+
+/// A render pass over the viewport of the picture, with a colour and a depth to which the targets are cleared.
+pub(super) fn begin_over<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    [color, depth]: [&wgpu::TextureView; 2],
+    resolved: Option<&wgpu::TextureView>,
+    cleared: Option<f32>,
+    background: wgpu::Color,
 ) -> wgpu::RenderPass<'a> {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -278,7 +289,7 @@ pub(super) fn begin<'a>(
             resolve_target: resolved,
             ops: wgpu::Operations {
                 load: match cleared {
-                    Some(_) => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    Some(_) => wgpu::LoadOp::Clear(background),
                     None => wgpu::LoadOp::Load,
                 },
                 store: wgpu::StoreOp::Store,
