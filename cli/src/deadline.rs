@@ -10,32 +10,46 @@ use super::failure::DEVICE;
 use super::progress;
 use super::speak::tell;
 
-/// The time that opening and testing a device may take.
+/// The time that opening and testing a device may take, and what is called with the reason when it took longer.
 #[cfg(feature = "gpu")]
-static OPENING: OnceLock<Duration> = OnceLock::new();
+static OPENING: OnceLock<(Duration, Box<Late>)> = OnceLock::new();
 
-/// Limits the time of each [`opening`] from now on.
 #[cfg(feature = "gpu")]
-pub(super) fn limit_opening(limit: Duration) {
-    let _ = OPENING.set(limit);
+type Late = dyn Fn(&str) + Send + Sync;
+
+/// Limits the time of each [`opening`] from now on. `late` is called before the program ends.
+#[cfg(feature = "gpu")]
+pub(super) fn limit_opening(limit: Duration, late: impl Fn(&str) + Send + Sync + 'static) {
+    let _ = OPENING.set((limit, Box::new(late)));
 }
 
 /// Opens a device, and ends the program if that takes longer than it may.
 #[cfg(feature = "gpu")]
 pub(super) fn opening<T>(open: impl FnOnce() -> T) -> T {
-    let Some(limit) = OPENING.get() else {
+    let Some((limit, late)) = OPENING.get() else {
         return open();
     };
     let (opened, is_opened) = channel::<()>();
     let watch = move || {
         if is_opened.recv_timeout(*limit) == Err(RecvTimeoutError::Timeout) {
-            give_up(&format!("no device was ready within {} s", limit.as_secs_f64()));
+            let why = format!("no device was ready within {} s", limit.as_secs_f64());
+            late(&why);
+            give_up(&why);
         }
     };
-    let _ = std::thread::Builder::new().spawn(watch);
+    if let Err(error) = std::thread::Builder::new().spawn(watch) {
+        say_unlimited(&error);
+    }
     let result = open();
     drop(opened);
     result
+}
+
+/// Says that nothing ends a driver that hangs.
+pub(super) fn say_unlimited(error: &std::io::Error) {
+    tell(format_args!(
+        "note: --timeout has no effect, because a thread cannot be started: {error}"
+    ));
 }
 
 /// Ends the program with the exit code for devices that do not answer.

@@ -276,8 +276,9 @@ fn render_views(
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
-    if stop_rule.samples_per_part().is_some() {
-        let sums = SampledPicture::BYTES_PER_PIXEL + SampleMean::BYTES_PER_PIXEL;
+    if stop_rule.samples_per_part(input.settings.sampling.samples).is_some() {
+        let of_cpu = opened.adapter().is_none().then_some(SampledPicture::BYTES_PER_PIXEL);
+        let sums = of_cpu.unwrap_or(0) + SampleMean::BYTES_PER_PIXEL;
         let extra = views.extra_bytes_per_pixel(layers) + sums + layers.bytes_per_pixel();
         memory::check(&views.film(), &input.size_from, layers, extra)?;
     }
@@ -351,7 +352,7 @@ fn on_cpu(
         views.try_each(|view| {
             let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
             let watch = &mut |progress: &_| watching.decide(progress);
-            let picture = match stop_rule.samples_per_part() {
+            let picture = match stop_rule.samples_per_part(settings.sampling.samples) {
                 Some(n) => cpu::render_in_parts(&structure, view, settings, layers, n, watch),
                 None => cpu::render_watched(&structure, view, settings, layers, watch),
             };
@@ -411,7 +412,7 @@ fn on_gpu(
             views.try_each(|view| {
                 let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = match stop_rule.samples_per_part() {
+                let picture = match stop_rule.samples_per_part(settings.sampling.samples) {
                     Some(n) => headless.render_in_parts(&buffers, view, settings, layers, n, watch),
                     None => headless.render_uploaded(&buffers, view, settings, layers, watch),
                 };

@@ -28,6 +28,7 @@ pub(super) struct StopArgs {
         long,
         help_heading = HEADING,
         value_name = "N",
+        allow_hyphen_values = true,
         value_parser = clap::value_parser!(u32).range(1..),
         conflicts_with_all = ["time", "noise", "keep_partial"]
     )]
@@ -83,9 +84,9 @@ impl StopRule {
         self.keep_partial
     }
 
-    /// The most samples of a part, if samples are taken in parts.
-    pub(super) fn samples_per_part(&self) -> Option<u32> {
-        self.samples_per_part
+    /// The most samples of a part, if there are several parts of so many samples.
+    pub(super) fn samples_per_part(&self, samples: u32) -> Option<u32> {
+        self.samples_per_part.filter(|most| *most < samples)
     }
 
     /// A flag other than those of [`StopRule::open_end`], if there is one.
@@ -98,7 +99,7 @@ impl StopRule {
     pub(super) fn check_for_bricks(&self) -> Result<(), Failure> {
         match self.open_end().or(self.other_flag()) {
             Some(flag) => Err(Failure::usage(format!(
-                "{flag}: all samples of a file of bricks are complete at the same time; choose --samples"
+                "{flag}: all samples of a file of bricks are complete at the same time; remove it, and choose --samples"
             ))),
             None => Ok(()),
         }

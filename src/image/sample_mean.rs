@@ -12,9 +12,8 @@ pub struct SampleMean {
     /// The first picture.
     image: Image,
     samples: u32,
-    sums: Sums,
-    /// Whether there is more than one picture.
-    is_mean: bool,
+    /// The sums, if there is more than one picture.
+    sums: Option<Sums>,
 }
 
 /// Sums over the samples of all pixels, for the layers that there are.
@@ -39,30 +38,35 @@ pub enum NoMean {
 }
 
 impl SampleMean {
-    /// The most bytes that each pixel needs beside the first picture.
+    /// The most bytes that each pixel needs beside the first picture, once there is a second.
     pub const BYTES_PER_PIXEL: u64 = 72;
 
     /// The mean of a single picture with `samples` samples for each pixel, at least one.
-    ///
-    /// # Errors
-    /// [`NoMean::TooLarge`] if the memory for the sums cannot be reserved.
-    pub fn new(image: Image, samples: u32) -> Result<Self, NoMean> {
-        let mut sums = Sums::of(&image)?;
-        sums.add(&image, samples);
-        Ok(Self { image, samples, sums, is_mean: false })
+    #[must_use]
+    pub fn new(image: Image, samples: u32) -> Self {
+        Self { image, samples, sums: None }
     }
 
     /// Adds a picture with `samples` samples for each pixel, at least one.
     ///
     /// # Errors
-    /// [`NoMean::OtherShape`] if it has another size or other layers. Then nothing is added.
+    /// [`NoMean::OtherShape`] if it has another size or other layers, and [`NoMean::TooLarge`] if the memory for the sums
+    /// cannot be reserved. Then nothing is added.
     pub fn add(&mut self, image: &Image, samples: u32) -> Result<(), NoMean> {
         let shape = |image: &Image| (image.width, image.height, image.layers());
         if shape(&self.image) != shape(image) {
             return Err(NoMean::OtherShape);
         }
-        self.is_mean = true;
-        self.sums.add(image, samples);
+        let mut sums = match self.sums.take() {
+            Some(sums) => sums,
+            None => {
+                let mut sums = Sums::of(&self.image)?;
+                sums.add(&self.image, self.samples);
+                sums
+            }
+        };
+        sums.add(image, samples);
+        self.sums = Some(sums);
         self.samples += samples;
         Ok(())
     }
@@ -76,10 +80,10 @@ impl SampleMean {
     /// The picture. With a single picture, it is that picture, to the bit.
     #[must_use]
     pub fn into_image(self) -> Image {
-        let Self { mut image, samples, sums, .. } = self;
-        if !self.is_mean {
+        let Self { mut image, samples, sums } = self;
+        let Some(sums) = sums else {
             return image;
-        }
+        };
         let count = f64::from(samples);
         let narrow = |sum: &f64| (sum / count) as f32;
         for (mean, sum) in image.color.iter_mut().zip(&sums.color) {
@@ -174,7 +178,7 @@ mod tests {
         for parts in [1, 5, 7, 22, 23] {
             let mut chunks = lights.chunks(parts);
             let first = chunks.next().unwrap();
-            let mut mean = SampleMean::new(pixel(first), first.len() as u32).unwrap();
+            let mut mean = SampleMean::new(pixel(first), first.len() as u32);
             chunks.for_each(|part| mean.add(&pixel(part), part.len() as u32).unwrap());
             assert_eq!(mean.samples(), 23);
             let found = mean.into_image();
@@ -190,12 +194,12 @@ mod tests {
     #[test]
     fn a_single_picture_stays_as_it_is() {
         let image = pixel(&[0.3, 0.1, 0.9]);
-        assert_eq!(SampleMean::new(image.clone(), 3).unwrap().into_image(), image);
+        assert_eq!(SampleMean::new(image.clone(), 3).into_image(), image);
     }
 
     #[test]
     fn other_shapes_are_refused() {
-        let mut mean = SampleMean::new(pixel(&[0.5]), 1).unwrap();
+        let mut mean = SampleMean::new(pixel(&[0.5]), 1);
         for other in [Image::new(2, 1, LayerSet::ALL), Image::new(1, 1, LayerSet::COLOR)] {
             assert_eq!(mean.add(&other.unwrap(), 1), Err(NoMean::OtherShape));
         }

@@ -76,7 +76,7 @@ impl InParts {
     pub(crate) fn add(&mut self, part: Picture) -> Result<(), NoMean> {
         self.hits += part.hits.unwrap_or_default();
         match &mut self.mean {
-            None => self.mean = Some(SampleMean::new(part.image, part.samples)?),
+            None => self.mean = Some(SampleMean::new(part.image, part.samples)),
             Some(mean) => mean.add(&part.image, part.samples)?,
         }
         Ok(())

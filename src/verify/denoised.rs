@@ -31,7 +31,11 @@ const NO_NOISE: f64 = 1e-8;
 /// Roundings of a sum of 25 products of weights and light, of the sum of weights, and of the quotient.
 const OF_MEANS: u32 = 60;
 
-/// A weight that is too small to matter beside that of the pixel in the middle, 0.14.
+/// Roundings of a sum of 25 products of two squares of weights and a variance, of the square of the sum of weights, and of
+/// the quotient.
+const OF_VARIANCES: u32 = 80;
+
+/// A weight that is too small beside that of the pixel in the middle, 0.14, for its interval to be worth computing.
 const NO_WEIGHT: f64 = 1e-20;
 
 /// What flushing of 25 products to zero may change.
@@ -110,8 +114,15 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
         let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
         let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
         certificate.pixels += 1;
-        let is_vague = |Interval { low, high }: &Interval| high - low > WIDEST * high.max(0.01);
-        match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
+        // A bound that is no number says nothing.
+        let is_vague = |Interval { low, high }: &Interval| {
+            low.is_nan() || high.is_nan() || high - low > WIDEST * high.max(0.01)
+        };
+        let is_excluded = |channel: &usize| {
+            let (Interval { low, high }, found) = (legal[*channel], f64::from(found[*channel]));
+            found.is_nan() || found < low || found > high
+        };
+        match (0..3).find(is_excluded) {
             Some(channel) => {
                 certificate.violation_count += 1;
                 if certificate.violations.len() < KEPT {
@@ -160,7 +171,10 @@ impl Filter {
         let [width, height] = self.size;
         let at = [middle as i64 % width, middle as i64 / width];
         let light = lights[middle];
-        let base: [f64; 3] = std::array::from_fn(|i| 0.5 * (light[i].low + light[i].high));
+        let base: [f64; 3] = std::array::from_fn(|i| {
+            let middle = 0.5 * (light[i].low + light[i].high);
+            if middle.is_finite() { middle } else { 0.0 }
+        });
         let mut sums = [Interval { low: 0.0, high: 0.0 }; 4];
         let mut weights = Interval { low: 0.0, high: 0.0 };
         // The sums of what is added, of which rounding may change a part.
@@ -177,8 +191,7 @@ impl Filter {
                 let same = self.likeness(middle, index, distance.max(1.0));
                 let alike = match index == middle {
                     true => ONE,
-                    // Such a weight changes no sum, whatever the lights.
-                    false if same.high <= NO_WEIGHT => UP_TO_ONE,
+                    false if same.high <= NO_WEIGHT => ANY,
                     false => alike(&light, &other),
                 };
                 let spline = spline(dx) * spline(dy);
@@ -210,9 +223,11 @@ impl Filter {
             let error = (rounding * sizes[i] + MOST_FLUSHED) / weights.low;
             Interval { low: base[i] + low - error, high: base[i] + high + error }
         });
+        let rounding = PAD * gamma(OF_VARIANCES);
+        let flushed = MOST_FLUSHED / (weights.low * weights.low);
         let variance = Interval {
-            low: sums[3].low / (weights.high * weights.high) * (1.0 - rounding) - FLUSH,
-            high: sums[3].high / (weights.low * weights.low) * (1.0 + rounding) + FLUSH,
+            low: sums[3].low / (weights.high * weights.high) * (1.0 - rounding) - flushed,
+            high: sums[3].high / (weights.low * weights.low) * (1.0 + rounding) + flushed,
         };
         [red, green, blue, Interval { low: variance.low.max(0.0), ..variance }]
     }
@@ -260,7 +275,8 @@ impl Filter {
 }
 
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
-const UP_TO_ONE: Interval = Interval { low: 0.0, high: 1.0 };
+/// Every similarity of lights; the exponential of zero may be 3 ULP above 1.
+const ANY: Interval = Interval { low: 0.0, high: 1.0 + PAD * U * 3.0 };
 
 /// The similarity of lights, relative to their noise.
 fn alike(light: &Light, other: &Light) -> Interval {

@@ -55,7 +55,7 @@ fn check(device: &Headless, view: &LitView, name: &str) {
         let parts: Vec<Sampling> = sampling.parts(samples_per_part).collect();
         let picture =
             |sampling: &Sampling| of(&RenderSettings { sampling: *sampling, ..settings.clone() });
-        let mut mean = SampleMean::new(picture(&parts[0]), parts[0].samples).unwrap();
+        let mut mean = SampleMean::new(picture(&parts[0]), parts[0].samples);
         for part in &parts[1..] {
             mean.add(&picture(part), part.samples).unwrap();
         }

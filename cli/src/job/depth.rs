@@ -45,15 +45,20 @@ fn seen(folder: &Folder) -> Vec<Range<usize>> {
 fn read(folder: &Folder, units: &Range<usize>) -> Result<(Header, Pictures), Problem> {
     let path = joined(folder, units);
     let (header, pictures) = part_file::read(&path, &folder.manifest, units.start)?;
-    let is_same = header.last == Some(units.end.saturating_sub(1));
-    is_same.then_some((header, pictures)).ok_or(Problem::Foreign)
+    is_of(&header, units).then_some((header, pictures)).ok_or(Problem::Foreign)
+}
+
+/// Whether a joined part was joined from these units.
+fn is_of(header: &Header, units: &Range<usize>) -> bool {
+    header.last == Some(units.end.saturating_sub(1))
 }
 
 /// The units that are in joined parts which are whole, with the headers of these.
 pub(super) fn covered(folder: &Folder) -> BTreeMap<usize, Header> {
     let mut all = BTreeMap::new();
     for units in seen(folder) {
-        if let Ok((header, _)) = read(folder, &units) {
+        let header = part_file::check(&joined(folder, &units), &folder.manifest, units.start);
+        if let Some(header) = header.ok().filter(|header| is_of(header, &units)) {
             for unit in units {
                 all.entry(unit).or_insert_with(|| Header { unit, ..header.clone() });
             }

@@ -39,9 +39,8 @@ pub(super) fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, 
     }
     let manifest = &folder.manifest;
     let units = (0..manifest.units).into_par_iter();
-    let mut found: Vec<Result<Header, Problem>> = units
-        .map(|unit| part_file::read(&folder.part(unit), manifest, unit).map(|(header, _)| header))
-        .collect();
+    let mut found: Vec<Result<Header, Problem>> =
+        units.map(|unit| part_file::check(&folder.part(unit), manifest, unit)).collect();
     for (unit, header) in covered(folder) {
         found[unit] = Ok(header);
     }
@@ -55,12 +54,22 @@ fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Fail
         let has = |unit: &usize| found[*unit].as_ref().err() == Some(&problem);
         (0..found.len()).filter(has).collect()
     };
+    let unreadable = found.iter().filter_map(|found| found.as_ref().err().copied());
+    if let Some(problem) = unreadable.into_iter().find(|one| matches!(one, Problem::Unreadable(_)))
+    {
+        let parts = ranges(&of(problem));
+        let words = problem.words();
+        return Err(Failure::Job(anyhow!(
+            "{}: parts {parts} are {words}; merge again where they can be read",
+            folder.path().display()
+        )));
+    }
     let problems = [Problem::Missing, Problem::Damaged, Problem::Foreign];
     let words: Vec<String> = problems
         .into_iter()
         .map(|problem| (problem, of(problem)))
         .filter(|(_, units)| !units.is_empty())
-        .map(|(problem, units)| format!("{} {}", problem.word(), ranges(&units)))
+        .map(|(problem, units)| format!("{} {}", problem.words(), ranges(&units)))
         .collect();
     if words.is_empty() {
         return Ok(());
@@ -96,7 +105,7 @@ pub(super) fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<St
 
 /// Why a part cannot be used.
 pub(super) fn unusable(path: &Path, problem: Problem) -> Failure {
-    Failure::Job(anyhow!("{}: this part is {}", path.display(), problem.word()))
+    Failure::Job(anyhow!("{}: this part is {}", path.display(), problem.words()))
 }
 
 /// The pictures of all eyes at a place among all pictures, from their parts.
@@ -119,7 +128,7 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
         let (_, (origin, _)) = manifest.unit(first);
         let mut tile = tile(folder, first)?;
         if parts > 1 {
-            tile = mean(folder, &tile, first..first + parts)?;
+            tile = mean(folder, tile, first..first + parts)?;
         }
         for (whole, part) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
             whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
@@ -131,13 +140,12 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
 /// The mean of units that have the samples of a tile, of which `first` are the pictures of the first.
 fn mean(
     folder: &Folder,
-    first: &Views<Image>,
+    first: Views<Image>,
     units: Range<usize>,
 ) -> Result<Views<Image>, Failure> {
     let refused = |error: NoMean| Failure::Job(error.into());
     let samples = |unit| folder.manifest.samples_of(unit).1;
-    let begin = |image: &Image| SampleMean::new(image.clone(), samples(units.start));
-    let mut means = first.try_each(begin).map_err(refused)?;
+    let mut means = first.map(|image| SampleMean::new(image, samples(units.start)));
     for unit in units.start + 1..units.end {
         let images = tile(folder, unit)?;
         for (mean, image) in means.as_mut_slice().iter_mut().zip(images.as_slice()) {

@@ -21,6 +21,9 @@ const FORMAT: u32 = 1;
 /// This version of the program.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
+/// The most units of a job. Each is a file, and all of them are looked at together.
+pub(super) const MOST_UNITS: usize = 1_000_000;
+
 /// A job. Each unit of work is a tile of a picture with all its samples or a part of them, or a group of bricks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -153,7 +156,7 @@ impl Manifest {
             && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
         let units = pictures.checked_mul(columns * rows);
         let units = units.and_then(|units| units.checked_mul(self.sample_parts()));
-        has_tiles && units == Some(self.units) && self.units > 0
+        has_tiles && units == Some(self.units) && (1..=MOST_UNITS).contains(&self.units)
     }
 
     /// Whether units are groups of bricks.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 use super::files;
 use super::folder::{FAILED, Folder, PARTS, RUNNING};
 use super::units;
-use crate::deadline::give_up;
+use crate::deadline::{give_up, say_unlimited};
 
 /// The time after which a mark is written again.
 const BEAT: Duration = Duration::from_secs(5);
@@ -49,6 +49,9 @@ impl Mark {
                 write(&marked);
             }
         });
+        if let (Err(error), Some(_)) = (&thread, limit) {
+            say_unlimited(error);
+        }
         Self { path, stop: Some(stop), thread: thread.ok() }
     }
 }

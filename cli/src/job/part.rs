@@ -8,6 +8,8 @@ use anyhow::Context;
 
 use super::PartArgs;
 use super::depth::covered;
+#[cfg(feature = "gpu")]
+use super::files;
 use super::folder::{Folder, PARTS};
 use super::manifest::VERSION;
 use super::marks::{Mark, clear_failed, set_failed, sweep};
@@ -53,7 +55,7 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     let limit = limit.transpose()?;
     let joined = covered(&folder);
     let is_missing = |unit: &usize| {
-        let of = || part_file::read(&folder.part(*unit), &folder.manifest, *unit);
+        let of = || part_file::check(&folder.part(*unit), &folder.manifest, *unit);
         !joined.contains_key(unit) && of().is_err()
     };
     let units: Vec<usize> = asked.iter().copied().filter(is_missing).collect();
@@ -62,7 +64,8 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     }
     #[cfg(feature = "gpu")]
     if let Some(limit) = limit {
-        crate::deadline::limit_opening(limit);
+        let failed = folder.failed(units[0]);
+        crate::deadline::limit_opening(limit, move |why| files::mark(&failed, why));
     }
     threads::start()?;
     folder.enter()?;

@@ -51,14 +51,27 @@ pub(super) enum Problem {
     Damaged,
     /// It belongs to another job, another unit or another version.
     Foreign,
+    /// It cannot be read, but may be whole.
+    Unreadable(io::ErrorKind),
 }
 
 impl Problem {
-    pub(super) const fn word(self) -> &'static str {
+    /// A part is this.
+    pub(super) fn words(self) -> String {
         match self {
-            Self::Missing => "missing",
-            Self::Damaged => "damaged",
-            Self::Foreign => "of another job",
+            Self::Missing => "missing".to_owned(),
+            Self::Damaged => "damaged".to_owned(),
+            Self::Foreign => "of another job".to_owned(),
+            Self::Unreadable(kind) => format!("not readable ({kind}), but may be whole"),
+        }
+    }
+
+    /// Why reading failed. A file that ends too early is damaged.
+    fn of(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::Missing,
+            io::ErrorKind::UnexpectedEof => Self::Damaged,
+            kind => Self::Unreadable(kind),
         }
     }
 }
@@ -108,8 +121,44 @@ pub(super) fn glance(path: &Path, manifest: &Manifest, unit: usize) -> Result<He
     let (header, before) = read_header(&mut file)?;
     check_header(&header, manifest, unit)?;
     let expected = before + header.bytes + DIGEST as u64;
-    let length = file.metadata().map_err(|_| Problem::Damaged)?.len();
+    let length = file.metadata().map_err(|error| Problem::of(&error))?.len();
     if length == expected { Ok(header) } else { Err(Problem::Damaged) }
+}
+
+/// What is read from a file, with its digest.
+struct Digested {
+    file: files::File,
+    digest: Sha256,
+}
+
+impl Read for Digested {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        self.digest.update(&buffer[..count]);
+        Ok(count)
+    }
+}
+
+/// Checks every byte of a part, in memory that does not depend on its size.
+pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
+    let mut part = Digested { file: open(path)?, digest: Sha256::new() };
+    let (header, _) = read_header(&mut part)?;
+    let (mut left, mut buffer) = (header.bytes, vec![0; 1 << 18]);
+    while left > 0 {
+        let most = left.min(buffer.len() as u64) as usize;
+        part.read_exact(&mut buffer[..most]).map_err(|error| Problem::of(&error))?;
+        left -= most as u64;
+    }
+    let Digested { mut file, digest } = part;
+    let mut end = Vec::new();
+    // One byte more than there may be.
+    let mut rest = Read::by_ref(&mut file).take(DIGEST as u64 + 1);
+    rest.read_to_end(&mut end).map_err(|error| Problem::of(&error))?;
+    if end != digest.finalize().as_slice() {
+        return Err(Problem::Damaged);
+    }
+    check_header(&header, manifest, unit)?;
+    Ok(header)
 }
 
 /// Reads a part and checks every byte of it.
@@ -122,7 +171,7 @@ pub(super) fn read(
     let file = open(path)?;
     // A file that is longer than a part can be is not read to its end.
     let most = payload(manifest, unit) + LONGEST_HEADER + 1024;
-    file.take(most).read_to_end(&mut bytes).map_err(|_| Problem::Damaged)?;
+    file.take(most).read_to_end(&mut bytes).map_err(|error| Problem::of(&error))?;
     let (contents, digest) = bytes.split_last_chunk::<DIGEST>().ok_or(Problem::Damaged)?;
     if Sha256::digest(contents).as_slice() != digest {
         return Err(Problem::Damaged);
@@ -137,7 +186,10 @@ pub(super) fn read(
         2 => Views::Two(rest.split_at(of_eye).into()),
         _ => Views::One(rest),
     };
-    let damaged = Problem::Damaged;
+    // What has the right length and digest was written so; only memory can be missing.
+    let whole = rest.len() as u64 == payload(manifest, unit);
+    let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
+    let damaged = if whole { no_memory } else { Problem::Damaged };
     let pictures = if manifest.is_by_depth() {
         let nearest = |bytes: &&[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(damaged);
         Pictures::Depth(eyes.try_each(nearest)?)
@@ -149,25 +201,22 @@ pub(super) fn read(
 }
 
 fn open(path: &Path) -> Result<files::File, Problem> {
-    files::open(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => Problem::Missing,
-        _ => Problem::Damaged,
-    })
+    files::open(path).map_err(|error| Problem::of(&error))
 }
 
 /// Reads the header, and returns how many bytes it takes with what is before it.
 fn read_header(file: &mut impl Read) -> Result<(Header, u64), Problem> {
     let mut start = [0; START.len()];
     let mut length = [0; 8];
-    let damaged = |_| Problem::Damaged;
-    file.read_exact(&mut start).map_err(damaged)?;
-    file.read_exact(&mut length).map_err(damaged)?;
+    let problem = |error| Problem::of(&error);
+    file.read_exact(&mut start).map_err(problem)?;
+    file.read_exact(&mut length).map_err(problem)?;
     let length = u64::from_le_bytes(length);
     if start != START || length > LONGEST_HEADER {
         return Err(Problem::Damaged);
     }
     let mut text = vec![0; length as usize];
-    file.read_exact(&mut text).map_err(damaged)?;
+    file.read_exact(&mut text).map_err(problem)?;
     let header = serde_json::from_slice(&text).map_err(|_| Problem::Damaged)?;
     Ok((header, (START.len() + size_of::<u64>()) as u64 + length))
 }

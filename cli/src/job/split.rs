@@ -8,7 +8,7 @@ use super::SplitArgs;
 use super::digest::{self, InputFile};
 use super::files;
 use super::folder::{FAILED, Folder, OVERVIEW, PARTS, RUNNING, packed};
-use super::manifest::{Manifest, NAME, UnitKind, VERSION, layer_names};
+use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names};
 use super::recipe::Recipe;
 use super::units::{parse_tiles, ranges, tile};
 use crate::args::Stereo;
@@ -60,7 +60,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let samples_per_part = args.render.stop_rule.samples_per_part;
     if samples_per_part.is_some() && input.bricks.is_some() {
         return Err(Failure::usage(
-            "--samples-per-part: all samples of a file of bricks are complete at the same time; choose --tiles",
+            "--samples-per-part: all samples of a file of bricks are complete at the same time; choose --tiles in its place",
         ));
     }
     let units = match groups.len() {
@@ -73,8 +73,13 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
             }),
         count => Some(count),
     };
-    let units =
-        units.ok_or_else(|| Failure::usage("these are too many units; choose fewer tiles"))?;
+    let Some(units) = units.filter(|units| *units <= MOST_UNITS) else {
+        let remedy =
+            if samples_per_part.is_some() { "a larger --samples-per-part, or " } else { "" };
+        return Err(Failure::usage(format!(
+            "these are more than {MOST_UNITS} units; choose {remedy}fewer tiles or frames"
+        )));
+    };
     let (_, [width, height]) = tile(size, tiles, 0);
     let pixels = u64::from(width) * u64::from(height);
     let samples = sampling.samples.min(samples_per_part.unwrap_or(u32::MAX));

@@ -53,8 +53,7 @@ pub(super) fn run(args: &StatusArgs) -> Result<(), Failure> {
     let manifest = &folder.manifest;
     let found: Vec<Result<Header, Problem>> = if args.check {
         let units = (0..manifest.units).into_par_iter();
-        let read = |unit| part_file::read(&folder.part(unit), manifest, unit);
-        units.map(|unit| read(unit).map(|(header, _)| header)).collect()
+        units.map(|unit| part_file::check(&folder.part(unit), manifest, unit)).collect()
     } else {
         folder.glance()
     };

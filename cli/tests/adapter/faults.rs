@@ -236,6 +236,12 @@ fn hangs(headless: &'static Headless) {
         for empty in ["parts", "running"] {
             assert!(names(folder.path().join("job").join(empty)).is_empty(), "{fault}: {empty}");
         }
+        // `status` says why.
+        let failed = folder.path().join("job/failed");
+        let marks: Vec<_> = names(&failed).iter().map(|name| failed.join(name)).collect();
+        let said = fs::read_to_string(&marks[0]).unwrap();
+        assert!(marks.len() == 1 && line.starts_with(said.trim_end()), "{fault}: {said}");
+        fs::remove_file(&marks[0]).unwrap();
     }
 }
 

@@ -39,6 +39,11 @@ fn wrong_usage_is_one_line() {
         ("split a.xyz -o new --frames : --resume", "belongs to `pinhole job merge`"),
         ("split a.xyz -o new --samples-per-part 0", "0 is not in 1.."),
         ("split a.xyz -o new --samples-per-part 4 --noise 0.1", "--noise"),
+        (
+            "split a.xyz -o new --samples 16777216 --samples-per-part 1",
+            "these are more than 1000000 units; choose a larger --samples-per-part, or fewer tiles",
+        ),
+        ("split a.xyz -o new --size 3000x2000 --tiles 2000x1000", "choose fewer tiles or frames"),
         ("split a.xyz -o new --samples-per-part 4 --style fast", "only to lit pictures"),
         ("split a.xyz -o new --layer deth", "there is no layer `deth`"),
         ("split a.xyz -o new --frames 9", "there is no frame 9"),

@@ -178,7 +178,7 @@ pub enum LitPart {
 
 impl LitPart {
     /// The rectangle of a film of which one with sides of at most `longest_side` is recorded whole. Of a larger film, both
-    /// rectangles together have at most as many pixels.
+    /// rectangles together have no more pixels than a square with that side.
     fn tile(self, film: &Film, longest_side: u32) -> Option<Tile> {
         let film = [film.width(), film.height()];
         let is_larger = film.iter().any(|side| *side > longest_side);

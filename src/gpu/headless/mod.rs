@@ -424,12 +424,12 @@ impl Headless {
             answers.push(answer);
         }
         let done = waiting::until_done(&self.device, &self.queue, submission, self.timeout).await;
-        // A fault that the device reported explains more than the failure of the wait.
-        self.faults.check()?;
         if let Err(GpuError::Timeout { .. }) = done {
             // Dropping the last handle of a queue waits for its work, which may never end.
             std::mem::forget(self.queue.clone());
         }
+        // A fault that the device reported explains more than the failure of the wait.
+        self.faults.check()?;
         done?;
         for answer in answers {
             // Native devices map buffers before they report the end of the submission; browsers promise no order.

@@ -36,15 +36,18 @@ pub fn catches_panics() -> bool {
 fn poll(device: &Device, how: wgpu::PollType, timeout: Duration) -> Result<(), GpuError> {
     // Wgpu panics after it has left all of its locks.
     let polling = std::panic::AssertUnwindSafe(|| device.poll(how));
-    POLLS.set(true);
+    // A callback may poll as well.
+    let before = POLLS.replace(true);
     let polled = std::panic::catch_unwind(polling);
-    POLLS.set(false);
+    POLLS.set(before);
     match polled {
         Ok(Ok(_)) => Ok(()),
         Ok(Err(wgpu::PollError::Timeout)) => Err(GpuError::Timeout { waited: timeout }),
         Ok(Err(error)) => Err(GpuError::Device { message: error.to_string() }),
         Err(panic) => {
-            let message = panic.downcast_ref::<String>().map_or("a panic", String::as_str);
+            let text = panic.downcast_ref::<&str>().copied();
+            let text = panic.downcast_ref::<String>().map(String::as_str).or(text);
+            let message = text.unwrap_or("wgpu panicked");
             Err(GpuError::Device { message: message.to_owned() })
         }
     }

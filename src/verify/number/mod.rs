@@ -243,7 +243,9 @@ impl Mul for Number {
             return self;
         }
         let (a, b, c, d) = (self.low, self.high, other.low, other.high);
-        let (low, high) = if a >= 0.0 && c >= 0.0 {
+        // Without infinite numbers, whose products with zero are none.
+        let is_simple = a >= 0.0 && c >= 0.0 && b <= LARGEST && d <= LARGEST;
+        let (low, high) = if is_simple {
             (a * c, b * d)
         } else {
             let ends = [a * c, a * d, b * c, b * d];

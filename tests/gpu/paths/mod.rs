@@ -150,7 +150,7 @@ fn part_of_a_large_film() -> Result<(), Failed> {
     let film = Film::new(300, 270)?;
     let view = LitView { camera: Box::new(camera), film, ..scenes::matt() };
     let mut recording = record(headless()?, &view)?;
-    if recording.given.origin != [22, 7] || recording.given.size != [256, 256] {
+    if recording.given.origin != [38, 23] || recording.given.size != [224, 224] {
         return Err(format!("{:?}, {:?}", recording.given.origin, recording.given.size).into());
     }
     is_legal(&certify(&view, &recording))?;
