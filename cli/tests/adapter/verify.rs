@@ -225,11 +225,11 @@ fn another_part(_: &'static Headless) {
         assert_eq!(output.status.code(), Some(0), "{arguments}: {stderr}");
         let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-        assert_eq!(json["paths"]["paths"], 256 * 8 + 128 * 4);
+        assert_eq!(json["paths"]["paths"], 224 * 8 + 112 * 4);
         (json["paths"]["rectangles"].to_string(), stderr)
     };
     let (first, note) = run("--save run --report page");
-    assert!(first.starts_with("[[22,0,256,8],["), "{first}");
+    assert!(first.starts_with("[[38,0,224,8],["), "{first}");
     let seed = note.trim().rsplit(' ').next().unwrap();
     assert!(note.contains(" to check the same again, add --tile-seed "), "{note}");
     assert_eq!(run(&format!("--tile-seed {seed}")).0, first);
@@ -242,7 +242,7 @@ fn another_part(_: &'static Headless) {
     assert_eq!(page, read("again/report.html"));
     for words in [
         "<h2>What this does not cover</h2>",
-        "Light outside of 256 × 8 pixels from column 22, row 0 on and 128 × 4 pixels from column ",
+        "Light outside of 224 × 8 pixels from column 38, row 0 on and 112 × 4 pixels from column ",
         "1 of 16 was checked",
         "class=\"area\"",
     ] {
