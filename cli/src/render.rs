@@ -276,15 +276,15 @@ fn render_views(
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
+    if let Some(bricks) = &input.bricks {
+        stop_rule.check_for_bricks()?;
+        return bricks::render(bricks, input, views, layers, opened);
+    }
     if stop_rule.samples_per_part(input.settings.sampling.samples).is_some() {
         let of_cpu = opened.adapter().is_none().then_some(SampledPicture::BYTES_PER_PIXEL);
         let sums = of_cpu.unwrap_or(0) + SampleMean::BYTES_PER_PIXEL;
         let extra = views.extra_bytes_per_pixel(layers) + sums + layers.bytes_per_pixel();
         memory::check(&views.film(), &input.size_from, layers, extra)?;
-    }
-    if let Some(bricks) = &input.bricks {
-        stop_rule.check_for_bricks()?;
-        return bricks::render(bricks, input, views, layers, opened);
     }
     match opened {
         #[cfg(feature = "gpu")]

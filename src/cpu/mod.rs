@@ -122,15 +122,13 @@ pub fn render_in_parts<'a>(
 ) -> Result<Picture, RenderError> {
     let search = search.into();
     let mut whole = InParts::new(settings.sampling.samples);
-    for sampling in settings.sampling.parts(samples_per_part) {
-        let part = RenderSettings { sampling, ..settings.unfinished() };
+    for part in settings.unfinished_parts(samples_per_part) {
         let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
         let picture = render_watched(search, view, &part, settings.layers_for(layers), watch)?;
         whole.add(picture)?;
     }
-    let (image, samples, hits) = whole.finish().ok_or(RenderError::Stopped)?;
-    let image = finish(image, settings, layers);
-    Ok(Picture { image, samples, noise: None, hits: Some(hits) })
+    let picture = whole.picture().ok_or(RenderError::Stopped)?;
+    Ok(Picture { image: finish(picture.image, settings, layers), ..picture })
 }
 
 fn render_primary(

@@ -204,6 +204,13 @@ impl RenderSettings {
         settings
     }
 
+    /// The settings of pictures with parts of the samples, without what looks at neighbours of pixels.
+    pub(crate) fn unfinished_parts(&self, samples_per_part: u32) -> impl Iterator<Item = Self> {
+        let unfinished = self.unfinished();
+        let parts = self.sampling.parts(samples_per_part);
+        parts.map(move |sampling| Self { sampling, ..unfinished.clone() })
+    }
+
     /// The layers that rendering needs, including those that are wanted in the result: outlines and denoising are guided
     /// by layers of data.
     #[must_use]

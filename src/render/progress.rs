@@ -82,11 +82,11 @@ impl InParts {
         Ok(())
     }
 
-    /// The picture, the number of its samples, and its hits; `None` if there is no part.
-    pub(crate) fn finish(self) -> Option<(Image, u32, f64)> {
+    /// The picture, before anything looks at neighbours of pixels; `None` if there is no part.
+    pub(crate) fn picture(self) -> Option<Picture> {
         let mean = self.mean?;
         let samples = mean.samples();
-        Some((mean.into_image(), samples, self.hits))
+        Some(Picture { image: mean.into_image(), samples, noise: None, hits: Some(self.hits) })
     }
 }
 

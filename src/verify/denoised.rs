@@ -189,10 +189,12 @@ impl Filter {
                 let other = lights[index];
                 let distance = step as f64 * ((dx * dx + dy * dy) as f64).sqrt();
                 let same = self.likeness(middle, index, distance.max(1.0));
-                let alike = match index == middle {
-                    true => ONE,
-                    false if same.high <= NO_WEIGHT => ANY,
-                    false => alike(&light, &other),
+                let alike = if index == middle {
+                    ONE
+                } else if same.high <= NO_WEIGHT {
+                    ANY
+                } else {
+                    alike(&light, &other)
                 };
                 let spline = spline(dx) * spline(dy);
                 let relative = PAD * gamma(4);
@@ -275,6 +277,7 @@ impl Filter {
 }
 
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
+
 /// Every similarity of lights; the exponential of zero may be 3 ULP above 1.
 const ANY: Interval = Interval { low: 0.0, high: 1.0 + PAD * U * 3.0 };
 

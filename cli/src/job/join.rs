@@ -54,9 +54,8 @@ fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Fail
         let has = |unit: &usize| found[*unit].as_ref().err() == Some(&problem);
         (0..found.len()).filter(has).collect()
     };
-    let unreadable = found.iter().filter_map(|found| found.as_ref().err().copied());
-    if let Some(problem) = unreadable.into_iter().find(|one| matches!(one, Problem::Unreadable(_)))
-    {
+    let mut problems = found.iter().filter_map(|found| found.as_ref().err().copied());
+    if let Some(problem) = problems.find(|problem| matches!(problem, Problem::Unreadable(_))) {
         let parts = ranges(&of(problem));
         let words = problem.words();
         return Err(Failure::Job(anyhow!(
@@ -126,10 +125,7 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
     let (units, parts) = (manifest.units_of_picture(), manifest.sample_parts());
     for first in (place * units..(place + 1) * units).step_by(parts) {
         let (_, (origin, _)) = manifest.unit(first);
-        let mut tile = tile(folder, first)?;
-        if parts > 1 {
-            tile = mean(folder, tile, first..first + parts)?;
-        }
+        let tile = mean(folder, first..first + parts)?;
         for (whole, part) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
             whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
         }
@@ -137,15 +133,12 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
     Ok(whole)
 }
 
-/// The mean of units that have the samples of a tile, of which `first` are the pictures of the first.
-fn mean(
-    folder: &Folder,
-    first: Views<Image>,
-    units: Range<usize>,
-) -> Result<Views<Image>, Failure> {
+/// The mean of units that have the samples of a tile. A single unit is its own mean.
+fn mean(folder: &Folder, units: Range<usize>) -> Result<Views<Image>, Failure> {
     let refused = |error: NoMean| Failure::Job(error.into());
     let samples = |unit| folder.manifest.samples_of(unit).1;
-    let mut means = first.map(|image| SampleMean::new(image, samples(units.start)));
+    let mut means =
+        tile(folder, units.start)?.map(|image| SampleMean::new(image, samples(units.start)));
     for unit in units.start + 1..units.end {
         let images = tile(folder, unit)?;
         for (mean, image) in means.as_mut_slice().iter_mut().zip(images.as_slice()) {

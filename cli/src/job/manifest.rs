@@ -150,13 +150,11 @@ impl Manifest {
             return follows && are_some && is_one && self.groups.len() == self.units;
         }
         let pictures = self.pictures.as_ref().map_or(1, Vec::len);
-        let [columns, rows] = self.tiles.map(|side| side as usize);
         let has_tiles = self.groups.is_empty()
             && self.samples_per_part != Some(0)
             && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
-        let units = pictures.checked_mul(columns * rows);
-        let units = units.and_then(|units| units.checked_mul(self.sample_parts()));
-        has_tiles && units == Some(self.units) && (1..=MOST_UNITS).contains(&self.units)
+        let units = units_of_tiles(pictures, self.tiles, self.sample_parts());
+        has_tiles && units == Some(self.units) && self.units > 0
     }
 
     /// Whether units are groups of bricks.
@@ -166,12 +164,13 @@ impl Manifest {
 
     /// Into how many parts the samples of a tile are divided.
     pub(super) fn sample_parts(&self) -> usize {
-        self.sampling().parts(self.samples_per_part.unwrap_or(0)).len()
+        self.parts_of_samples().len()
     }
 
-    /// The numbers of samples of the whole picture.
-    fn sampling(&self) -> Sampling {
-        Sampling { samples: self.samples, ..Sampling::default() }
+    /// The numbers of samples of each part.
+    fn parts_of_samples(&self) -> impl ExactSizeIterator<Item = Sampling> {
+        let whole = Sampling { samples: self.samples, ..Sampling::default() };
+        whole.parts(self.samples_per_part.unwrap_or(0))
     }
 
     /// How many units a picture has.
@@ -193,9 +192,9 @@ impl Manifest {
 
     /// The first sample of a unit, and how many it has.
     pub(super) fn samples_of(&self, index: usize) -> (u32, u32) {
-        let mut parts = self.sampling().parts(self.samples_per_part.unwrap_or(0));
-        let part = parts.nth(index % parts.len()).unwrap_or(self.sampling());
-        (part.first, part.samples)
+        let mut parts = self.parts_of_samples();
+        let part = parts.nth(index % parts.len());
+        part.map_or((0, self.samples), |part| (part.first, part.samples))
     }
 
     /// The number of the picture of a unit; `None` for a single picture.
@@ -207,6 +206,17 @@ impl Manifest {
     pub(super) fn layer_set(&self) -> LayerSet {
         layer_set(&self.layers)
     }
+}
+
+/// How many units tiles of pictures are, with the samples of each in parts; `None` if that is more than [`MOST_UNITS`].
+pub(super) fn units_of_tiles(
+    pictures: usize,
+    tiles: [u32; 2],
+    sample_parts: usize,
+) -> Option<usize> {
+    let [columns, rows] = tiles.map(|side| side as usize);
+    let units = pictures.checked_mul(columns * rows)?.checked_mul(sample_parts)?;
+    (units <= MOST_UNITS).then_some(units)
 }
 
 /// The layers with these names; others are left out.

@@ -154,10 +154,8 @@ impl Work<'_> {
             Pictures::Depth(nearest)
         } else {
             let whole = input.settings.sampling;
-            if !manifest.is_by_depth() && manifest.sample_parts() > 1 {
-                let (first, samples) = manifest.samples_of(unit);
-                input.settings.sampling = Sampling { first, samples, ..whole };
-            }
+            let (first, samples) = manifest.samples_of(unit);
+            input.settings.sampling = Sampling { first, samples, ..whole };
             let tile = pieces::render(rectangle, layers, self.quiet, &mut |(origin, size)| {
                 let part =
                     input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;

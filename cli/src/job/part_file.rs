@@ -1,7 +1,7 @@
 //! The file of a part: a line that names the format, the length of a header in eight bytes, the header as JSON, the layers
 //! of the pictures of all eyes, and the digest of all bytes before it.
 
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -139,26 +139,35 @@ impl Read for Digested {
     }
 }
 
-/// Checks every byte of a part, in memory that does not depend on its size.
-pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
+/// Reads a part, and checks every byte of it. `contents` reads what is behind the header, which has so many bytes.
+fn checked(
+    path: &Path,
+    manifest: &Manifest,
+    unit: usize,
+    contents: impl FnOnce(io::Take<&mut Digested>) -> io::Result<()>,
+) -> Result<Header, Problem> {
+    let problem = |error| Problem::of(&error);
     let mut part = Digested { file: open(path)?, digest: Sha256::new() };
     let (header, _) = read_header(&mut part)?;
-    let (mut left, mut buffer) = (header.bytes, vec![0; 1 << 18]);
-    while left > 0 {
-        let most = left.min(buffer.len() as u64) as usize;
-        part.read_exact(&mut buffer[..most]).map_err(|error| Problem::of(&error))?;
-        left -= most as u64;
-    }
-    let Digested { mut file, digest } = part;
+    contents(Read::by_ref(&mut part).take(header.bytes)).map_err(problem)?;
+    let Digested { file, digest } = part;
     let mut end = Vec::new();
     // One byte more than there may be.
-    let mut rest = Read::by_ref(&mut file).take(DIGEST as u64 + 1);
-    rest.read_to_end(&mut end).map_err(|error| Problem::of(&error))?;
+    file.take(DIGEST as u64 + 1).read_to_end(&mut end).map_err(problem)?;
     if end != digest.finalize().as_slice() {
         return Err(Problem::Damaged);
     }
     check_header(&header, manifest, unit)?;
     Ok(header)
+}
+
+/// Checks every byte of a part, in memory that does not depend on its size.
+pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
+    let skip = |contents| {
+        let mut contents = BufReader::with_capacity(1 << 18, contents);
+        io::copy(&mut contents, &mut io::sink()).map(drop)
+    };
+    checked(path, manifest, unit, skip)
 }
 
 /// Reads a part and checks every byte of it.
@@ -167,34 +176,24 @@ pub(super) fn read(
     manifest: &Manifest,
     unit: usize,
 ) -> Result<(Header, Pictures), Problem> {
-    let mut bytes = Vec::new();
-    let file = open(path)?;
+    let (mut rest, payload) = (Vec::new(), payload(manifest, unit));
     // A file that is longer than a part can be is not read to its end.
-    let most = payload(manifest, unit) + LONGEST_HEADER + 1024;
-    file.take(most).read_to_end(&mut bytes).map_err(|error| Problem::of(&error))?;
-    let (contents, digest) = bytes.split_last_chunk::<DIGEST>().ok_or(Problem::Damaged)?;
-    if Sha256::digest(contents).as_slice() != digest {
-        return Err(Problem::Damaged);
-    }
-    let mut rest = contents;
-    let (header, _) = read_header(&mut rest)?;
-    check_header(&header, manifest, unit)?;
+    let keep = |contents: io::Take<_>| contents.take(payload).read_to_end(&mut rest).map(drop);
+    let header = checked(path, manifest, unit, keep)?;
     let (_, (_, size)) = manifest.unit(unit);
     let layers = manifest.layer_set();
     let of_eye = rest.len() / manifest.eyes.max(1) as usize;
     let eyes = match manifest.eyes {
         2 => Views::Two(rest.split_at(of_eye).into()),
-        _ => Views::One(rest),
+        _ => Views::One(&rest[..]),
     };
     // What has the right length and digest was written so; only memory can be missing.
-    let whole = rest.len() as u64 == payload(manifest, unit);
     let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
-    let damaged = if whole { no_memory } else { Problem::Damaged };
     let pictures = if manifest.is_by_depth() {
-        let nearest = |bytes: &&[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(damaged);
+        let nearest = |bytes: &&[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(no_memory);
         Pictures::Depth(eyes.try_each(nearest)?)
     } else {
-        let image = |bytes: &&[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(damaged);
+        let image = |bytes: &&[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(no_memory);
         Pictures::Tile(eyes.try_each(image)?)
     };
     Ok((header, pictures))

@@ -8,7 +8,7 @@ use super::SplitArgs;
 use super::digest::{self, InputFile};
 use super::files;
 use super::folder::{FAILED, Folder, OVERVIEW, PARTS, RUNNING, packed};
-use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names};
+use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
 use super::recipe::Recipe;
 use super::units::{parse_tiles, ranges, tile};
 use crate::args::Stereo;
@@ -64,16 +64,13 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         ));
     }
     let units = match groups.len() {
-        0 => pictures
-            .as_ref()
-            .map_or(1, Vec::len)
-            .checked_mul(tiles[0] as usize * tiles[1] as usize)
-            .and_then(|units| {
-                units.checked_mul(sampling.parts(samples_per_part.unwrap_or(0)).len())
-            }),
+        0 => {
+            let sample_parts = sampling.parts(samples_per_part.unwrap_or(0)).len();
+            units_of_tiles(pictures.as_ref().map_or(1, Vec::len), tiles, sample_parts)
+        }
         count => Some(count),
     };
-    let Some(units) = units.filter(|units| *units <= MOST_UNITS) else {
+    let Some(units) = units else {
         let remedy =
             if samples_per_part.is_some() { "a larger --samples-per-part, or " } else { "" };
         return Err(Failure::usage(format!(

@@ -66,8 +66,7 @@ impl<'a> SampledPicture<'a> {
     }
 
     /// One sample of a pixel, given as column and row. It has the random numbers of this sample, wherever those of the
-    /// picture begin. With the integrator `primary`, all samples of a pixel are the
-    /// same.
+    /// picture begin. With the integrator `primary`, all samples of a pixel are the same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;

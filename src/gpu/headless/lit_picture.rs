@@ -85,16 +85,14 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
         let mut whole = InParts::new(settings.sampling.samples);
-        for sampling in settings.sampling.parts(samples_per_part) {
-            let part = RenderSettings { sampling, ..settings.unfinished() };
+        for part in settings.unfinished_parts(samples_per_part) {
             let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
             let layers = settings.layers_for(layers);
             let picture = self.render_uploaded_async(scene, view, &part, layers, watch).await?;
             whole.add(picture)?;
         }
-        let (image, samples, hits) = whole.finish().ok_or(GpuError::Stopped)?;
-        let image = self.finish_async(image, settings, layers).await?;
-        Ok(Picture { image, samples, noise: None, hits: Some(hits) })
+        let picture = whole.picture().ok_or(GpuError::Stopped)?;
+        Ok(Picture { image: self.finish_async(picture.image, settings, layers).await?, ..picture })
     }
 
     /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples

@@ -150,11 +150,11 @@ impl Work<'_> {
                         keep.end(RecordedFilm { before, after: sums });
                     }
                     Some(moment) => {
-                        let wanted = keep.wants(moment);
-                        reader
-                            .states(&mut flow, wanted, |states| keep.keep(moment, states))
-                            .await?;
-                        after()?;
+                        if let Some(wanted) = keep.wants(moment) {
+                            let keep = |states: &_| keep.keep(moment, states);
+                            reader.states(&mut flow, wanted, keep).await?;
+                            after()?;
+                        }
                     }
                     None => {}
                 }

@@ -24,37 +24,33 @@ pub(super) struct States<'a> {
 impl States<'_> {
     /// The whole states.
     pub(super) fn all(&self) -> Vec<PathState> {
-        let of = |index: usize| {
-            let slots = self.slots.map(|source| match source {
-                SlotSource::Device(slot) => self.vectors[slot * self.pixels + index],
-                SlotSource::Constant(bits) => bits,
-            });
-            PathState { slots }
-        };
+        let of = |index| PathState { slots: self.slots.map(|source| self.vector(source, index)) };
         (0..self.pixels).map(of).collect()
     }
 
     /// What the rays hit.
     pub(super) fn hits(&self) -> Vec<[u32; 4]> {
-        self.vectors[HIT * self.pixels..][..self.pixels].to_vec()
+        self.from(SlotSource::Device(HIT)).collect()
     }
 
     /// One slot of each state.
     pub(super) fn slot(&self, slot: usize) -> Vec<[u32; 4]> {
-        match self.slots[slot] {
-            SlotSource::Device(slot) => self.vectors[slot * self.pixels..][..self.pixels].to_vec(),
-            SlotSource::Constant(bits) => vec![bits; self.pixels],
-        }
+        self.from(self.slots[slot]).collect()
     }
 
     /// The last word of a slot of each state.
     pub(super) fn last_words(&self, slot: usize) -> Vec<u32> {
-        match self.slots[slot] {
-            SlotSource::Device(slot) => {
-                let vectors = &self.vectors[slot * self.pixels..][..self.pixels];
-                vectors.iter().map(|vector| vector[3]).collect()
-            }
-            SlotSource::Constant(bits) => vec![bits[3]; self.pixels],
+        self.from(self.slots[slot]).map(|vector| vector[3]).collect()
+    }
+
+    fn from(&self, source: SlotSource) -> impl Iterator<Item = [u32; 4]> {
+        (0..self.pixels).map(move |index| self.vector(source, index))
+    }
+
+    fn vector(&self, source: SlotSource, index: usize) -> [u32; 4] {
+        match source {
+            SlotSource::Device(slot) => self.vectors[slot * self.pixels + index],
+            SlotSource::Constant(bits) => bits,
         }
     }
 }
@@ -62,7 +58,6 @@ impl States<'_> {
 /// What is needed of the states of paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
-    Nothing,
     Hits,
     /// One slot of each state.
     Slot(usize),
@@ -74,8 +69,8 @@ pub(super) trait Keep {
     /// Begins the sample with this index.
     fn begin(&mut self, sample: u32);
 
-    /// What is needed of the states after a pass.
-    fn wants(&mut self, moment: Moment) -> Wanted;
+    /// What is needed of the states after a pass, if anything.
+    fn wants(&mut self, moment: Moment) -> Option<Wanted>;
 
     /// Keeps the states after a pass.
     fn keep(&mut self, moment: Moment, states: &States<'_>);
@@ -159,7 +154,6 @@ impl<'a> Reader<'a> {
         let bytes = pixels as u64 * size_of::<[u32; 4]>() as u64;
         let of_slot = |slot: usize| slot as u64 * bytes..(slot as u64 + 1) * bytes;
         let range = match wanted {
-            Wanted::Nothing => return Ok(()),
             Wanted::Hits => of_slot(HIT),
             Wanted::Slot(slot) => match slots[slot] {
                 SlotSource::Device(slot) => of_slot(slot),

@@ -26,12 +26,12 @@ impl Keep for PathKeeper {
         self.sample = RecordedSample { sample, ..RecordedSample::default() };
     }
 
-    fn wants(&mut self, moment: Moment) -> Wanted {
-        match moment {
+    fn wants(&mut self, moment: Moment) -> Option<Wanted> {
+        Some(match moment {
             Moment::Extended => Wanted::Hits,
             Moment::Occluded => Wanted::Slot(PathState::PENDING),
             _ => Wanted::All,
-        }
+        })
     }
 
     fn keep(&mut self, moment: Moment, states: &States<'_>) {

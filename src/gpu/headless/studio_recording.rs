@@ -81,14 +81,14 @@ impl Keep for StudioKeeper {
     }
 
     /// Once every ray has ended, no state changes any more.
-    fn wants(&mut self, moment: Moment) -> Wanted {
+    fn wants(&mut self, moment: Moment) -> Option<Wanted> {
         self.is_over |= moment == Moment::Extended && !self.is_any_alive;
-        match moment {
-            _ if self.is_over => Wanted::Nothing,
+        let wanted = match moment {
             Moment::Extended => Wanted::Hits,
             Moment::Shadowed | Moment::Searched => Wanted::Slot(PathState::NORMAL),
             _ => Wanted::All,
-        }
+        };
+        (!self.is_over).then_some(wanted)
     }
 
     fn keep(&mut self, moment: Moment, states: &States<'_>) {

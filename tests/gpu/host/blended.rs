@@ -103,34 +103,46 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
 
 /// Faults in the shaders of composites: the file, a text in it, and what replaces it.
 const PLANTED: [[&str; 3]; 20] = [
-    ["composite", "- view.first_pixel;", "- view.first_pixel + vec2f(1.0, 0.0);"],
-    ["composite", "floor(covered.place.xy)", "floor(covered.place.yx)"],
-    ["composite", "| is_behind(view, drawn.depth, view.far)", ""],
-    ["composite", "| !drawn.is_drawn", ""],
-    ["composite", "color_for_host(color.rgb), color.a)", "color_for_host(color.rgb), 1.0)"],
-    ["composite", "color_for_host(color.rgb), ", "color.a * color_for_host(color.rgb), "],
-    ["composite", "clamp(drawn.depth, 0.0, 1.0)", "clamp(1.00001 * drawn.depth, 0.0, 1.0)"],
-    ["cover", "3.0, vertex == 1u", "0.9, vertex == 1u"],
-    ["cover", "vec4f(view.film_depth, ", "vec4f(view.film_depth.yxz, "],
-    ["cover", "vec4f(view.row, view.slope)", "vec4f(view.column, view.slope)"],
-    ["clip_depth", "2.0 * pixel + (1.0 - view.size)", "2.0 * pixel - view.size"],
-    ["clip_depth", "center.y * view.film_depth.y", "center.x * view.film_depth.y"],
+    ["host/composite.wgsl", "- view.first_pixel;", "- view.first_pixel + vec2f(1.0, 0.0);"],
+    ["host/composite.wgsl", "floor(covered.place.xy)", "floor(covered.place.yx)"],
+    ["host/composite.wgsl", "| is_behind(view, drawn.depth, view.far)", ""],
+    ["host/composite.wgsl", "| !drawn.is_drawn", ""],
     [
-        "clip_depth",
+        "host/composite.wgsl",
+        "color_for_host(color.rgb), color.a)",
+        "color_for_host(color.rgb), 1.0)",
+    ],
+    ["host/composite.wgsl", "color_for_host(color.rgb), ", "color.a * color_for_host(color.rgb), "],
+    [
+        "host/composite.wgsl",
+        "clamp(drawn.depth, 0.0, 1.0)",
+        "clamp(1.00001 * drawn.depth, 0.0, 1.0)",
+    ],
+    ["host/cover.wgsl", "3.0, vertex == 1u", "0.9, vertex == 1u"],
+    ["host/cover.wgsl", "vec4f(view.film_depth, ", "vec4f(view.film_depth.yxz, "],
+    ["host/cover.wgsl", "vec4f(view.row, view.slope)", "vec4f(view.column, view.slope)"],
+    ["host/clip_depth.wgsl", "2.0 * pixel + (1.0 - view.size)", "2.0 * pixel - view.size"],
+    ["host/clip_depth.wgsl", "center.y * view.film_depth.y", "center.x * view.film_depth.y"],
+    [
+        "host/clip_depth.wgsl",
         "length(center.x * view.column + center.y * view.row + view.forward)",
         "length(view.forward)",
     ],
     [
-        "clip_depth",
+        "host/clip_depth.wgsl",
         "(view.film_depth.z + change) + depth_aside(view, center)",
         "view.film_depth.z + change",
     ],
-    ["clip_depth", "depth < other, view.far == 0.0", "depth > other, view.far == 0.0"],
-    ["picture_depth#lit", "i < 9", "i < 8"],
-    ["picture_depth#lit", "vec2f(vec2i(i % 3, i / 3) - 1)", "vec2f(vec2i(i % 3, i / 3))"],
-    ["picture_depth#lit", "distance < 1e30 && all(abs(center) < view.size)", "distance < 1e30"],
-    ["picture_depth#lit", "is_behind(view, depth, here)", "is_behind(view, here, depth)"],
-    ["picture_depth#lit", "alpha > 0.0);", "alpha > 0.01);"],
+    ["host/clip_depth.wgsl", "depth < other, view.far == 0.0", "depth > other, view.far == 0.0"],
+    ["host/picture_depth.wgsl#lit", "i < 9", "i < 8"],
+    ["host/picture_depth.wgsl#lit", "vec2f(vec2i(i % 3, i / 3) - 1)", "vec2f(vec2i(i % 3, i / 3))"],
+    [
+        "host/picture_depth.wgsl#lit",
+        "distance < 1e30 && all(abs(center) < view.size)",
+        "distance < 1e30",
+    ],
+    ["host/picture_depth.wgsl#lit", "is_behind(view, depth, here)", "is_behind(view, here, depth)"],
+    ["host/picture_depth.wgsl#lit", "alpha > 0.0);", "alpha > 0.01);"],
 ];
 
 /// Number of pixels whose colour or depth is not what it must be.
@@ -221,14 +233,9 @@ fn faults(_: &'static Headless) {
 fn planted(_: &'static Headless) {
     let stages = [Convention::Perspective, Convention::InfiniteReversed]
         .map(|convention| [Stage::new(convention), Stage::oblique(convention)]);
-    for [file, find, replace] in PLANTED {
-        let (name, variant) = file.split_once('#').unwrap_or((file, ""));
-        let separator = if variant.is_empty() { "" } else { "#" };
-        let edit = ShaderEdit {
-            file: format!("host/{name}.wgsl{separator}{variant}"),
-            find: find.to_owned(),
-            replace: replace.to_owned(),
-        };
+    for fault in PLANTED {
+        let [file, find, replace] = fault.map(str::to_owned);
+        let edit = ShaderEdit { file, find, replace };
         let of = |stage: &Stage| {
             let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
             let device = &stage.host.device;
@@ -236,6 +243,6 @@ fn planted(_: &'static Headless) {
             wrong_by(stage, &composite, Fault::None)
         };
         let found: usize = stages.iter().flatten().map(of).sum();
-        assert!(found > 0, "{file}: `{find}`");
+        assert!(found > 0, "{fault:?}");
     }
 }
