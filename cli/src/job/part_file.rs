@@ -144,12 +144,12 @@ fn checked(
     path: &Path,
     manifest: &Manifest,
     unit: usize,
-    contents: impl FnOnce(io::Take<&mut Digested>) -> io::Result<()>,
+    contents: impl FnOnce(&mut dyn Read) -> io::Result<()>,
 ) -> Result<Header, Problem> {
     let problem = |error| Problem::of(&error);
     let mut part = Digested { file: open(path)?, digest: Sha256::new() };
     let (header, _) = read_header(&mut part)?;
-    contents(Read::by_ref(&mut part).take(header.bytes)).map_err(problem)?;
+    contents(&mut Read::by_ref(&mut part).take(header.bytes)).map_err(problem)?;
     let Digested { file, digest } = part;
     let mut end = Vec::new();
     // One byte more than there may be.
@@ -163,7 +163,7 @@ fn checked(
 
 /// Checks every byte of a part, in memory that does not depend on its size.
 pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
-    let skip = |contents| {
+    let skip = |contents: &mut dyn Read| {
         let mut contents = BufReader::with_capacity(1 << 18, contents);
         io::copy(&mut contents, &mut io::sink()).map(drop)
     };
@@ -178,7 +178,7 @@ pub(super) fn read(
 ) -> Result<(Header, Pictures), Problem> {
     let (mut rest, payload) = (Vec::new(), payload(manifest, unit));
     // A file that is longer than a part can be is not read to its end.
-    let keep = |contents: io::Take<_>| contents.take(payload).read_to_end(&mut rest).map(drop);
+    let keep = |contents: &mut dyn Read| contents.take(payload).read_to_end(&mut rest).map(drop);
     let header = checked(path, manifest, unit, keep)?;
     let (_, (_, size)) = manifest.unit(unit);
     let layers = manifest.layer_set();

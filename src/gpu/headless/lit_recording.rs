@@ -151,8 +151,9 @@ impl Work<'_> {
                     }
                     Some(moment) => {
                         if let Some(wanted) = keep.wants(moment) {
-                            let keep = |states: &_| keep.keep(moment, states);
-                            reader.states(&mut flow, wanted, keep).await?;
+                            reader
+                                .states(&mut flow, wanted, |states| keep.keep(moment, states))
+                                .await?;
                             after()?;
                         }
                     }
