@@ -4,7 +4,7 @@
 //! `Headless` renders it; Escape quits.
 //!
 //! ```sh
-//! cargo run --release -p pinhole-host-egui
+//! cargo run --release --manifest-path examples/hosts/Cargo.toml -p pinhole-host-egui
 //! ```
 #![allow(clippy::print_stdout, reason = "a host tells what it did")]
 

@@ -5,7 +5,7 @@
 //! triangles, `d` hides spheres before they are shaded, `s` writes the spheres as `Headless` renders them; Escape quits.
 //!
 //! ```sh
-//! cargo run --release -p pinhole-host-raster
+//! cargo run --release --manifest-path examples/hosts/Cargo.toml -p pinhole-host-raster
 //! ```
 #![allow(clippy::print_stdout, reason = "a host tells what a key did")]
 

@@ -4,7 +4,7 @@
 //! picture as `Headless` renders it; Escape quits.
 //!
 //! ```sh
-//! cargo run --release -p pinhole-host-winit
+//! cargo run --release --manifest-path examples/hosts/Cargo.toml -p pinhole-host-winit
 //! ```
 #![allow(clippy::print_stdout, reason = "a host tells when its picture is complete")]
 
