@@ -1,5 +1,5 @@
-//! Ray traces spheres with WGSL compute shaders, on any device and without a display, and checks its pictures against a
-//! CPU reference.
+//! Ray traces spheres with WGSL compute shaders, on any device and without a display, and checks that each pixel
+//! is one that a conforming device may have made.
 //!
 //! | I want to … | start here |
 //! |---|---|

@@ -66,7 +66,7 @@ class Trajectory(Sequence[Spheres]):
         """Renders the first frame; arguments are those of ``Spheres.render``."""
         return self[0].render(size, **settings)
 
-    def movie(self, path: str | os.PathLike[str], *, fps: float = 30.0, **settings: Any) -> None:
+    def movie(self, path: str | os.PathLike[str], *, fps: float = 25.0, **settings: Any) -> None:
         """Renders all frames into a movie, as ``pinhole.movie`` does, with one camera that frames all of them, and in which
         equal values have equal colours.
 

@@ -24,7 +24,7 @@ CODECS = {
 }
 
 
-def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps: float = 30.0) -> None:
+def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps: float = 25.0) -> None:
     """Writes pictures as a movie (.mp4, .mov, .mkv, .webm, .apng or .gif, which need the program ffmpeg), or as numbered
     PNG files, such as ``f%04d.png``. Pictures are ``Image`` or arrays as of ``sheet``, and may be made one by one: only one
     is in memory.

@@ -310,7 +310,7 @@ class Spheres:
         return {kind: {key: of for key, of in keys.items() if of is not None} for kind, keys in placed.items()}
 
     def turntable(
-        self, path: str | os.PathLike[str], *, frames: int = 120, fps: float = 30.0, **settings: Any
+        self, path: str | os.PathLike[str], *, frames: int = 120, fps: float = 25.0, **settings: Any
     ) -> None:
         """Renders a movie in which the camera goes once around the spheres, about the direction that is up.
 

@@ -8,9 +8,10 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Markdown files: those at the top, and those in `cli`, `docs` and `shaders`.
+/// Markdown files: those at the top, and those in the folders that have some.
 fn pages() -> Vec<PathBuf> {
-    let folders = ["", "cli", "docs", "python", "shaders"];
+    let folders =
+        ["", "cli", "docs", "examples/hosts", "python", "python/gallery", "shaders", "viewer"];
     let entries = folders.iter().flat_map(|folder| fs::read_dir(root().join(folder)).unwrap());
     let paths = entries.map(|entry| entry.unwrap().path());
     let mut pages: Vec<PathBuf> =
