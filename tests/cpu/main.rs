@@ -41,7 +41,6 @@ mod generate;
 mod grid_check;
 mod host_camera;
 mod hostile_rays;
-mod invariants;
 mod least_errors;
 mod legal_camera;
 mod legal_camera_rays;

@@ -1,26 +1,10 @@
 //! Rules of ARCHITECTURE.md that a text search can guard.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-fn sources(folder: &str) -> Vec<(PathBuf, String)> {
-    let mut found = Vec::new();
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let text = fs::read_to_string(&path).unwrap();
-                found.push((path, text));
-            }
-        }
-    }
-    assert!(!found.is_empty(), "no sources in {folder}");
-    found
-}
+use super::sources::{ROOT, sources};
 
 /// Files below `folder` that contain one of the words, but for those that end with `except`.
 fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
@@ -80,53 +64,6 @@ fn only_the_gpu_module_names_wgpu() {
     }
 }
 
-/// Who uses whom among the modules of the GPU: a module that uses another is not used by it, directly or otherwise. A
-/// module is a file, or one of the folders whose files are nobody else's business.
-#[test]
-fn modules_of_the_gpu_do_not_import_each_other_in_circles() {
-    const WHOLE: [&str; 4] = ["kernels", "passes/lit", "self_test", "shader/kernel"];
-    let module = |path: &str| {
-        let whole = WHOLE.into_iter().find(|whole| path.starts_with(&format!("{whole}/")));
-        whole.unwrap_or(path.strip_suffix("/mod").unwrap_or(path)).to_owned()
-    };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gpu");
-    let files: BTreeMap<String, String> = sources("src/gpu")
-        .into_iter()
-        .map(|(path, text)| {
-            let path = path.strip_prefix(&root).unwrap().with_extension("");
-            (path.to_str().unwrap().replace('\\', "/"), text)
-        })
-        .collect();
-    let known: BTreeSet<String> = files.keys().map(|path| module(path)).collect();
-    let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for (path, text) in files.iter().filter(|(path, _)| *path != "mod") {
-        let text = text.split("#[cfg(test)]\nmod tests").next().unwrap();
-        let named = text.lines().filter_map(|line| {
-            line.strip_prefix("pub(super) ").unwrap_or(line).strip_prefix("use crate::gpu::")
-        });
-        let own = module(path);
-        let used = uses.entry(own.clone()).or_default();
-        for rest in named {
-            // As much of the path as is a module.
-            let mut parts: Vec<&str> = rest.split("::").take(3).collect();
-            parts.iter_mut().for_each(|part| *part = part.trim_end_matches(';'));
-            let found = (1..=parts.len()).rev().map(|n| module(&(parts[..n].join("/") + "/mod")));
-            let found = found.into_iter().find(|name| known.contains(name));
-            used.extend(found.filter(|name| *name != own));
-        }
-    }
-    assert!(known.len() > 40 && uses["headless"].contains("passes/lit"), "{uses:?}");
-    // Whoever uses nobody that is left is taken away; a circle stays.
-    while let Some(free) = uses
-        .iter()
-        .find(|(_, used)| used.iter().all(|name| !uses.contains_key(name)))
-        .map(|(name, _)| name.clone())
-    {
-        uses.remove(&free);
-    }
-    assert!(uses.is_empty(), "{uses:#?}");
-}
-
 #[test]
 fn only_headless_submits_polls_and_waits() {
     let calls = [".submit(", ".poll(", "map_async", "on_submitted_work_done"];
@@ -173,7 +110,7 @@ fn files_are_short() {
 /// A shader that a comment names is there: by its path below `shaders`, or by its file's name.
 #[test]
 fn shaders_that_are_named_exist() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let root = Path::new(ROOT).join("shaders");
     let mut known = BTreeSet::new();
     for folder in fs::read_dir(&root).unwrap().map(|entry| entry.unwrap().path()) {
         if folder.is_dir() {
