@@ -7,7 +7,7 @@ use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
-use crate::keys::FrameKeys;
+use crate::frame_keys::FrameKeys;
 use crate::scene::Given;
 use crate::scene_text::SceneText;
 use crate::spheres::SphereData;

@@ -1,40 +1,8 @@
-//! What colours mean: in one scene, and in all frames of a trajectory.
+//! What colours mean, as Python sees it.
 
-use std::sync::{Mutex, PoisonError};
-
-use pinhole::color_by::{ColorKey, JoinedKeys, KeyKind};
+use pinhole::color_by::{ColorKey, KeyKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-use crate::spheres::SphereData;
-
-/// What colours mean in several frames together.
-#[pyclass(frozen, module = "pinhole._pinhole")]
-#[derive(Default)]
-pub(crate) struct FrameKeys {
-    keys: Mutex<JoinedKeys>,
-}
-
-#[pymethods]
-impl FrameKeys {
-    #[new]
-    fn new() -> Self {
-        Self::default()
-    }
-
-    /// Adds what colours mean in a frame, if a column gives them.
-    fn add(&self, frame: &SphereData) {
-        if let Some(key) = &frame.key {
-            self.keys.lock().unwrap_or_else(PoisonError::into_inner).add(key);
-        }
-    }
-}
-
-impl FrameKeys {
-    pub(crate) fn joined(&self) -> JoinedKeys {
-        self.keys.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-}
 
 /// A dict: `title`, the name of the column; and either `range`, `log` and the table `colors`, three bytes of sRGB for
 /// each colour from the low end on, or `categories`, names with their colours.

@@ -12,6 +12,7 @@ mod colors;
 mod device;
 mod fault;
 mod files;
+mod frame_keys;
 mod image;
 mod keys;
 mod look;
@@ -39,7 +40,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<certificate::Judged>()?;
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
-    module.add_class::<keys::FrameKeys>()?;
+    module.add_class::<frame_keys::FrameKeys>()?;
     module.add_class::<spheres::SphereData>()?;
     module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::pairs::pairs;
-use super::{AddError, Added, Base, Look, string};
+use super::spheres::{Added, Base, Look};
+use super::{AddError, string};
 #[cfg(feature = "table")]
 use crate::load::{Covalent, covalent};
 use crate::scene::sphere_array::SphereArray;

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{AddError, Added, Base, Look, string};
+use super::spheres::{Added, Base, Look};
+use super::{AddError, string};
 use crate::image::color::LinearRgb;
 
 /// How the twelve edges of the periodic cell are drawn.

@@ -43,11 +43,3 @@ impl Legend {
         }
     }
 }
-
-/// What spheres without a value are called.
-pub(super) const MISSING: &str = "no value";
-
-/// The width of lines for this size of text.
-pub(super) fn line_width(em: f32) -> f32 {
-    (em / 14.0).round().max(1.0)
-}

@@ -1,9 +1,11 @@
 //! The list of categories: disks of their colours, and their names.
 
 use super::font::{self, HALF_CAPITAL};
-use super::legend::MISSING;
 use super::shape::{Block, LINE, Paint, Shape};
 use crate::color_by::Category;
+
+/// What spheres without a value are called.
+pub(super) const MISSING: &str = "no value";
 
 /// The distance between rows, relative to the size of text.
 const ROW: f32 = 1.5;

@@ -1,8 +1,8 @@
 //! The bar of a scale, with ticks.
 
 use super::font::{self, HALF_CAPITAL};
-use super::legend::{MISSING, line_width};
-use super::shape::{Block, LINE, Paint, Shape};
+use super::legend_categories::MISSING;
+use super::shape::{Block, LINE, Paint, Shape, line_width};
 use super::ticks::{Ticks, raised};
 use crate::color_by::ColorScale;
 

@@ -33,6 +33,7 @@ pub use canvas::Canvas;
 pub use font::missing_characters;
 pub use label::Label;
 pub use legend::Legend;
+pub use place::Panel;
 pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
 pub use position::{Anchor, Position, PositionError};
 pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
@@ -67,20 +68,6 @@ impl From<Label> for Annotation {
     fn from(label: Label) -> Self {
         Self::Label(label)
     }
-}
-
-/// Whether a translucent panel lies behind an annotation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[non_exhaustive]
-pub enum Panel {
-    /// Where the picture behind it is too mixed for black or white text.
-    #[default]
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
 }
 
 /// All annotations of a picture. Those with the same [`Anchor`] are stacked in this order.
@@ -131,7 +118,7 @@ impl Annotations {
     /// Draws the annotations over a picture.
     pub fn draw(&self, canvas: &mut Canvas<'_>) {
         let size = canvas.size();
-        place::draw(&self.blocks(size), self.em(size), self, canvas);
+        place::draw(&self.blocks(size), self.em(size), self.color, self.panel, canvas);
     }
 
     fn blocks(&self, size: [u32; 2]) -> Vec<(Position, Block)> {

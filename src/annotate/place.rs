@@ -3,7 +3,6 @@
 use super::canvas::Canvas;
 use super::position::{Anchor, Position};
 use super::shape::{Block, fill};
-use super::{Annotations, Panel};
 
 /// The distance from the edges of the picture, relative to the size of text.
 const MARGIN: f32 = 1.2;
@@ -20,16 +19,31 @@ const PANEL_OPACITY: f32 = 0.8;
 const BLACK: [u8; 3] = [0; 3];
 const WHITE: [u8; 3] = [255; 3];
 
-/// Places and draws all blocks.
+/// Whether a translucent panel lies behind an annotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
+pub enum Panel {
+    /// Where the picture behind it is too mixed for black or white text.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// Places and draws all blocks. Without a colour, each has the one that can be read.
 pub(super) fn draw(
     blocks: &[(Position, Block)],
     em: f32,
-    look: &Annotations,
+    color: Option<[u8; 3]>,
+    panel: Panel,
     canvas: &mut Canvas<'_>,
 ) {
     for (index, (_, block)) in blocks.iter().enumerate() {
         let origin = origin(blocks, index, em, canvas.size());
-        draw_block(block, origin, em, look, canvas);
+        draw_block(block, origin, em, color, panel, canvas);
     }
 }
 
@@ -70,7 +84,8 @@ fn draw_block(
     block: &Block,
     origin: [i64; 2],
     em: f32,
-    look: &Annotations,
+    color: Option<[u8; 3]>,
+    panel: Panel,
     canvas: &mut Canvas<'_>,
 ) {
     let (left, top, padding) = (origin[0] as f32, origin[1] as f32, (PADDING * em).round());
@@ -83,12 +98,12 @@ fn draw_block(
     let lumas = lumas(behind, canvas);
     let mean = lumas.iter().sum::<f32>() / lumas.len().max(1) as f32;
     // With little light and with much of it, one of the two is easy to read; grey counts as light.
-    let ink = look.color.unwrap_or(if mean < 0.45 { WHITE } else { BLACK });
+    let ink = color.unwrap_or(if mean < 0.45 { WHITE } else { BLACK });
     let ink_luma =
         (0.2126 * f32::from(ink[0]) + 0.7152 * f32::from(ink[1]) + 0.0722 * f32::from(ink[2]))
             / 255.0;
     let unreadable = lumas.iter().filter(|luma| (*luma - ink_luma).abs() < 0.4).count();
-    let has_panel = match look.panel {
+    let has_panel = match panel {
         Panel::Always => true,
         Panel::Never => false,
         Panel::Auto => unreadable * 50 > lumas.len(),

@@ -27,6 +27,11 @@ pub(super) enum Shape {
     Text { text: String, at: [f32; 2], em: f32 },
 }
 
+/// The width of lines for this size of text.
+pub(super) fn line_width(em: f32) -> f32 {
+    (em / 14.0).round().max(1.0)
+}
+
 /// An annotation with its size.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Block {

@@ -6,20 +6,20 @@
 //! Where there is no device, the same code renders large scenes: with a [`SearchStructure`], rays test only spheres that they
 //! may hit. The picture is the same, to the bit.
 
-use std::ops::Range;
-
 use crate::camera::View;
-use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, NoMean, Pixel, RowMut};
+use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
 use crate::render::{
-    Decision, InParts, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError,
-    Watch, to_the_end,
+    Decision, InParts, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch,
+    to_the_end,
 };
 
 mod denoise;
+mod error;
 mod light;
 pub(crate) mod live;
 mod pace;
+mod primary;
 mod search;
 mod search_index;
 #[cfg(test)]
@@ -29,33 +29,14 @@ mod sphere;
 mod trace;
 
 use pace::Pace;
+use primary::{for_rows, primary_pixel, render_primary};
 
 pub use denoise::denoise;
+pub use error::RenderError;
 pub use light::{Sample, SampledPicture, finish, radiance};
 pub use search::{Search, SearchPlan, SearchStructure};
 pub use shade::shade;
 pub use trace::trace;
-
-/// The number of rows that are processed together, on all cores.
-const ROWS_AT_ONCE: usize = 4096;
-
-/// Why no picture is rendered.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// The settings, or the materials of the scene, are not valid.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// There is not enough memory for the image.
-    #[error(transparent)]
-    Image(#[from] ImageTooLarge),
-    /// The pictures of the parts of the samples have no mean.
-    #[error(transparent)]
-    Mean(#[from] NoMean),
-    /// The caller ended the work.
-    #[error("rendering was stopped")]
-    Stopped,
-}
 
 /// Renders a picture.
 ///
@@ -131,19 +112,6 @@ pub fn render_in_parts<'a>(
     Ok(Picture { image: finish(picture.image, settings, layers), ..picture })
 }
 
-fn render_primary(
-    search: Search<'_>,
-    view: &View<'_>,
-    primary: &PrimarySettings,
-    layers: LayerSet,
-) -> Result<Image, RenderError> {
-    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
-    for_each_pixel(&mut image, |pixel, i, row| {
-        row.set(i, &primary_pixel(search, view, primary, pixel));
-    });
-    Ok(image)
-}
-
 /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is
 /// needed to put it together with those of the other parts. `None` for settings with light.
 ///
@@ -193,53 +161,4 @@ fn primary_watched(
         }
     })?;
     Ok(Picture { image, samples: 1, noise: None, hits: None })
-}
-
-/// The pixel of the ray through its centre.
-fn primary_pixel(
-    search: Search<'_>,
-    view: &View<'_>,
-    primary: &PrimarySettings,
-    pixel: [u32; 2],
-) -> Pixel {
-    let ray = view.ray_through_center(pixel);
-    let hit = ray.as_ref().and_then(|ray| trace(search, ray));
-    match (&ray, &hit) {
-        (Some(ray), Some(hit)) => shade(search.scene(), primary, ray, hit),
-        _ => Pixel::miss(primary.background.to_array()),
-    }
-}
-
-/// Calls `work` with each pixel (column and row), its index in its row, and the row.
-fn for_each_pixel(image: &mut Image, work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync) {
-    let height = image.height() as usize;
-    // Rows are borrowed in batches, because the references to a row's layers may need more memory than a narrow row.
-    for start in (0..height).step_by(ROWS_AT_ONCE) {
-        for_rows(image, start..(start + ROWS_AT_ONCE).min(height), &work);
-    }
-}
-
-/// Calls `work` with each pixel of some rows, as [`for_each_pixel`] does.
-fn for_rows(
-    image: &mut Image,
-    rows: Range<usize>,
-    work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
-) {
-    let (width, start) = (image.width(), rows.start);
-    for_each_row(image.rows_mut(rows), |j, row| {
-        for i in 0..width {
-            work([i, (start + j) as u32], i as usize, row);
-        }
-    });
-}
-
-#[cfg(feature = "parallel")]
-fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>) + Sync) {
-    use rayon::prelude::*;
-    rows.into_par_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
-}
-
-#[cfg(not(feature = "parallel"))]
-fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>)) {
-    rows.into_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::RenderError;
+use super::error::RenderError;
 
 /// The time between two calls that is aimed at: short enough for a person, long enough that waiting for the last of all
 /// threads does not count.

@@ -1,21 +1,20 @@
-//! The checked appearance of a scene, with data that is derived from it.
+//! The checked appearance of a scene, with data that is derived from it, such as the table of materials that renderers use.
 
-use std::ops::{Deref, Range};
+use std::collections::HashMap;
+use std::ops::Deref;
 use std::sync::OnceLock;
 
 use super::appearance::{Appearance, Colors};
-use super::material_table::{MaterialRow, MaterialTable};
-use super::update::NewColors;
 use crate::image::color::LinearRgb;
-use crate::scene::material::SurfaceProperties;
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// An appearance that has been checked for `count` spheres. Derived data is computed when it is first needed.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneAppearance {
-    appearance: Appearance,
+    pub(super) appearance: Appearance,
     count: usize,
-    material_table: OnceLock<MaterialTable>,
-    is_opaque: OnceLock<bool>,
+    pub(super) material_table: OnceLock<MaterialTable>,
+    pub(super) is_opaque: OnceLock<bool>,
 }
 
 impl Deref for SceneAppearance {
@@ -29,21 +28,6 @@ impl Deref for SceneAppearance {
 impl SceneAppearance {
     pub(crate) fn new(appearance: Appearance, count: usize) -> Self {
         Self { appearance, count, material_table: OnceLock::new(), is_opaque: OnceLock::new() }
-    }
-
-    /// Replaces the colours of some spheres. The new colours have been checked and are of the same kind.
-    pub(super) fn set_colors(&mut self, range: Range<usize>, new: &NewColors<'_>) {
-        match (&mut self.appearance.colors, new) {
-            (Colors::Palette { indices, .. }, NewColors::Palette(new)) => {
-                indices[range].copy_from_slice(new);
-            }
-            (Colors::Rgba8(colors), NewColors::Rgba8(new)) => colors[range].copy_from_slice(new),
-            (Colors::Scalars { values, .. }, NewColors::Scalars(new)) => {
-                values[range].copy_from_slice(new);
-            }
-            _ => {}
-        }
-        (self.material_table, self.is_opaque) = (OnceLock::new(), OnceLock::new());
     }
 
     /// The appearance without the derived data.
@@ -96,5 +80,75 @@ impl SceneAppearance {
     /// The index of a sphere's material in the rows of the material table.
     pub(crate) fn material_row(&self, id: u32) -> u32 {
         self.material_table().index(id).unwrap_or_else(|| self.surface_index(id))
+    }
+}
+
+/// The content of one row of the material table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MaterialRow {
+    /// The surface properties, whose opacity is still to be multiplied by the alpha of the sphere's colour.
+    pub(crate) surface: SurfaceProperties,
+    /// The colour of a material that absorbs light inside, which depends on it; white for all others.
+    pub(crate) color: LinearRgb,
+}
+
+/// All rows, and the assignment of rows to spheres.
+#[derive(Clone, Debug)]
+pub(super) struct MaterialTable {
+    rows: Vec<MaterialRow>,
+    /// For every sphere, the index of its row; `None` if that is the index of its surface properties.
+    indices: Option<Vec<u32>>,
+}
+
+/// Whether the surface belongs to a material whose colour determines the absorption inside.
+fn absorbs(surface: &SurfaceProperties) -> bool {
+    matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
+}
+
+impl MaterialTable {
+    /// Makes one row for each set of surface properties; if its material absorbs light, one for each colour that occurs
+    /// with it.
+    fn of(appearance: &SceneAppearance) -> Self {
+        let surfaces = appearance.surfaces();
+        let mut rows: Vec<MaterialRow> = surfaces
+            .iter()
+            .map(|surface| MaterialRow { surface: *surface, color: LinearRgb::WHITE })
+            .collect();
+        if !surfaces.iter().any(absorbs) {
+            return Self { rows, indices: None };
+        }
+        let mut has_first = vec![false; surfaces.len()];
+        let mut indices = HashMap::new();
+        let indices = (0..appearance.sphere_count() as u32).map(|id| {
+            let index = appearance.surface_index(id);
+            let surface = &surfaces[index as usize];
+            if !absorbs(surface) {
+                return index;
+            }
+            let color = appearance.color_of(id);
+            let key = (index, color.to_array().map(f32::to_bits));
+            *indices.entry(key).or_insert_with(|| {
+                let row = MaterialRow { surface: *surface, color };
+                // The first colour uses the row of the surface properties.
+                if std::mem::replace(&mut has_first[index as usize], true) {
+                    rows.push(row);
+                    return rows.len() as u32 - 1;
+                }
+                rows[index as usize] = row;
+                index
+            })
+        });
+        let indices: Vec<u32> = indices.collect();
+        let differ = rows.len() > surfaces.len();
+        Self { rows, indices: differ.then_some(indices) }
+    }
+
+    /// All rows of the table.
+    fn rows(&self) -> &[MaterialRow] {
+        &self.rows
+    }
+
+    fn index(&self, id: u32) -> Option<u32> {
+        self.indices.as_ref().map(|indices| indices[id as usize])
     }
 }

@@ -1,11 +1,12 @@
 //! Updates of some spheres of a scene.
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
 use super::appearance::Colors;
+use super::checked::SceneAppearance;
 use super::{Scene, SceneError, frame};
 use crate::scene::sphere::{self, SphereError};
 
@@ -142,6 +143,23 @@ impl NewColors<'_> {
             Self::Rgba8(_) => RGBA8,
             Self::Scalars(_) => SCALARS,
         }
+    }
+}
+
+impl SceneAppearance {
+    /// Replaces the colours of some spheres. The new colours have been checked and are of the same kind.
+    fn set_colors(&mut self, range: Range<usize>, new: &NewColors<'_>) {
+        match (&mut self.appearance.colors, new) {
+            (Colors::Palette { indices, .. }, NewColors::Palette(new)) => {
+                indices[range].copy_from_slice(new);
+            }
+            (Colors::Rgba8(colors), NewColors::Rgba8(new)) => colors[range].copy_from_slice(new),
+            (Colors::Scalars { values, .. }, NewColors::Scalars(new)) => {
+                values[range].copy_from_slice(new);
+            }
+            _ => {}
+        }
+        (self.material_table, self.is_opaque) = (OnceLock::new(), OnceLock::new());
     }
 }
 

@@ -13,6 +13,7 @@ mod lighting;
 mod mapping;
 mod materials;
 mod output;
+mod settings;
 mod span;
 mod value;
 mod words;

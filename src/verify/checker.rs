@@ -80,7 +80,8 @@ impl<'a> Checker<'a> {
             return certificate;
         }
         let check = PixelCheck {
-            checker: self,
+            scene: self.scene,
+            candidates: &self.candidates,
             model: CameraModel::new(camera.kind, uploaded, film),
             recording,
         };

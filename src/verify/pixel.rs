@@ -2,8 +2,8 @@
 
 use super::bias::{Deviations, deviation};
 use super::camera::{CameraModel, EnteredRay};
+use super::candidates::Candidates;
 use super::certificate::Verdict;
-use super::checker::Checker;
 use super::hit::LegalHits;
 use super::line::Line;
 use super::recording::{NO_HIT, Recording, TracedPixel, TracedRay};
@@ -13,10 +13,12 @@ use super::sphere::Slack;
 use super::violation::ViolationKind;
 use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
+use crate::scene::Scene;
 
 /// The data with which pixels are judged.
 pub(super) struct PixelCheck<'a> {
-    pub(super) checker: &'a Checker<'a>,
+    pub(super) scene: &'a Scene,
+    pub(super) candidates: &'a Candidates,
     pub(super) model: CameraModel,
     pub(super) recording: &'a Recording,
 }
@@ -89,7 +91,7 @@ impl PixelCheck<'_> {
 
         legal.clear();
         if entered.may_hit_box {
-            legal.find(&self.checker.candidates, &line);
+            legal.find(self.candidates, &line);
             legal.miss |= entered.may_miss_box;
         }
         let verdict = match (legal.count(), legal.miss) {
@@ -180,7 +182,7 @@ impl PixelCheck<'_> {
         slack: Slack,
         direction: [Interval; 3],
     ) -> Result<f64, ViolationKind> {
-        let (scene, id) = (self.checker.scene, layers.id);
+        let (scene, id) = (self.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
         let normals = LegalNormals::new(line, sphere, slack);
         let normal = wide(layers.normal);
@@ -201,7 +203,7 @@ impl PixelCheck<'_> {
 impl PixelCheck<'_> {
     /// Adds the deviations of a legal normal and colour.
     fn measure_shading(&self, layers: &Layers, ray: &Shaded, measured: &mut Deviations) {
-        let (scene, id) = (self.checker.scene, layers.id);
+        let (scene, id) = (self.scene, layers.id);
         let normal = wide(layers.normal);
         let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
         if let Some((exact, error)) = normals.only() {

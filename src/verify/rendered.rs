@@ -39,7 +39,7 @@ impl PixelCheck<'_> {
         let ray = self.model.ray(pixel).any(&self.model);
         legal.clear();
         if ray.may_hit_box {
-            legal.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
+            legal.find_nearer(self.candidates, &ray.line, ray.slack, |_| false);
             legal.miss |= ray.may_miss_box;
         }
         legal.start_from(&ray);
@@ -63,7 +63,7 @@ impl PixelCheck<'_> {
     /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not
     /// depend on where the ray enters the scene's box.
     fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
-        let sphere = *self.checker.scene.spheres().get(id as usize)?;
+        let sphere = *self.scene.spheres().get(id as usize)?;
         let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
         let test = SphereTest::new(&ray.line, sphere, ray.slack_of_distance)?.as_the_kernel();
         let closer = test.roots();

@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use quote::ToTokens;
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, UseTree};
 
@@ -59,8 +60,9 @@ impl Names {
 /// Whether code exists in tests only.
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
-        let test = attribute.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"));
-        attribute.path().is_ident("cfg") && test
+        let words = attribute.meta.to_token_stream().to_string();
+        attribute.path().is_ident("cfg")
+            && ["(test)", "(all (test ,"].iter().any(|t| words.contains(t))
     })
 }
 

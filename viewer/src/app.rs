@@ -1,17 +1,16 @@
 //! The window: what is shown, and how pointer and keys change it.
 
-use std::sync::{Arc, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
 use pinhole_cli::viewing::{RenderFlags, StillPicture, ViewCamera, ViewError};
 
-use crate::Ending;
 use crate::details::Details;
+use crate::fields::Fields;
 use crate::orbit::Orbit;
 use crate::quick::Quick;
 use crate::save::Saving;
-use crate::sections::Fields;
 use crate::state::State;
 use crate::worker::{Message, News, Window, Worker};
 
@@ -20,6 +19,9 @@ pub(crate) const STILL_AFTER: Duration = Duration::from_millis(120);
 
 /// The environment variable that lets the viewer say on standard error what happens.
 const LOG: &str = "PINHOLE_VIEWER_LOG";
+
+/// Where the window leaves the error that ends the program.
+pub(crate) type Ending = Arc<Mutex<Option<ViewError>>>;
 
 /// The window and all that it shows.
 pub(crate) struct App {
@@ -85,7 +87,7 @@ impl App {
     ) -> Result<Self, String> {
         let render = creation.wgpu_render_state.clone().ok_or("the window has no device")?;
         let context = creation.egui_ctx.clone();
-        crate::panels::dress(&context);
+        crate::look::dress(&context);
         let (device, queue) = (render.device.clone(), render.queue.clone());
         worker.attach(Window { context, device, queue });
         let now = Instant::now();
@@ -395,7 +397,7 @@ impl eframe::App for App {
 
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
         // Panels and pictures cover the rest.
-        crate::panels::BESIDE.to_normalized_gamma_f32()
+        crate::look::BESIDE.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {

@@ -6,7 +6,9 @@
 mod app;
 mod blit;
 mod details;
+mod fields;
 mod layers;
+mod look;
 mod orbit;
 mod panels;
 mod picture;
@@ -17,19 +19,16 @@ mod state;
 mod worker;
 
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 
 use eframe::{egui, egui_wgpu, wgpu};
 use pinhole::gpu::GpuError;
 use pinhole_cli::viewing::{self, RenderFlags, ViewError};
 
-use app::App;
+use app::{App, Ending};
 use state::State;
 use worker::{Message, Worker};
-
-/// Where the window leaves the error that ends the program.
-type Ending = Arc<Mutex<Option<ViewError>>>;
 
 fn main() -> ExitCode {
     let flags = match RenderFlags::of_process() {

@@ -5,20 +5,6 @@ use eframe::egui::{self, Align, Color32, Layout, RichText};
 use crate::app::App;
 use crate::details::readable;
 
-/// The look of the window.
-pub(crate) fn dress(context: &egui::Context) {
-    context.set_theme(egui::Theme::Light);
-    context.all_styles_mut(|style| {
-        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
-        style.spacing.combo_width = 140.0;
-        style.visuals.panel_fill = Color32::from_rgb(248, 248, 250);
-        style.visuals.window_fill = Color32::WHITE;
-    });
-}
-
-/// The color beside a picture that does not fill its part of the window.
-pub(crate) const BESIDE: Color32 = Color32::from_rgb(214, 216, 220);
-
 const RED: Color32 = Color32::from_rgb(176, 32, 32);
 
 impl App {

@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 
-use super::source::Sources;
-use super::surface_ray::Surface;
+use super::color::rgb;
+use super::sources::Sources;
 use crate::camera::Camera;
 use crate::cpu::search::Search;
-use crate::geometry::math::{unit, wide};
-use crate::image::color::{LUMINANCE, LinearRgb};
+use crate::geometry::math::unit;
 use crate::light::emitters::Emitters;
 use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
@@ -29,6 +28,15 @@ pub(super) struct LightingContext<'a> {
     pub(super) sky_image: Option<SkyImage<'a>>,
     pub(super) sources: Sources,
     energies: EnergyTables,
+}
+
+/// A surface that a ray can hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Surface {
+    /// The sphere with this index.
+    Sphere(u32),
+    /// The ground.
+    Ground,
 }
 
 /// The ground plane.
@@ -143,13 +151,4 @@ impl<'a> LightingContext<'a> {
     pub(super) fn background(&self) -> DVec3 {
         rgb(self.settings.background)
     }
-}
-
-pub(super) fn rgb(color: LinearRgb) -> DVec3 {
-    wide(color.to_array())
-}
-
-/// Relative luminance of a linear colour with the Rec. 709 primaries.
-pub(super) fn luminance(color: DVec3) -> f64 {
-    color.dot(DVec3::from(LUMINANCE))
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::context::luminance;
+use super::color::luminance;
 use super::sample::Sample;
 use crate::image::{Averages, Image, ImageTooLarge};
 use crate::parallel;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::context::rgb;
+use super::color::rgb;
 use super::maps::{TangentFrame, cone, cone_of_sphere, versine};
 use crate::light::LightKind;
 

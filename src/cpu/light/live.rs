@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::context::{LightingContext, luminance, rgb};
+use super::color::{luminance, rgb};
+use super::context::{LightingContext, Surface};
 use super::lamp;
 use super::maps::{self, TangentFrame};
 use super::sample::Address;
-use super::surface_ray::{Hiding, Interaction, Start, Surface, SurfaceRay, is_occluded, nearest};
+use super::surface_ray::{Hiding, Interaction, Start, SurfaceRay, is_occluded, nearest};
 use crate::camera::View;
 use crate::camera::sampling;
 use crate::cpu::search::Search;

@@ -10,15 +10,18 @@ use self::film_sums::PixelSums;
 use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
 use self::studio::follow as follow_in_studio;
-use super::search::Search;
-use super::{RenderError, denoise, for_each_pixel, primary_pixel, render_primary};
 use crate::camera::View;
+use crate::cpu::denoise::denoise;
+use crate::cpu::error::RenderError;
+use crate::cpu::primary::{for_each_pixel, primary_pixel, render_primary};
+use crate::cpu::search::Search;
 use crate::geometry::math::wide;
 use crate::image::outline;
 use crate::image::{Averages, Image, LayerSet, NO_ID, Pixel};
 use crate::render::{Integrator, PrimarySettings, RenderSettings, Sampling, SettingsError};
 
 mod bsdf;
+mod color;
 mod context;
 mod film_sums;
 mod gather;
@@ -28,6 +31,7 @@ mod maps;
 mod path;
 mod sample;
 mod source;
+mod sources;
 mod studio;
 mod surface_ray;
 

@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::context::{LightingContext, Plane, luminance, rgb};
+use super::color::{luminance, rgb};
+use super::context::{LightingContext, Plane, Surface};
 use super::lamp;
 use super::maps::{self, TangentFrame};
 use super::sample::{Address, Found};
-use super::surface_ray::{Hiding, Interaction, Surface, SurfaceRay, is_occluded, nearest};
+use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
 use crate::render::Studio;

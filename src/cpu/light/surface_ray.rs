@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec4};
 
-use super::context::LightingContext;
+use super::context::{LightingContext, Surface};
 use crate::cpu::search::NearestHit;
 use crate::cpu::sphere::intersect;
 use crate::geometry::ray::Ray;
@@ -25,15 +25,6 @@ pub(super) enum Start {
     /// On a sphere, inwards: the ray hits the far side of this sphere, if nothing is nearer.
     Inside(u32),
     /// On the ground, upwards: the ray cannot hit the ground.
-    Ground,
-}
-
-/// A surface that a ray can hit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Surface {
-    /// The sphere with this index.
-    Sphere(u32),
-    /// The ground.
     Ground,
 }
 

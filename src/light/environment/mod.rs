@@ -18,8 +18,9 @@ use crate::camera::sampling::unit;
 mod reduce;
 mod shares;
 
-/// The largest numbers of columns and rows; larger maps are reduced.
-pub const MAX_SIZE: [u32; 2] = [4096, 2048];
+use shares::solid_angle;
+
+pub use reduce::MAX_SIZE;
 
 /// The largest radiance, 2⁶⁴: sums and products on a device stay far from infinity.
 pub const MAX_RADIANCE: f32 = 18_446_744_073_709_551_616.0;
@@ -209,13 +210,6 @@ impl Environment {
 fn turned(d: DVec3, rotation: [f32; 2]) -> DVec3 {
     let [cosine, sine] = rotation.map(f64::from);
     DVec3::new(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x)
-}
-
-/// The solid angle of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, written
-/// as a product.
-fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
-    let half = 0.5 * PI / f64::from(height);
-    2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
 }
 
 /// The interval of a cumulative table into which a fraction of 2³² falls, and the position in that interval, in [0, 1].

@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::MAX_SIZE;
 use crate::parallel::map;
+
+/// The largest numbers of columns and rows; larger maps are reduced.
+pub const MAX_SIZE: [u32; 2] = [4096, 2048];
 
 /// The map itself if it fits, or a smaller one whose texels are the means, by solid angle, of the texels that they
 /// cover. The total light stays the same.

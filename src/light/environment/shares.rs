@@ -1,8 +1,16 @@
 //! The cumulative tables from which texels are sampled.
 
-use super::solid_angle;
+use std::f64::consts::{PI, TAU};
+
 use crate::image::color;
 use crate::parallel::for_each;
+
+/// The solid angle of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, written
+/// as a product.
+pub(super) fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
+    let half = 0.5 * PI / f64::from(height);
+    2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
+}
 
 /// The number of equal shares into which a table divides probability: f32 holds every multiple of 2⁻²⁴ up to 1, and the
 /// differences of these multiples.

@@ -26,7 +26,7 @@ pub(in crate::scene_file) struct GroundTable {
 
 /// The ground as the file gives it. Without a point, it will touch the lowest sphere of the scene.
 #[derive(Debug)]
-pub(super) struct GroundPlan {
+pub(in crate::scene_file) struct GroundPlan {
     point: Option<DVec3>,
     normal: DVec3,
     color: LinearRgb,
@@ -76,7 +76,7 @@ impl GroundPlan {
         Ok(WithSpan { value, span })
     }
 
-    pub(super) fn ground(&self, scene: &Scene) -> Ground {
+    pub(in crate::scene_file) fn ground(&self, scene: &Scene) -> Ground {
         let lowest = || {
             let bounds = scene.bounds_to_frame();
             let center = bounds.center();

@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::Deserialize;
 use toml::Spanned;
 
+mod either;
 mod ground;
 mod lights;
 mod samples;
@@ -17,22 +18,16 @@ pub(super) use samples::{PathTable, SamplingTable};
 pub(super) use sky::SkyTable;
 pub(super) use studio::StudioTable;
 
+use either::either;
 use ground::GroundPlan;
 use sky::SkyPlan;
 use studio::StudioPlan;
 
-use super::SceneFile;
-use super::span::{Lines, SceneFileError, Span, WithSpan, range_of};
-use super::value::scaled;
-use crate::camera::{Camera, View};
+use super::span::{Lines, SceneFileError, WithSpan, range_of};
 use crate::exact::Table;
-use crate::image::color::LinearRgb;
-use crate::light::environment::Environment;
-use crate::light::{Light, Sky, SkyLight};
-use crate::render::{Integrator, PathTracing, RenderSettings, Sampling, SettingsError};
-use crate::scene::Scene;
-use crate::scene::material::Material;
-use crate::style::{Given, fit};
+use crate::light::Light;
+use crate::render::{PathTracing, Sampling};
+use crate::style::Given;
 
 /// The integrators that a scene file can name. The integrator computes the colour of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -66,17 +61,17 @@ pub(super) struct LightingTables {
 /// The contents of the tables, checked as far as that is possible without a scene.
 #[derive(Debug)]
 pub(super) struct SceneLighting {
-    integrator: Option<IntegratorKind>,
-    studio: StudioPlan,
-    path: PathTracing,
-    is_denoised: bool,
-    sampling: Sampling,
+    pub(super) integrator: Option<IntegratorKind>,
+    pub(super) studio: StudioPlan,
+    pub(super) path: PathTracing,
+    pub(super) is_denoised: bool,
+    pub(super) sampling: Sampling,
     /// The lights and the sun; `None` if the file names neither lights nor a sun nor a sky.
-    lights: Option<Vec<Light>>,
-    sky: Option<SkyPlan>,
-    ground: Option<WithSpan<GroundPlan>>,
+    pub(super) lights: Option<Vec<Light>>,
+    pub(super) sky: Option<SkyPlan>,
+    pub(super) ground: Option<WithSpan<GroundPlan>>,
     /// What the file gives itself, so that a style does not choose it.
-    given: Given,
+    pub(super) given: Given,
 }
 
 impl LightingTables {
@@ -182,119 +177,5 @@ impl LightingTables {
             )),
             _ => Ok(kind),
         }
-    }
-}
-
-/// Joins a table of a file with that of its style.
-fn either<T>(
-    own: Option<Spanned<Table<T>>>,
-    style: Option<Spanned<Table<T>>>,
-    over: impl FnOnce(T, T) -> T,
-) -> Option<Spanned<Table<T>>> {
-    match (own, style) {
-        (Some(own), Some(style)) => {
-            let (span, style) = (own.span(), style.into_inner().0);
-            Some(Spanned::new(span, Table(over(own.into_inner().0, style))))
-        }
-        (own, style) => own.or(style),
-    }
-}
-
-impl SceneFile {
-    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity
-    /// that needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
-    #[must_use]
-    pub fn integrator(&self) -> Option<IntegratorKind> {
-        self.lighting.integrator
-    }
-
-    /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
-    #[must_use]
-    pub fn sky_image(&self) -> Option<&str> {
-        self.lighting.sky.as_ref()?.image()
-    }
-
-    /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
-    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there
-    /// are the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is
-    /// the image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
-    ///
-    /// # Errors
-    /// For a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
-    /// image of the sky is needed and not given.
-    pub fn settings(
-        &self,
-        kind: IntegratorKind,
-        scene: &Scene,
-        camera: &dyn Camera,
-        image: Option<Environment>,
-    ) -> Result<RenderSettings, SceneFileError> {
-        let (says, defaults) = (&self.lighting, RenderSettings::studio());
-        let background = self.background;
-        let integrator = match kind {
-            IntegratorKind::Primary => {
-                let integrator = Integrator::Primary(self.shading);
-                return Ok(RenderSettings { integrator, background, ..RenderSettings::default() });
-            }
-            IntegratorKind::Studio => {
-                Integrator::Studio(says.studio.studio(scene, camera, background)?)
-            }
-            IntegratorKind::Path => Integrator::Path(says.path),
-        };
-        // Only path tracing is lit by a sky and needs its image.
-        let sky = match &says.sky {
-            _ if kind == IntegratorKind::Studio => defaults.sky,
-            Some(sky) => sky.sky(image)?,
-            None if says.lights.is_none() || !says.given.light => defaults.sky,
-            None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
-        };
-        let mut settings = RenderSettings {
-            integrator,
-            sampling: says.sampling,
-            lights: says.lights.clone().unwrap_or(defaults.lights),
-            sky,
-            ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
-            background,
-            is_transparent: false,
-            is_denoised: says.is_denoised,
-        };
-        self.check_colors()?;
-        if let Some(style) = self.style {
-            fit(&mut settings, style, says.given, scene, &View::new(camera, self.film));
-        }
-        settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
-    }
-
-    /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
-    fn check_colors(&self) -> Result<(), SceneFileError> {
-        for (index, sphere) in self.spheres.iter().enumerate() {
-            let (color, surface) = (sphere.value.color, sphere.value.surface);
-            let (rgb, what) = (color.to_array(), format!("sphere {index}"));
-            match surface.material {
-                Material::Emissive { strength } => {
-                    scaled(color, strength.into(), &what)
-                        .map_err(|error| sphere.span.error(error))?;
-                }
-                _ if rgb.iter().any(|c| *c > 1.0) => {
-                    return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
-    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been
-    /// checked before, so only a few errors are left.
-    fn span_of(&self, error: &SettingsError) -> Span {
-        let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
-        let data = || self.data.as_ref().map(|data| data.span);
-        match error {
-            SettingsError::Ground | SettingsError::Catcher => ground(),
-            SettingsError::Albedo { what, .. } if what == "the ground" => ground(),
-            SettingsError::Albedo { .. } | SettingsError::TooBright { .. } => data(),
-            _ => None,
-        }
-        .unwrap_or(Span::START)
     }
 }

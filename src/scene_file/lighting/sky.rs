@@ -49,7 +49,7 @@ pub(in crate::scene_file) struct SkyTable {
 
 /// The sky as the file gives it; its image is not loaded yet.
 #[derive(Debug)]
-pub(super) struct SkyPlan {
+pub(in crate::scene_file) struct SkyPlan {
     light: SkyPlanLight,
     is_visible: bool,
 }
@@ -111,14 +111,17 @@ impl SkyPlan {
         Ok(Self { light, is_visible: table.visible.unwrap_or(true) })
     }
 
-    pub(super) fn image(&self) -> Option<&str> {
+    pub(in crate::scene_file) fn image(&self) -> Option<&str> {
         match &self.light {
             SkyPlanLight::Image { file, .. } => Some(&file.value),
             SkyPlanLight::Known(_) => None,
         }
     }
 
-    pub(super) fn sky(&self, image: Option<Environment>) -> Result<Sky, SceneFileError> {
+    pub(in crate::scene_file) fn sky(
+        &self,
+        image: Option<Environment>,
+    ) -> Result<Sky, SceneFileError> {
         let light = match &self.light {
             SkyPlanLight::Known(light) => light.clone(),
             SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::either;
+use super::either::either;
 use crate::camera::Camera;
 use crate::exact::Table;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
@@ -88,7 +88,7 @@ impl StudioTable {
 
 /// The studio as the file gives it; missing values of the depth cue follow from the scene.
 #[derive(Debug)]
-pub(super) struct StudioPlan {
+pub(in crate::scene_file) struct StudioPlan {
     studio: Studio,
     depth_cue: Option<WithSpan<DepthCuePlan>>,
 }
@@ -124,7 +124,7 @@ impl StudioPlan {
     }
 
     /// Returns the studio for a scene and a camera.
-    pub(super) fn studio(
+    pub(in crate::scene_file) fn studio(
         &self,
         scene: &Scene,
         camera: &dyn Camera,

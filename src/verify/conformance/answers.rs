@@ -2,11 +2,25 @@
 
 use glam::DVec3;
 
-use super::{FOR_CAMERAS, FOR_NORMALS, OF_GIVEN_RAYS};
 use crate::camera::View;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
 use crate::scene::Scene;
+
+/// The unit of k: 2⁻²⁴, half the distance from 1 to the next f32.
+pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
+
+/// The largest k that an honest f32 renderer needs for ids and depths, for rays that it is given.
+pub const OF_GIVEN_RAYS: f64 = 24.0;
+
+/// What is added to the limit if the renderer made the rays by itself.
+pub const FOR_CAMERAS: f64 = 16.0;
+
+/// What is added to the limit if normals are judged.
+pub const FOR_NORMALS: f64 = 8.0;
+
+/// The part of the distance of a ray's start from the origin that is added to the size of a sphere.
+pub(super) const OF_COORDINATES: f64 = 1.0 / 8.0;
 
 /// The largest deviation of a ray's direction from unit length: 2⁻²⁰.
 pub(super) const LENGTH_ERROR: f64 = 1.0 / (1 << 20) as f64;

@@ -110,7 +110,9 @@ mod pixel;
 mod report;
 mod seen;
 
-pub use answers::{Answers, ConformanceError, DepthKind, Rays};
+pub use answers::{
+    Answers, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, OF_GIVEN_RAYS, Rays,
+};
 pub use report::{Conformance, Finding, Reason};
 
 use pixel::PixelCheck;
@@ -118,21 +120,6 @@ use pixel::PixelCheck;
 use super::checker::Checker;
 use super::outcome::Outcome;
 use crate::parallel::{map_parts, ranges};
-
-/// The unit of k: 2⁻²⁴, half the distance from 1 to the next f32.
-pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
-
-/// The largest k that an honest f32 renderer needs for ids and depths, for rays that it is given.
-pub const OF_GIVEN_RAYS: f64 = 24.0;
-
-/// What is added to the limit if the renderer made the rays by itself.
-pub const FOR_CAMERAS: f64 = 16.0;
-
-/// What is added to the limit if normals are judged.
-pub const FOR_NORMALS: f64 = 8.0;
-
-/// The part of the distance of a ray's start from the origin that is added to the size of a sphere.
-const OF_COORDINATES: f64 = 1.0 / 8.0;
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 12;

@@ -2,10 +2,9 @@
 
 use glam::DVec3;
 
-use super::answers::{Answers, DepthKind, Rays};
+use super::answers::{Answers, DepthKind, EPSILON, OF_COORDINATES, Rays};
 use super::report::{Finding, Reason};
 use super::seen::Seen;
-use super::{EPSILON, OF_COORDINATES};
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::candidates::Candidates;

@@ -14,7 +14,7 @@ mod samples;
 
 use std::fmt;
 
-pub use samples::{Samples, WrittenPicture};
+pub use samples::{Samples, WrittenError, WrittenPicture};
 
 use color::PictureCheck;
 use samples::{LegalSample, Mapping};
@@ -30,28 +30,6 @@ use crate::render::PrimarySettings;
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 12;
-
-/// Why a picture cannot be judged.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum WrittenError {
-    /// The picture is not as large as the view.
-    #[error("the picture is {}x{} pixels, but the view is {}x{}", found[0], found[1], view[0], view[1])]
-    Size {
-        /// Width and height of the picture.
-        found: [u32; 2],
-        /// Width and height of the view.
-        view: [u32; 2],
-    },
-    /// There are too few or too many samples.
-    #[error("the picture has {found} samples; {expected} are expected")]
-    Count {
-        /// The number of samples.
-        found: usize,
-        /// The number of samples of such a picture.
-        expected: usize,
-    },
-}
 
 /// A pixel that no conforming device leads to.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,31 @@
 //! Samples of a picture as they stand in a file, and those that are legal.
 
 use super::color::LegalColor;
-use super::{WrittenError, WrittenPicture as Picture};
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
 use crate::render::PrimarySettings;
+
+/// Why a picture cannot be judged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WrittenError {
+    /// The picture is not as large as the view.
+    #[error("the picture is {}x{} pixels, but the view is {}x{}", found[0], found[1], view[0], view[1])]
+    Size {
+        /// Width and height of the picture.
+        found: [u32; 2],
+        /// Width and height of the view.
+        view: [u32; 2],
+    },
+    /// There are too few or too many samples.
+    #[error("the picture has {found} samples; {expected} are expected")]
+    Count {
+        /// The number of samples.
+        found: usize,
+        /// The number of samples of such a picture.
+        expected: usize,
+    },
+}
 
 /// The samples of a picture as they stand in its file, row by row from the top.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +48,7 @@ pub struct WrittenPicture<'a> {
     pub encoding: &'a Encoding,
 }
 
-impl Picture<'_> {
+impl WrittenPicture<'_> {
     /// The number of bytes of a sample, and of channels of a pixel.
     fn layout(&self) -> [usize; 2] {
         let bytes = self.encoding.bits().bytes();
@@ -114,12 +135,12 @@ impl LegalSample {
 
 /// How legal colours become legal samples.
 pub(super) struct Mapping<'a> {
-    picture: &'a Picture<'a>,
+    picture: &'a WrittenPicture<'a>,
     primary: &'a PrimarySettings,
 }
 
 impl<'a> Mapping<'a> {
-    pub(super) fn new(picture: &'a Picture<'a>, primary: &'a PrimarySettings) -> Self {
+    pub(super) fn new(picture: &'a WrittenPicture<'a>, primary: &'a PrimarySettings) -> Self {
         Self { picture, primary }
     }
 
@@ -130,7 +151,7 @@ impl<'a> Mapping<'a> {
     /// The legal samples for legal colours.
     pub(super) fn samples(&self, legal: &LegalColor) -> LegalSample {
         let alpha = if legal.is_hit || !self.primary.is_transparent { 1.0 } else { 0.0 };
-        let Picture { samples, encoding, .. } = self.picture;
+        let WrittenPicture { samples, encoding, .. } = self.picture;
         let mut channels = [[0.0; 2]; 4];
         let Samples::Encoded(_) = samples else {
             for (channel, color) in channels.iter_mut().zip(legal.color) {

@@ -2,19 +2,21 @@
 
 use glam::DVec3;
 
-use super::context::LightingContext;
-use super::surface_ray::{Interaction, Surface};
+use super::context::{LightingContext, Surface};
+use super::surface_ray::Interaction;
 use crate::light::energy::{self, ENTRIES};
 use crate::scene::material::Material;
 use conductor::Conductor;
 use dielectric::Dielectric;
 use ggx::Ggx;
 use lambert::Lambert;
+pub(super) use response::{Response, Scattered};
 
 mod conductor;
 mod dielectric;
 mod ggx;
 mod lambert;
+mod response;
 
 /// The smallest cosine of a direction; smaller ones are replaced by it.
 const MIN_COSINE: f64 = 1e-6;
@@ -31,24 +33,6 @@ enum Kind {
     Lambert(Lambert),
     Conductor(Conductor),
     Dielectric(Dielectric),
-}
-
-/// The BSDF's value for light from a direction, without the cosine factor, and the density with which the direction is
-/// sampled.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Response {
-    pub(super) value: DVec3,
-    pub(super) density: f64,
-}
-
-/// A direction chosen at random by a BSDF.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scattered {
-    /// On the other side of the surface if its z is negative.
-    pub(super) direction: DVec3,
-    pub(super) weight: DVec3,
-    /// Density per steradian; `None` if light sampling cannot choose the direction.
-    pub(super) density: Option<f64>,
 }
 
 impl Bsdf {

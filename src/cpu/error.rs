@@ -1,0 +1,22 @@
+//! Why no picture is rendered.
+
+use crate::image::{ImageTooLarge, NoMean};
+use crate::render::SettingsError;
+
+/// Why no picture is rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The settings, or the materials of the scene, are not valid.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// There is not enough memory for the image.
+    #[error(transparent)]
+    Image(#[from] ImageTooLarge),
+    /// The pictures of the parts of the samples have no mean.
+    #[error(transparent)]
+    Mean(#[from] NoMean),
+    /// The caller ended the work.
+    #[error("rendering was stopped")]
+    Stopped,
+}
