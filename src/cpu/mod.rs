@@ -9,11 +9,10 @@
 use std::ops::Range;
 
 use crate::camera::View;
-use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, NoMean, Pixel, RowMut};
+use crate::image::{Image, ImageTooLarge, LayerSet, NO_ID, Pixel, RowMut};
 use crate::parallel;
 use crate::render::{
-    Decision, InParts, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError,
-    Watch, to_the_end,
+    Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
 };
 
 mod denoise;
@@ -49,9 +48,6 @@ pub enum RenderError {
     /// There is not enough memory for the image.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
-    /// The pictures of the parts of the samples have no mean.
-    #[error(transparent)]
-    Mean(#[from] NoMean),
     /// The caller ended the work.
     #[error("rendering was stopped")]
     Stopped,
@@ -104,31 +100,6 @@ pub fn render_watched<'a>(
 ) -> Result<Picture, RenderError> {
     let search = search.into();
     SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
-}
-
-/// Renders a lit picture in parts of `samples_per_part` samples, each a picture of its own, and takes the mean of all as
-/// [`SampleMean`](crate::image::SampleMean) does: these are the bits of parts that several machines render. Else it is like
-/// [`render_watched`], except that the picture cannot be finished early.
-///
-/// # Errors
-/// As for [`render_watched`].
-pub fn render_in_parts<'a>(
-    search: impl Into<Search<'a>>,
-    view: &View<'_>,
-    settings: &RenderSettings,
-    layers: LayerSet,
-    samples_per_part: u32,
-    watch: &mut Watch<'_>,
-) -> Result<Picture, RenderError> {
-    let search = search.into();
-    let mut whole = InParts::new(settings.sampling.samples);
-    for part in settings.unfinished_parts(samples_per_part) {
-        let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
-        let picture = render_watched(search, view, &part, settings.layers_for(layers), watch)?;
-        whole.add(picture)?;
-    }
-    let picture = whole.picture().ok_or(RenderError::Stopped)?;
-    Ok(Picture { image: finish(picture.image, settings, layers), ..picture })
 }
 
 fn render_primary(

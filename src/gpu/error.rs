@@ -7,7 +7,7 @@ use crate::camera::CameraKind;
 use crate::camera::film::{Film, FilmError};
 use crate::gpu::edit::ShaderEdit;
 use crate::image::denoise::MissingGuide;
-use crate::image::{DoesNotFit, ImageTooLarge, NoMean};
+use crate::image::{DoesNotFit, ImageTooLarge};
 use crate::render::SettingsError;
 use crate::scene::SceneError;
 
@@ -255,9 +255,6 @@ pub enum GpuError {
     /// The picture does not fit into host memory.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
-    /// The pictures of the parts of the samples have no mean.
-    #[error(transparent)]
-    Mean(#[from] NoMean),
     /// The scene does not fit into host memory.
     #[error(transparent)]
     Scene(#[from] SceneError),

@@ -36,7 +36,6 @@ mod planted;
 mod profile;
 mod ray_query;
 mod replayed;
-mod sample_parts;
 mod scenes;
 mod self_test;
 mod structures;
@@ -74,7 +73,6 @@ fn main() {
             plan::trials(),
             profile::trials(),
             ray_query::trials(),
-            sample_parts::trials(),
             self_test::trials(),
             twin::trials(),
             update::trials(),

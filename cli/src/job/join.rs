@@ -1,7 +1,6 @@
 //! Puts the parts of a picture together.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -15,7 +14,7 @@ use super::part_file::{self, Header, Pictures, Problem};
 use super::units::ranges;
 use crate::failure::Failure;
 use crate::views::Views;
-use pinhole::image::{Image, NoMean, SampleMean};
+use pinhole::image::Image;
 use pinhole::render::Nearest;
 
 /// The time between two looks for parts that are not seen yet.
@@ -122,30 +121,15 @@ pub(super) fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Fai
         2 => Views::Two([empty()?, empty()?]),
         _ => Views::One(empty()?),
     };
-    let (units, parts) = (manifest.units_of_picture(), manifest.sample_parts());
-    for first in (place * units..(place + 1) * units).step_by(parts) {
-        let (_, (origin, _)) = manifest.unit(first);
-        let tile = mean(folder, first..first + parts)?;
+    let tiles = manifest.units_of_picture();
+    for unit in place * tiles..(place + 1) * tiles {
+        let (_, (origin, _)) = manifest.unit(unit);
+        let tile = tile(folder, unit)?;
         for (whole, part) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
             whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
         }
     }
     Ok(whole)
-}
-
-/// The mean of units that have the samples of a tile. A single unit is its own mean.
-fn mean(folder: &Folder, units: Range<usize>) -> Result<Views<Image>, Failure> {
-    let refused = |error: NoMean| Failure::Job(error.into());
-    let samples = |unit| folder.manifest.samples_of(unit).1;
-    let mut means =
-        tile(folder, units.start)?.map(|image| SampleMean::new(image, samples(units.start)));
-    for unit in units.start + 1..units.end {
-        let images = tile(folder, unit)?;
-        for (mean, image) in means.as_mut_slice().iter_mut().zip(images.as_slice()) {
-            mean.add(image, samples(unit)).map_err(refused)?;
-        }
-    }
-    Ok(means.map(SampleMean::into_image))
 }
 
 /// The pictures of a unit that is a tile.

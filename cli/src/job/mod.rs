@@ -71,9 +71,8 @@ enum JobCommand {
     mut_arg("stereo", |arg| arg.hide(true)),
     mut_arg("certify", |arg| arg.hide(true)),
     mut_arg("print_scene", |arg| arg.hide(true)),
-    after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture, or some of its \
-    samples; its INDEX counts from 0, picture by picture, in each the tiles row by row, and in each of these the parts of \
-    the samples."
+    after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture; its INDEX \
+    counts from 0, picture by picture and in each the tiles row by row."
 )]
 #[cfg_attr(feature = "gpu", command(mut_arg("profile", |arg| arg.hide(true))))]
 struct SplitArgs {

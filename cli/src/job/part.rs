@@ -28,7 +28,6 @@ use crate::render::{check_device, render_part};
 use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
-use pinhole::render::Sampling;
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -153,16 +152,12 @@ impl Work<'_> {
                 nearest_of(&bricks, *first..*end, Look::of(input), &views, layers, opened)?;
             Pictures::Depth(nearest)
         } else {
-            let whole = input.settings.sampling;
-            let (first, samples) = manifest.samples_of(unit);
-            input.settings.sampling = Sampling { first, samples, ..whole };
             let tile = pieces::render(rectangle, layers, self.quiet, &mut |(origin, size)| {
                 let part =
                     input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
                 render_part(input, part, layers, opened)
-            });
-            input.settings.sampling = whole;
-            Pictures::Tile(tile?)
+            })?;
+            Pictures::Tile(tile)
         };
         let header = Header {
             version: VERSION.to_owned(),

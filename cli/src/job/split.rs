@@ -57,30 +57,18 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
     let stored = overview.as_ref().map(packed);
     let sampling = input.settings.sampling;
-    let samples_per_part = args.render.stop_rule.samples_per_part;
-    if samples_per_part.is_some() && input.bricks.is_some() {
-        return Err(Failure::usage(
-            "--samples-per-part: all samples of a file of bricks are complete at the same time; choose --tiles in its place",
-        ));
-    }
     let units = match groups.len() {
-        0 => {
-            let sample_parts = sampling.parts(samples_per_part.unwrap_or(0)).len();
-            units_of_tiles(pictures.as_ref().map_or(1, Vec::len), tiles, sample_parts)
-        }
+        0 => units_of_tiles(pictures.as_ref().map_or(1, Vec::len), tiles),
         count => Some(count),
     };
     let Some(units) = units else {
-        let remedy =
-            if samples_per_part.is_some() { "a larger --samples-per-part, or " } else { "" };
         return Err(Failure::usage(format!(
-            "these are more than {MOST_UNITS} units; choose {remedy}fewer tiles or frames"
+            "these are more than {MOST_UNITS} units; choose fewer tiles or frames"
         )));
     };
     let (_, [width, height]) = tile(size, tiles, 0);
     let pixels = u64::from(width) * u64::from(height);
-    let samples = sampling.samples.min(samples_per_part.unwrap_or(u32::MAX));
-    let expected_milliseconds = expected(&input, pixels, samples, groups.len());
+    let expected_milliseconds = expected(&input, pixels, groups.len());
     let manifest = Manifest {
         pinhole_job: 1,
         version: VERSION.to_owned(),
@@ -99,7 +87,6 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         merged_layers: layer_names(merged),
         integrator: input.settings.integrator.name().to_owned(),
         samples: sampling.samples,
-        samples_per_part,
         seed: sampling.seed,
         denoised: input.settings.is_denoised,
         expected_milliseconds,
@@ -245,13 +232,13 @@ const NANOSECONDS_OF_SPHERE: u64 = 600;
 
 /// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
 /// each sample has the rays that its integrator traces.
-fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
+fn expected(input: &Input, pixels: u64, groups: usize) -> u64 {
     if let Some(bricks) = &input.bricks {
         // Reading, building and copying are nearly all of it.
         let spheres = bricks.whole().count / groups.max(1) as u64;
         return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
     }
-    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings, samples));
+    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings));
     let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
     let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
     // Few spheres need no structure, and a test takes some nanoseconds.
@@ -260,8 +247,8 @@ fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
     ((nanoseconds / 1e6).ceil() as u64).max(1)
 }
 
-/// About how many rays a pixel needs for some samples.
-fn rays_of_pixel(settings: &RenderSettings, samples: u32) -> u64 {
+/// About how many rays a pixel needs.
+fn rays_of_pixel(settings: &RenderSettings) -> u64 {
     let lights = settings.lights.len() as u64;
     let of_sample = match &settings.integrator {
         Integrator::Primary(_) => return 1,
@@ -272,7 +259,7 @@ fn rays_of_pixel(settings: &RenderSettings, samples: u32) -> u64 {
         // What a later version may add, and paths: one of mean length has a ray to a light at each of its surfaces.
         _ => 8,
     };
-    of_sample.saturating_mul(samples.into())
+    of_sample.saturating_mul(settings.sampling.samples.into())
 }
 
 /// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
@@ -302,13 +289,7 @@ fn said(folder: &Folder) {
     let [columns, rows] = manifest.tiles;
     let what = match manifest.is_by_depth() {
         true => "1 picture of groups of bricks".to_owned(),
-        false => {
-            let parts = match manifest.sample_parts() {
-                1 => String::new(),
-                parts => format!(" with {parts} parts of the samples each"),
-            };
-            format!("{pictures} picture{} of {columns}x{rows} tiles{parts}", plural(pictures))
-        }
+        false => format!("{pictures} picture{} of {columns}x{rows} tiles", plural(pictures)),
     };
     tell(format_args!(
         "{}: {} unit{}, {what}, each expected to take {:.1} s on a software \

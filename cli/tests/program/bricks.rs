@@ -153,10 +153,6 @@ fn what_bricks_cannot_do_is_refused_with_a_reason() {
             "render a.bricks -o out.png --style default --keep-partial",
             "--keep-partial: all samples",
         ),
-        (
-            "render a.bricks -o out.png --style default --samples-per-part 2",
-            "at the same time; remove it, and choose --samples",
-        ),
         ("render a.bricks -o out.png --color-by index", "--color-by needs columns"),
         ("render a.bricks -o out.png --select x>0", "--select needs columns"),
         ("render a.bricks -o out.png --radius 1", "--radius applies when data is sorted"),

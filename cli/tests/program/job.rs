@@ -115,44 +115,6 @@ fn single_pictures_are_the_same_bytes() {
 }
 
 #[test]
-fn parts_of_the_samples_are_the_same_bytes() {
-    let layers = "--layer depth=@-d.npy --layer samples=@-s.npy --layer variance=@-v.npy";
-    for n in [1, 3, 4, 9] {
-        let flags = format!("a.xyz --size 61x47 --samples 9 --outline 3 --samples-per-part {n}");
-        assert_same(&flags, "3x2", &format!("-o @-.png {layers}"));
-    }
-    assert_same("path.toml --samples-per-part 2", "2x2", &format!("-o @-.exr {layers}"));
-    assert_same("stereo.toml --samples 5 --samples-per-part 2", "2x1", "-o @-.png");
-    let frames = "a.xyz --frames :3 --size 40x30 --samples 4 --samples-per-part 3";
-    assert_same(frames, "2x2", "-o @-%d.png");
-}
-
-/// The pictures differ from those of samples that are taken at once by less than the rounding of their numbers.
-#[test]
-fn parts_of_the_samples_are_the_picture() {
-    let folder = folder();
-    let flags = "render a.xyz --size 61x47 --samples 9 --backend cpu -q";
-    folder.run(&format!("{flags} -o a.png --layer color=a.npy")).succeeded();
-    for (n, is_same) in [(3, false), (9, true), (20, true)] {
-        let parts = format!("{flags} --samples-per-part {n} -o b.png --layer color=b.npy");
-        folder.run(&parts).succeeded();
-        let numbers = |name: &str| -> Vec<f32> {
-            let bytes = folder.read(name);
-            let (words, _) = bytes[bytes.len() - 61 * 47 * 12..].as_chunks::<4>();
-            words.iter().map(|word| f32::from_le_bytes(*word)).collect()
-        };
-        let (whole, parts) = (numbers("a.npy"), numbers("b.npy"));
-        assert_eq!(whole == parts, is_same, "{n}");
-        // The means of the parts and of the whole are narrowed, and so is the opacity that the white background is seen
-        // through.
-        let rounding = f32::EPSILON / 2.0;
-        let near = |a: f32, b: f32| (a - b).abs() <= (3.0 * a.abs() + 3.0) * rounding;
-        let far = whole.iter().zip(&parts).find(|(a, b)| !near(**a, **b));
-        assert_eq!(far, None, "{n}");
-    }
-}
-
-#[test]
 fn frames_are_the_same_bytes() {
     let small = "--size 40x30 --samples 2";
     assert_same(&format!("a.xyz --frames : {small}"), "2x2", "-o @-%03d.png");

@@ -106,6 +106,7 @@ macro_rules! areas {
 
 areas!(
     cases::arguments
+    cases::removed
     cases::files
     cases::arrays
     certify::certify

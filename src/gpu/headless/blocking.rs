@@ -190,27 +190,6 @@ impl Headless {
         block_on(self.render_uploaded_async(scene, view, settings, layers, watch))
     }
 
-    /// Renders a lit picture in parts of `samples_per_part` samples, each a picture of its own, and takes the mean of all
-    /// as [`SampleMean`](crate::image::SampleMean) does: these are the bits of parts that several machines with such a
-    /// device render. Else it is like [`Headless::render_uploaded`], except that the picture cannot be finished early and
-    /// its noise is not measured.
-    ///
-    /// # Errors
-    /// The same as for [`Headless::render_uploaded`].
-    pub fn render_in_parts(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        samples_per_part: u32,
-        watch: &mut Watch<'_>,
-    ) -> Result<Picture, GpuError> {
-        let rendered =
-            self.render_in_parts_async(scene, view, settings, layers, samples_per_part, watch);
-        block_on(rendered)
-    }
-
     /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with
     /// [`Scene::apply`].
     ///

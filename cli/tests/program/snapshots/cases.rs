@@ -143,6 +143,14 @@ pub(super) fn arguments() -> Vec<Case> {
     )
 }
 
+/// Flags and commands that earlier versions had.
+pub(super) fn removed() -> Vec<Case> {
+    lines(
+        "render scene.toml -o out.png --samples-per-part 4
+         job split scene.toml -o job --samples-per-part=4",
+    )
+}
+
 /// Files that are missing, of another kind, or in a place that cannot be written.
 pub(super) fn files() -> Vec<Case> {
     lines(

@@ -28,8 +28,6 @@ pub(in crate::gpu) struct Step<'a> {
     pub(super) work: Work,
     /// Number of samples in flight.
     pub(super) in_flight: u32,
-    /// The number of the first sample of the picture.
-    first_sample: u32,
     /// Number of rays that each invocation traces.
     rays: u32,
     /// Whether the dispatch traces rays, and so may take long.
@@ -95,7 +93,7 @@ impl Step<'_> {
 
     /// Number of samples that every pixel has after the dispatch, if it completes samples.
     pub(in crate::gpu) fn samples_after(&self) -> u32 {
-        self.dispatch.sample + self.dispatch.count - self.first_sample
+        self.dispatch.sample + self.dispatch.count
     }
 
     /// Number of layers of workgroups, each of which covers the area of a tile.
@@ -168,11 +166,11 @@ const SAMPLES_AT_ONCE: u32 = 8;
 pub(super) const MOST_LOOPS: u32 = 2500;
 
 impl<'a> Round<'a> {
-    /// The dispatches of some samples, counted from the first of the picture, which are traced together.
+    /// The dispatches of some samples, which are traced together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
         let dispatch = DispatchParameters {
-            sample: self.lighting.first_sample + samples.start,
+            sample: samples.start,
             count,
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
@@ -222,7 +220,6 @@ impl<'a> Round<'a> {
                     appearance: Some(&brick.appearance_group),
                     work: Work::Samples,
                     in_flight: 1,
-                    first_sample: self.lighting.first_sample,
                     rays: count * rays,
                     is_search: true,
                     visit: None,
@@ -263,7 +260,6 @@ impl<'a> Steps<'a> {
             appearance: None,
             work,
             in_flight: self.in_flight,
-            first_sample: self.round.lighting.first_sample,
             rays: 1,
             is_search: false,
             visit: None,
