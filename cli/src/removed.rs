@@ -4,8 +4,12 @@ use clap::error::{ContextKind, ContextValue};
 
 /// Flags and commands that are gone, with what to use instead. The words of a command before a flag say that only this
 /// command had it.
-const REMOVED: &[(&str, &str)] =
-    &[("--samples-per-part", "divide pictures by `pinhole job split --tiles CxR`")];
+const REMOVED: &[(&str, &str)] = &[
+    ("--samples-per-part", "divide pictures by `pinhole job split --tiles CxR`"),
+    ("job join", "`pinhole job merge` puts all parts together in one pass"),
+    ("job status --json", "`pinhole job status JOB --missing` lists units, one a line"),
+    ("job submit", "submit an array of `pinhole job part` yourself; docs/scale.md has the scripts"),
+];
 
 /// Returns the message about a flag or a command that was removed. `arguments` are those of the program, without its
 /// name. `None` if the error is about something else.

@@ -23,11 +23,6 @@ pub(super) fn create_folder(path: &Path) -> io::Result<()> {
     fs::create_dir(path)
 }
 
-/// Creates a folder if there is none.
-pub(super) fn ensure_folder(path: &Path) -> io::Result<()> {
-    fs::create_dir_all(path)
-}
-
 /// Removes a folder that this program has created, with all that is in it.
 pub(super) fn remove_folder(path: &Path) {
     let _ = fs::remove_dir_all(path);
@@ -39,13 +34,8 @@ pub(super) fn names(folder: &Path) -> Vec<String> {
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
 }
 
-/// Writes a mark. One that cannot be written is not an error.
-pub(super) fn mark(path: &Path, text: &str) {
-    let _ = fs::write(path, text);
-}
-
-/// Removes a mark, if it is there.
-pub(super) fn unmark(path: &Path) {
+/// Removes a file, if it is there.
+pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
 }
 

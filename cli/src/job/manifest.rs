@@ -63,8 +63,6 @@ pub(super) struct Manifest {
     pub(super) seed: u32,
     /// Whether noise is removed when parts are merged.
     pub(super) denoised: bool,
-    /// The time of a unit on a software device, in milliseconds, as the plan of the first picture expects it.
-    pub(super) expected_milliseconds: u64,
     /// What all frames are together.
     pub(super) overview: Option<StoredOverview>,
 }

@@ -7,10 +7,10 @@ use anyhow::{Context, anyhow};
 use super::SplitArgs;
 use super::digest::{self, InputFile};
 use super::files;
-use super::folder::{FAILED, Folder, OVERVIEW, PARTS, RUNNING, packed};
+use super::folder::{Folder, OVERVIEW, PARTS, packed};
 use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
 use super::recipe::Recipe;
-use super::units::{parse_tiles, ranges, tile};
+use super::units::parse_tiles;
 use crate::args::Stereo;
 use crate::failure::Failure;
 use crate::frames::{Known, Overview, Ready, ready};
@@ -18,9 +18,7 @@ use crate::input::Input;
 use crate::output::{name_all, unnamed};
 use crate::speak::tell;
 use crate::{progress, threads};
-use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::image::{Layer, LayerSet};
-use pinhole::render::{Integrator, RenderSettings};
 
 /// What is known of the pictures when the first was read.
 struct Found {
@@ -66,9 +64,6 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
             "these are more than {MOST_UNITS} units; choose fewer tiles or frames"
         )));
     };
-    let (_, [width, height]) = tile(size, tiles, 0);
-    let pixels = u64::from(width) * u64::from(height);
-    let expected_milliseconds = expected(&input, pixels, groups.len());
     let manifest = Manifest {
         pinhole_job: 1,
         version: VERSION.to_owned(),
@@ -89,7 +84,6 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         samples: sampling.samples,
         seed: sampling.seed,
         denoised: input.settings.is_denoised,
-        expected_milliseconds,
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
     };
     let (manifest, text) = manifest.sealed()?;
@@ -227,50 +221,13 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
     Ok(files)
 }
 
-/// About how long a software device takes for each sphere of a brick.
-const NANOSECONDS_OF_SPHERE: u64 = 600;
-
-/// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
-/// each sample has the rays that its integrator traces.
-fn expected(input: &Input, pixels: u64, groups: usize) -> u64 {
-    if let Some(bricks) = &input.bricks {
-        // Reading, building and copying are nearly all of it.
-        let spheres = bricks.whole().count / groups.max(1) as u64;
-        return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
-    }
-    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings));
-    let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
-    let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
-    // Few spheres need no structure, and a test takes some nanoseconds.
-    let of_list = || 4.0 * rays as f64 * input.scene.len() as f64;
-    let nanoseconds = candidate.map_or_else(of_list, |candidate| candidate.total(rays));
-    ((nanoseconds / 1e6).ceil() as u64).max(1)
-}
-
-/// About how many rays a pixel needs.
-fn rays_of_pixel(settings: &RenderSettings) -> u64 {
-    let lights = settings.lights.len() as u64;
-    let of_sample = match &settings.integrator {
-        Integrator::Primary(_) => return 1,
-        Integrator::Studio(studio) => {
-            let ambient = studio.occlusion.map_or(0, |occlusion| u64::from(occlusion.samples));
-            1 + ambient + if studio.has_shadows { lights } else { 0 }
-        }
-        // What a later version may add, and paths: one of mean length has a ray to a light at each of its surfaces.
-        _ => 8,
-    };
-    of_sample.saturating_mul(settings.sampling.samples.into())
-}
-
 /// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
 fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Failure> {
     let path = folder.path();
     let cannot = || format!("{}: cannot be created", path.display());
     files::create_folder(path).with_context(cannot)?;
     let fill = || {
-        for inside in [PARTS, RUNNING, FAILED] {
-            files::create_folder(&path.join(inside)).with_context(cannot)?;
-        }
+        files::create_folder(&path.join(PARTS)).with_context(cannot)?;
         if let Some(bytes) = overview {
             let file = path.join(OVERVIEW);
             name_all(vec![(&file, unnamed(&file, bytes)?)])?;
@@ -283,7 +240,6 @@ fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Fa
 
 fn said(folder: &Folder) {
     let manifest = &folder.manifest;
-    let all: Vec<usize> = (0..manifest.units).collect();
     let pictures = manifest.pictures.as_ref().map_or(1, Vec::len);
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let [columns, rows] = manifest.tiles;
@@ -292,13 +248,11 @@ fn said(folder: &Folder) {
         false => format!("{pictures} picture{} of {columns}x{rows} tiles", plural(pictures)),
     };
     tell(format_args!(
-        "{}: {} unit{}, {what}, each expected to take {:.1} s on a software \
-         device; render them with `pinhole job part {} {}`",
+        "{}: {} unit{}, {what}; render them with `pinhole job part {} 0-{}`",
         folder.path().display(),
         manifest.units,
         plural(manifest.units),
-        manifest.expected_milliseconds as f64 / 1e3,
         folder.path().display(),
-        ranges(&all)
+        manifest.units.saturating_sub(1)
     ));
 }

@@ -81,7 +81,6 @@ fn by_depth(headless: &'static Headless) {
     succeed(&mut command_on(headless, &folder, &split));
     succeed(&mut command(&folder, "job part job 2-3 -q"));
     succeed(&mut command(&folder, "job part job 0-1 -q"));
-    succeed(&mut command(&folder, "job join job 1-2 -q"));
     let outputs =
         |out: &str| format!("-o {out}.png --layer id={out}-id.npy --layer normal={out}-n.npy -q");
     succeed(&mut command(&folder, &format!("job merge job {}", outputs("merged"))));

@@ -1,6 +1,6 @@
 //! Jobs refuse bad input with one line, and overwrite nothing.
 
-use crate::job::{folder, part, status, through_parts};
+use crate::job::{folder, missing, part, through_parts};
 use crate::support::Folder;
 
 /// A job of four parts that is complete.
@@ -47,6 +47,7 @@ fn wrong_usage_is_one_line() {
         ("split - --format xyz -o new", "name a file"),
         ("part job 4", "this job has 4 units, 0 to 3"),
         ("part job 2-9", "this job has 4 units, 0 to 3"),
+        ("status job", "--missing"),
         ("part job x", "write an index"),
         ("part job 3-1", "write an index"),
         ("part job 0 --timeout 0", "greater than 0"),
@@ -71,7 +72,7 @@ fn damaged_files_of_a_job_are_refused() {
     let read = |name: &str| folder.read(name);
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path(name), bytes).unwrap();
     let merge = "job merge job -o bad%d.png";
-    let all = ["job part job 0", "job status job", merge];
+    let all = ["job part job 0", "job status job --missing", merge];
     let good = read("job/job.json");
     let text = String::from_utf8(good.clone()).unwrap();
     let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
@@ -146,9 +147,9 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
             1,
             "damaged 0; render them again with --array=0",
         );
-        assert_eq!(status(&folder)["done"], 3);
+        assert_eq!(missing(&folder), [0]);
         folder.run("job part job 0 -q").succeeded();
-        assert_eq!(status(&folder)["done"], 4);
+        assert_eq!(missing(&folder), [0_usize; 0]);
     }
     // A part of another unit, and one of another job.
     put(2, &good[1]);
@@ -159,7 +160,7 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
     through_parts(&other, "a.xyz --frames :2 --tiles 2x1 --size 40x30 --samples 3", "-o o%d.png");
     std::fs::copy(part(&other, 3), part(&folder, 3)).unwrap();
     assert_refused(&folder, "job merge job -o m%d.png", 1, "of another job 3; ");
-    assert_eq!(status(&folder)["foreign"], "3");
+    assert_eq!(missing(&folder), [3]);
     folder.run("job part job 3 -q").succeeded();
     folder.run("job merge job -o m%d.png -q").succeeded();
     assert!(folder.read("m1.png") == folder.read("good1.png"));

@@ -147,7 +147,10 @@ pub(super) fn arguments() -> Vec<Case> {
 pub(super) fn removed() -> Vec<Case> {
     lines(
         "render scene.toml -o out.png --samples-per-part 4
-         job split scene.toml -o job --samples-per-part=4",
+         job split scene.toml -o job --samples-per-part=4
+         job join job 0-3
+         job status job --json
+         job submit job --slurm",
     )
 }
 
