@@ -277,7 +277,6 @@ fn render_views(
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
     if let Some(bricks) = &input.bricks {
-        stop_rule.check_for_bricks()?;
         return bricks::render(bricks, input, views, layers, opened);
     }
     match opened {

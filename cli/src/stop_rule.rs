@@ -72,30 +72,15 @@ impl StopRule {
         self.keep_partial
     }
 
-    /// A flag other than those of [`StopRule::open_end`], if there is one.
-    fn other_flag(&self) -> Option<&'static str> {
-        self.keep_partial.then_some("--keep-partial")
-    }
-
-    /// Refuses flags that do not apply to files of bricks.
-    pub(super) fn check_for_bricks(&self) -> Result<(), Failure> {
-        match self.open_end().or(self.other_flag()) {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag}: all samples of a file of bricks are complete at the same time; remove it, and choose --samples"
-            ))),
-            None => Ok(()),
-        }
-    }
-
     /// Refuses flags that do not apply to a picture without light.
     pub(super) fn check_without_light(&self) -> Result<(), Failure> {
-        match self.other_flag() {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag} applies only to lit pictures, but this one has one sample per pixel; remove it, \
+        if self.keep_partial {
+            return Err(Failure::usage(
+                "--keep-partial applies only to lit pictures, but this one has one sample per pixel; remove it, \
                  or ask for light, for example with --integrator studio",
-            ))),
-            None => Ok(()),
+            ));
         }
+        Ok(())
     }
 }
 

@@ -125,26 +125,6 @@ pub enum GpuError {
     /// The picture of a part does not fit into the whole.
     #[error(transparent)]
     DoesNotFit(#[from] DoesNotFit),
-    /// A part of a scene cannot be read, or is not what it was said to be.
-    #[error("part {part} of the scene cannot be read: {message}")]
-    Part {
-        /// The number of the part, from 0 on.
-        part: usize,
-        /// The reason.
-        message: String,
-    },
-    /// A scene of parts has spheres of which all would have to be known at once.
-    #[error(
-        "with light, the spheres of a scene that is read in parts must be of one material that is opaque and does not \
-         shine; render a scene that fits into memory"
-    )]
-    PartMaterials,
-    /// The picture that light is added to lacks layers, or has others or another size.
-    #[error(
-        "the picture that light is added to must be as large as the film and have the layers of \
-         `RenderSettings::layers_for`"
-    )]
-    PartLayers,
     /// The caller asked to stop the render.
     #[error("stopped before the picture was finished")]
     Stopped,

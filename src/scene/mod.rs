@@ -22,7 +22,6 @@ mod duplicates;
 mod frame;
 pub mod material;
 mod material_table;
-mod parts;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
@@ -34,7 +33,6 @@ pub use appearance::{Appearance, Colors};
 pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
-pub use parts::{PartExtent, ScenePart, SceneParts};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 pub use whole::Whole;
 

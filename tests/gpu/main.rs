@@ -26,7 +26,6 @@ mod film_parts;
 mod host;
 mod lens;
 mod light;
-mod light_parts;
 mod lit;
 mod parts;
 mod paths;
@@ -58,7 +57,6 @@ fn main() {
             async_forms::trials(),
             lens::trials(),
             light::trials(),
-            light_parts::trials(),
             pictures::trials(),
             parts::trials(),
             paths::trials(),

@@ -1,7 +1,7 @@
 //! `pinhole job part`: renders units, each into a file that appears whole or not at all.
 
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -12,7 +12,7 @@ use super::manifest::VERSION;
 use super::part_file::{self, Header, Pictures, payload};
 use super::recipe::{Recipe, check_same};
 use super::units::parse_list;
-use crate::bricks::{Look, nearest_of};
+use crate::bricks::nearest_of;
 use crate::deadline::Deadline;
 use crate::device::Opened;
 use crate::failure::Failure;
@@ -118,8 +118,7 @@ impl Work<'_> {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
             let views = Views::of(input);
             check_device(input, &views, layers, opened)?;
-            let nearest =
-                nearest_of(&bricks, *first..*end, Look::of(input), &views, layers, opened)?;
+            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
             Pictures::Depth(nearest)
         } else {
             let tile = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
@@ -139,7 +138,7 @@ impl Work<'_> {
 }
 
 /// Writes the file of a part, whole or not at all.
-fn write(path: &Path, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
+fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
     let file = unnamed_with(path, |file| {
         let mut out = BufWriter::new(file);
         part_file::write(header, pictures, &mut out)?;

@@ -17,7 +17,7 @@ use crate::frames::{Known, Overview, Ready, ready};
 use crate::input::Input;
 use crate::output::{name_all, unnamed};
 use crate::speak::tell;
-use crate::{progress, threads};
+use crate::{bricks, progress, threads};
 use pinhole::image::{Layer, LayerSet};
 
 /// What is known of the pictures when the first was read.
@@ -52,6 +52,9 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let size = [input.film.width(), input.film.height()];
     let tiles = parse_tiles(&args.tiles, size)?;
     let groups = groups(args.by_depth, &input, pictures.is_some())?;
+    if let Some(file) = &input.bricks {
+        bricks::check_without_light(file, &input.settings)?;
+    }
     let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
     let stored = overview.as_ref().map(packed);
     let sampling = input.settings.sampling;

@@ -144,14 +144,12 @@ fn assert_refused(folder: &Folder, run: &Run, code: i32, says: &str) {
 fn what_bricks_cannot_do_is_refused_with_a_reason() {
     let folder = sorted("a.npy", &f32_array(&spheres(50, [0.0; 3])), "--bricks 4");
     let cases = [
-        ("render a.bricks -o out.png --style studio", "light in bricks needs an adapter"),
+        ("render a.bricks -o out.png --style studio", "light needs all spheres in memory"),
         ("render a.bricks -o out.png --samples 4", "--samples applies only to"),
-        ("render a.bricks -o out.png --integrator path", "light in bricks needs an adapter"),
-        ("render a.bricks -o out.png --style default --time 2s", "--time: all samples"),
-        ("render a.bricks -o out.png --style default --noise 0.1", "--noise: all samples"),
+        ("render a.bricks -o out.png --integrator path", "choose --style fast, or render the data"),
         (
-            "render a.bricks -o out.png --style default --keep-partial",
-            "--keep-partial: all samples",
+            "job split a.bricks -o job --tiles 2x2 --style studio",
+            "light needs all spheres in memory",
         ),
         ("render a.bricks -o out.png --color-by index", "--color-by needs columns"),
         ("render a.bricks -o out.png --select x>0", "--select needs columns"),

@@ -124,15 +124,15 @@ impl Headless {
 }
 
 /// The inputs of a lit picture.
-pub(in crate::gpu) struct Work<'a> {
-    pub(in crate::gpu) headless: &'a Headless,
-    pub(in crate::gpu) passes: &'a LitPasses,
-    pub(in crate::gpu) scenes: LitScene<'a>,
-    pub(in crate::gpu) view: &'a View<'a>,
-    pub(in crate::gpu) settings: &'a RenderSettings,
-    pub(in crate::gpu) lighting: &'a LightingData,
+struct Work<'a> {
+    headless: &'a Headless,
+    passes: &'a LitPasses,
+    scenes: LitScene<'a>,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+    lighting: &'a LightingData,
     /// Maximum number of directions of ambient light that one dispatch searches.
-    pub(in crate::gpu) at_once: u32,
+    at_once: u32,
 }
 
 impl Work<'_> {
@@ -245,7 +245,7 @@ impl Work<'_> {
 
 /// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
 async fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
-    frame.record_copy_spent(flow.encoder(), 0);
+    frame.record_copy_spent(flow.encoder());
     flow.finish(&[frame.spent_back.buffer()]).await?;
     frame.read_spent()
 }
