@@ -5,7 +5,6 @@
 //! the spheres that decide what a camera frames; `sort` writes the file, `file` says what it holds, `read` reads it, and
 //! `picture` renders one brick after the other.
 
-mod array;
 mod cuts;
 mod file;
 mod info;

@@ -11,11 +11,10 @@ use pinhole::load::Format as DataFormat;
 use pinhole::scene::{Colors, Scene, Whole};
 
 use super::EXTENSION;
-use super::array::Array;
 use super::cuts::Sample;
 use super::file::{COLOR, Header, ID, SPHERE, StoredColors, WholeBits};
 use super::outer::{Cells, Outer};
-use super::stream::Stream;
+use super::stream::{Array, Stream};
 use super::writer::{self, Writer};
 use crate::args::ViewArgs;
 use crate::camera::CameraArgs;

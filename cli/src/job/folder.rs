@@ -7,7 +7,6 @@ use anyhow::{Context, anyhow};
 use pinhole::color_by::JoinedKeys;
 use rayon::prelude::*;
 
-use super::digest;
 use super::files;
 use super::manifest::{Manifest, NAME, StoredOverview};
 use super::part_file::{self, Header, Problem};
@@ -92,7 +91,7 @@ impl Folder {
     /// Refuses inputs that are not those that were split. The current folder must be that of [`Folder::enter`].
     pub(super) fn check_inputs(&self) -> Result<(), Failure> {
         for file in &self.manifest.files {
-            let found = digest::of_file(Path::new(&file.path));
+            let found = files::digest(Path::new(&file.path));
             let found = found.with_context(|| format!("{}: cannot be read", file.path))?;
             if found != (file.bytes, file.sha256.clone()) {
                 return Err(Failure::Job(anyhow!(
@@ -110,7 +109,7 @@ impl Folder {
         let path = self.path.join(OVERVIEW);
         let bytes = files::read(&path)
             .with_context(|| format!("{}: cannot be read; split the job again", path.display()))?;
-        let overview = (digest::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
+        let overview = (files::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
         let damaged = || anyhow!("{}: this file is damaged; split the job again", path.display());
         Ok(Some(overview.flatten().ok_or_else(damaged)?))
     }
@@ -122,7 +121,7 @@ pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
     let numbers = range.iter().flatten().chain(overview.spheres.as_flattened());
     let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
     let stored = StoredOverview {
-        sha256: digest::hex(&bytes),
+        sha256: files::hex(&bytes),
         spheres: overview.spheres.len(),
         added: overview.added,
         has_range: range.is_some(),

@@ -6,8 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::digest::{self, InputFile};
-use super::files;
+use super::files::{self, InputFile};
 use super::units::{Rectangle, tile};
 use pinhole::image::{Layer, LayerSet};
 
@@ -103,7 +102,7 @@ impl Manifest {
 
     fn digest(&self) -> Result<String> {
         let unsealed = Self { sha256: String::new(), ..self.clone() };
-        Ok(digest::hex(serde_json::to_string(&unsealed)?.as_bytes()))
+        Ok(files::hex(serde_json::to_string(&unsealed)?.as_bytes()))
     }
 
     /// Reads the file of a job.

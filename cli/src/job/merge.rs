@@ -118,8 +118,8 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
     writing.write(&wanted, all.len(), adapter, |written| {
         for (place, number) in all.iter().enumerate() {
             written.begin();
-            let parts = picture(folder, place)?;
-            let image = finish_joined(parts, &input.settings, writing.layers, &opened)?;
+            let joined = picture(folder, place)?;
+            let image = finish_joined(joined, &input.settings, writing.layers, &opened)?;
             if !written.send(*number, image) {
                 break;
             }
@@ -234,8 +234,8 @@ fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Failure> {
     for unit in place * tiles..(place + 1) * tiles {
         let (_, (origin, _)) = manifest.unit(unit);
         let tile = tile(folder, unit)?;
-        for (whole, part) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
-            whole.put(part, origin).map_err(|error| Failure::Job(error.into()))?;
+        for (whole, tile) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
+            whole.put(tile, origin).map_err(|error| Failure::Job(error.into()))?;
         }
     }
     Ok(whole)

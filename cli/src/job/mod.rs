@@ -4,7 +4,6 @@
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
-mod digest;
 mod files;
 mod folder;
 mod manifest;
@@ -13,16 +12,19 @@ mod part;
 mod part_file;
 mod recipe;
 mod split;
-mod status;
 mod units;
 
 use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::{Args, Subcommand};
 
+use self::folder::Folder;
 use super::args::RenderArgs;
 use super::failure::Failure;
 use super::frames::Raw;
+use super::speak::answer;
+use super::threads;
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the job failed, or parts are missing, damaged or of another job; \
     2 wrong usage, such as an INDEX that the job has not; 5 the device was lost or did not answer, or the time of \
@@ -142,7 +144,17 @@ pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
     match &args.command {
         JobCommand::Split(args) => split::run(args),
         JobCommand::Part(args) => part::run(args),
-        JobCommand::Status(args) => status::run(args),
+        JobCommand::Status(args) => status(args),
         JobCommand::Merge(args) => merge::run(args),
     }
+}
+
+/// Lists the units that are to be rendered.
+fn status(args: &StatusArgs) -> Result<(), Failure> {
+    let folder = Folder::open(&args.job)?;
+    threads::start()?;
+    let found = if args.check { folder.check() } else { folder.glance() };
+    let missing = (0..found.len()).filter(|unit| found[*unit].is_err());
+    let text: String = missing.map(|unit| format!("{unit}\n")).collect();
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }

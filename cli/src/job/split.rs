@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 
 use super::SplitArgs;
-use super::digest::{self, InputFile};
-use super::files;
+use super::files::{self, InputFile};
 use super::folder::{Folder, OVERVIEW, PARTS, packed};
 use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
 use super::recipe::Recipe;
@@ -218,7 +217,7 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
         if files.iter().any(|file| file.path == name) {
             continue;
         }
-        let (bytes, sha256) = digest::of_file(path).with_context(cannot)?;
+        let (bytes, sha256) = files::digest(path).with_context(cannot)?;
         files.push(InputFile { path: name.to_owned(), bytes, sha256 });
     }
     Ok(files)

@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::bricks::{f32_array, spheres};
 use crate::job::{missing, part};
-use crate::support::{Folder, Run};
+use crate::support::Folder;
 
 const LAYERS: [&str; 4] = ["depth", "normal", "position", "id"];
 
@@ -40,13 +40,6 @@ fn assert_merged(folder: &Folder) {
     }
 }
 
-#[track_caller]
-fn assert_refused(run: &Run, code: i32, says: &str) {
-    assert_eq!(run.code, code, "{}", run.stderr);
-    assert!(run.stderr.starts_with("error: ") && run.stderr.contains(says), "{}", run.stderr);
-    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
-}
-
 #[test]
 fn merged_groups_are_the_same_bytes() {
     let folder = folder();
@@ -71,12 +64,12 @@ fn missing_damaged_and_foreign_groups_are_named() {
     split(&folder, 4);
     folder.run("job part job 0-2 -q").succeeded();
     let merge = || folder.run("job merge job -o merged.png -q");
-    assert_refused(&merge(), 1, "missing 3; render them again with --array=3");
+    merge().refused(1, "missing 3; render them again with --array=3");
     folder.run("job part job 3 -q").succeeded();
     let good = fs::read(part(&folder, 2)).unwrap();
     fs::write(part(&folder, 2), &good[..good.len() - 9]).unwrap();
     fs::copy(part(&folder, 0), part(&folder, 1)).unwrap();
-    assert_refused(&merge(), 1, "damaged 2, of another job 1");
+    merge().refused(1, "damaged 2, of another job 1");
     folder.run("job part job 0-3 -q").succeeded();
     assert_merged(&folder);
     // A part of the same groups of another file.
@@ -86,13 +79,9 @@ fn missing_damaged_and_foreign_groups_are_named() {
     split(&other, 4);
     other.run("job part job 0 -q").succeeded();
     fs::copy(part(&other, 0), part(&folder, 0)).unwrap();
-    assert_refused(&merge(), 1, "of another job 0");
+    merge().refused(1, "of another job 0");
     fs::copy(other.path("a.bricks"), folder.path("a.bricks")).unwrap();
-    assert_refused(
-        &folder.run("job part job 0"),
-        1,
-        "this file has changed since the job was split",
-    );
+    folder.refuses("job part job 0", 1, "this file has changed since the job was split");
 }
 
 #[test]
@@ -108,8 +97,6 @@ fn what_groups_cannot_be_is_refused_with_a_reason() {
         ("a.bricks --by-depth 2 --tiles 2x2", "cannot be used with"),
     ];
     for (flags, says) in cases {
-        let run = folder.run(&format!("job split {flags} -o no --backend cpu"));
-        assert_refused(&run, 2, says);
-        assert!(!folder.path("no").exists(), "{flags}");
+        folder.refuses(&format!("job split {flags} -o no --backend cpu"), 2, says);
     }
 }
