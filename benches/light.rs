@@ -57,7 +57,7 @@ fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Ren
     RenderSettings {
         integrator: Integrator::Studio(studio),
         lights,
-        sampling: Sampling { samples, filter: PixelFilter::Box, ..Sampling::default() },
+        sampling: Sampling { samples, seed: 0, filter: PixelFilter::Box },
         ..RenderSettings::studio()
     }
 }

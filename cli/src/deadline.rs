@@ -2,58 +2,56 @@
 
 #[cfg(feature = "gpu")]
 use std::sync::OnceLock;
-#[cfg(feature = "gpu")]
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use super::failure::DEVICE;
 use super::progress;
 use super::speak::tell;
 
-/// The time that opening and testing a device may take, and what is called with the reason when it took longer.
-#[cfg(feature = "gpu")]
-static OPENING: OnceLock<(Duration, Box<Late>)> = OnceLock::new();
+/// Work that must end in time. Dropping it says that the work has ended.
+pub(super) struct Deadline {
+    _ended: Sender<()>,
+}
 
-#[cfg(feature = "gpu")]
-type Late = dyn Fn(&str) + Send + Sync;
+impl Deadline {
+    /// Ends the program after this time, with the exit code for devices that do not answer and with what did not happen.
+    pub(super) fn new(limit: Duration, what: String) -> Self {
+        let (ended, is_ended) = channel();
+        let watch = move || {
+            if is_ended.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+                give_up(&format!("{what} within {} s", limit.as_secs_f64()));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().spawn(watch) {
+            tell(format_args!(
+                "note: --timeout has no effect, because a thread cannot be started: {error}"
+            ));
+        }
+        Self { _ended: ended }
+    }
+}
 
-/// Limits the time of each [`opening`] from now on. `late` is called before the program ends.
+/// The time that opening and testing a device may take.
 #[cfg(feature = "gpu")]
-pub(super) fn limit_opening(limit: Duration, late: impl Fn(&str) + Send + Sync + 'static) {
-    let _ = OPENING.set((limit, Box::new(late)));
+static OPENING: OnceLock<Duration> = OnceLock::new();
+
+/// Limits the time of each [`opening`] from now on.
+#[cfg(feature = "gpu")]
+pub(super) fn limit_opening(limit: Duration) {
+    let _ = OPENING.set(limit);
 }
 
 /// Opens a device, and ends the program if that takes longer than it may.
 #[cfg(feature = "gpu")]
 pub(super) fn opening<T>(open: impl FnOnce() -> T) -> T {
-    let Some((limit, late)) = OPENING.get() else {
-        return open();
-    };
-    let (opened, is_opened) = channel::<()>();
-    let watch = move || {
-        if is_opened.recv_timeout(*limit) == Err(RecvTimeoutError::Timeout) {
-            let why = format!("no device was ready within {} s", limit.as_secs_f64());
-            late(&why);
-            give_up(&why);
-        }
-    };
-    if let Err(error) = std::thread::Builder::new().spawn(watch) {
-        say_unlimited(&error);
-    }
-    let result = open();
-    drop(opened);
-    result
-}
-
-/// Says that nothing ends a driver that hangs.
-pub(super) fn say_unlimited(error: &std::io::Error) {
-    tell(format_args!(
-        "note: --timeout has no effect, because a thread cannot be started: {error}"
-    ));
+    let limit = OPENING.get();
+    let _deadline = limit.map(|limit| Deadline::new(*limit, "no device was ready".to_owned()));
+    open()
 }
 
 /// Ends the program with the exit code for devices that do not answer.
-pub(super) fn give_up(why: &str) -> ! {
+fn give_up(why: &str) -> ! {
     progress::close();
     tell(format_args!("error: {why}; the device may hang: try again"));
     // What a driver does at the end of a process may hang as well.

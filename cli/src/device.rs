@@ -260,9 +260,6 @@ fn of_kind(error: &GpuError, message: anyhow::Error) -> Failure {
     match error {
         GpuError::Stopped => Failure::Stopped,
         GpuError::DeviceLost { .. } | GpuError::Timeout { .. } => Failure::Device(message),
-        GpuError::OutOfMemory | GpuError::Limit { .. } | GpuError::HostMemory { .. } => {
-            Failure::Memory(message)
-        }
         _ => Failure::Job(message),
     }
 }

@@ -38,9 +38,6 @@ pub(super) enum Failure {
     /// The device was lost or did not answer in time.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "without a device there is none"))]
     Device(anyhow::Error),
-    /// A device or the machine has not enough memory for a picture, or a buffer exceeds a limit.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only devices are asked again"))]
-    Memory(anyhow::Error),
     /// The user stopped it while a device was at work.
     Stopped,
     /// The user stopped it after some of several files were complete, as the message says.
@@ -59,10 +56,7 @@ impl Failure {
             | Self::Job(error)
             | Self::CheckFailed(error)
             | Self::Undecided(error)
-            | Self::Device(error)
-            | Self::Memory(error) => {
-                format!("{error:#}")
-            }
+            | Self::Device(error) => format!("{error:#}"),
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
             Self::StoppedBetween(message) => (*message).to_owned(),
         }
@@ -71,7 +65,7 @@ impl Failure {
     pub(super) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Usage(_) => USAGE.into(),
-            Self::Job(_) | Self::Memory(_) => FAILED.into(),
+            Self::Job(_) => FAILED.into(),
             Self::CheckFailed(_) => CHECK_FAILED.into(),
             Self::Undecided(_) => UNDECIDED.into(),
             Self::Device(_) => DEVICE.into(),

@@ -42,7 +42,7 @@ use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, LayerSet, SampleMean};
+use pinhole::image::{Image, LayerSet};
 #[cfg(feature = "gpu")]
 use pinhole::render::Watch;
 use pinhole::render::{Picture, RenderSettings};
@@ -277,14 +277,7 @@ fn render_views(
 ) -> Result<Views<Image>, Failure> {
     check_device(input, views, layers, opened)?;
     if let Some(bricks) = &input.bricks {
-        stop_rule.check_for_bricks()?;
         return bricks::render(bricks, input, views, layers, opened);
-    }
-    if stop_rule.samples_per_part(input.settings.sampling.samples).is_some() {
-        let of_cpu = opened.adapter().is_none().then_some(SampledPicture::BYTES_PER_PIXEL);
-        let sums = of_cpu.unwrap_or(0) + SampleMean::BYTES_PER_PIXEL;
-        let extra = views.extra_bytes_per_pixel(layers) + sums + layers.bytes_per_pixel();
-        memory::check(&views.film(), &input.size_from, layers, extra)?;
     }
     match opened {
         #[cfg(feature = "gpu")]
@@ -352,10 +345,7 @@ fn on_cpu(
         views.try_each(|view| {
             let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
             let watch = &mut |progress: &_| watching.decide(progress);
-            let picture = match stop_rule.samples_per_part(settings.sampling.samples) {
-                Some(n) => cpu::render_in_parts(&structure, view, settings, layers, n, watch),
-                None => cpu::render_watched(&structure, view, settings, layers, watch),
-            };
+            let picture = cpu::render_watched(&structure, view, settings, layers, watch);
             too_short = watching.too_short();
             Ok((picture?, watching))
         })
@@ -412,10 +402,7 @@ fn on_gpu(
             views.try_each(|view| {
                 let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = match stop_rule.samples_per_part(settings.sampling.samples) {
-                    Some(n) => headless.render_in_parts(&buffers, view, settings, layers, n, watch),
-                    None => headless.render_uploaded(&buffers, view, settings, layers, watch),
-                };
+                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
                 too_short = watching.too_short();
                 Ok((picture?, watching))
             })

@@ -10,7 +10,7 @@ use pinhole::style::Style;
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
     /// Write the whole scene file that this command means to standard output, and render nothing
-    #[arg(long, conflicts_with_all = ["output", "time", "noise", "keep_partial", "samples_per_part", "layers", "stereo"])]
+    #[arg(long, conflicts_with_all = ["output", "time", "noise", "keep_partial", "layers", "stereo"])]
     pub(super) print_scene: bool,
     /// Say nothing but warnings and errors: no line about the picture, no notes, no progress
     #[arg(short, long)]

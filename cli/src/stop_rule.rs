@@ -1,4 +1,4 @@
-//! When rendering stops: after a time, at a level of noise, or at a signal; and in which parts samples are taken.
+//! When rendering stops: after a time, at a level of noise, or at a signal.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -22,17 +22,6 @@ pub(super) struct StopArgs {
     /// sample. A second Ctrl-C ends without a picture
     #[arg(long)]
     pub(super) keep_partial: bool,
-    /// Take the samples in parts of N and put the means of the parts together: the bytes are those of a job that was
-    /// split with the same flag, and those without it where N is at least the number of samples
-    #[arg(
-        long,
-        help_heading = HEADING,
-        value_name = "N",
-        allow_hyphen_values = true,
-        value_parser = clap::value_parser!(u32).range(1..),
-        conflicts_with_all = ["time", "noise", "keep_partial"]
-    )]
-    pub(super) samples_per_part: Option<u32>,
 }
 
 impl StopArgs {
@@ -54,7 +43,6 @@ pub(super) struct StopRule {
     time: Option<Duration>,
     noise: Option<f64>,
     keep_partial: bool,
-    samples_per_part: Option<u32>,
 }
 
 /// Samples that a picture needs before its noise counts. With fewer samples, the estimate may be low by chance.
@@ -62,7 +50,7 @@ const LEAST_SAMPLES: u32 = 16;
 
 impl StopRule {
     pub(super) fn new(args: &StopArgs) -> Result<Self, Failure> {
-        let &StopArgs { noise, keep_partial, samples_per_part, ref time } = args;
+        let &StopArgs { noise, keep_partial, ref time } = args;
         if let Some(noise) = noise
             && !(noise.is_finite() && noise > 0.0)
         {
@@ -71,7 +59,7 @@ impl StopRule {
             )));
         }
         let time = time.as_deref().map(parse_time).transpose()?;
-        Ok(Self { time, noise, keep_partial, samples_per_part })
+        Ok(Self { time, noise, keep_partial })
     }
 
     /// Returns the flag that leaves the number of samples open, if there is one.
@@ -84,36 +72,15 @@ impl StopRule {
         self.keep_partial
     }
 
-    /// The most samples of a part, if there are several parts of so many samples.
-    pub(super) fn samples_per_part(&self, samples: u32) -> Option<u32> {
-        self.samples_per_part.filter(|most| *most < samples)
-    }
-
-    /// A flag other than those of [`StopRule::open_end`], if there is one.
-    fn other_flag(&self) -> Option<&'static str> {
-        let parts = self.samples_per_part.map(|_| "--samples-per-part");
-        self.keep_partial.then_some("--keep-partial").or(parts)
-    }
-
-    /// Refuses flags that do not apply to files of bricks.
-    pub(super) fn check_for_bricks(&self) -> Result<(), Failure> {
-        match self.open_end().or(self.other_flag()) {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag}: all samples of a file of bricks are complete at the same time; remove it, and choose --samples"
-            ))),
-            None => Ok(()),
-        }
-    }
-
     /// Refuses flags that do not apply to a picture without light.
     pub(super) fn check_without_light(&self) -> Result<(), Failure> {
-        match self.other_flag() {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag} applies only to lit pictures, but this one has one sample per pixel; remove it, \
+        if self.keep_partial {
+            return Err(Failure::usage(
+                "--keep-partial applies only to lit pictures, but this one has one sample per pixel; remove it, \
                  or ask for light, for example with --integrator studio",
-            ))),
-            None => Ok(()),
+            ));
         }
+        Ok(())
     }
 }
 

@@ -133,14 +133,7 @@ def _run(*arguments: str) -> str:
 
 def _missing(job: str) -> list[int]:
     """The units of a job that have no valid part."""
-    import json
-
-    ranges = json.loads(_run("job", "status", job, "--json", "--check"))["missing"]
-    units: list[int] = []
-    for part in filter(None, ranges.split(",")):
-        first, _, last = part.partition("-")
-        units.extend(range(int(first), int(last or first) + 1))
-    return units
+    return [int(unit) for unit in _run("job", "status", job, "--missing", "--check").split()]
 
 
 def _versions() -> tuple[str, str]:

@@ -1,6 +1,6 @@
 //! Why no picture is rendered.
 
-use crate::image::{ImageTooLarge, NoMean};
+use crate::image::ImageTooLarge;
 use crate::render::SettingsError;
 
 /// Why no picture is rendered.
@@ -13,9 +13,6 @@ pub enum RenderError {
     /// There is not enough memory for the image.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
-    /// The pictures of the parts of the samples have no mean.
-    #[error(transparent)]
-    Mean(#[from] NoMean),
     /// The caller ended the work.
     #[error("rendering was stopped")]
     Stopped,

@@ -10,8 +10,7 @@ use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
 use crate::render::{
-    Decision, InParts, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch,
-    to_the_end,
+    Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch,
 };
 
 mod denoise;
@@ -87,29 +86,6 @@ pub fn render_watched<'a>(
     SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
 }
 
-/// Renders a lit picture in parts of `samples_per_part` samples, each a picture of its own, and takes the mean of all as
-/// [`SampleMean`](crate::image::SampleMean) does: these are the bits of parts that several machines render. Else it is like
-/// [`render_watched`], except that the picture cannot be finished early.
-///
-/// # Errors
-/// As for [`render_watched`].
-pub fn render_in_parts<'a>(
-    search: impl Into<Search<'a>>,
-    view: &View<'_>,
-    settings: &RenderSettings,
-    layers: LayerSet,
-    samples_per_part: u32,
-    watch: &mut Watch<'_>,
-) -> Result<Picture, RenderError> {
-    let search = search.into();
-    let mut whole = InParts::new(settings.sampling.samples);
-    for part in settings.unfinished_parts(samples_per_part) {
-        let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
-        let picture = render_watched(search, view, &part, settings.layers_for(layers), watch)?;
-        whole.add(picture)?;
-    }
-    let picture = whole.picture().ok_or(RenderError::Stopped)?;
-    Ok(Picture { image: finish(picture.image, settings, layers), ..picture })
 }
 
 /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is

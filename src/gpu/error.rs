@@ -7,7 +7,7 @@ use crate::camera::CameraKind;
 use crate::camera::film::{Film, FilmError};
 use crate::gpu::edit::ShaderEdit;
 use crate::image::denoise::MissingGuide;
-use crate::image::{DoesNotFit, ImageTooLarge, NoMean};
+use crate::image::{DoesNotFit, ImageTooLarge};
 use crate::render::SettingsError;
 use crate::scene::SceneError;
 
@@ -125,26 +125,6 @@ pub enum GpuError {
     /// The picture of a part does not fit into the whole.
     #[error(transparent)]
     DoesNotFit(#[from] DoesNotFit),
-    /// A part of a scene cannot be read, or is not what it was said to be.
-    #[error("part {part} of the scene cannot be read: {message}")]
-    Part {
-        /// The number of the part, from 0 on.
-        part: usize,
-        /// The reason.
-        message: String,
-    },
-    /// A scene of parts has spheres of which all would have to be known at once.
-    #[error(
-        "with light, the spheres of a scene that is read in parts must be of one material that is opaque and does not \
-         shine; render a scene that fits into memory"
-    )]
-    PartMaterials,
-    /// The picture that light is added to lacks layers, or has others or another size.
-    #[error(
-        "the picture that light is added to must be as large as the film and have the layers of \
-         `RenderSettings::layers_for`"
-    )]
-    PartLayers,
     /// The caller asked to stop the render.
     #[error("stopped before the picture was finished")]
     Stopped,
@@ -255,9 +235,6 @@ pub enum GpuError {
     /// The picture does not fit into host memory.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
-    /// The pictures of the parts of the samples have no mean.
-    #[error(transparent)]
-    Mean(#[from] NoMean),
     /// The scene does not fit into host memory.
     #[error(transparent)]
     Scene(#[from] SceneError),

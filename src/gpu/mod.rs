@@ -35,7 +35,6 @@ pub use error::GpuError;
 pub use headless::Headless;
 pub use headless::device_limits::DeviceLimits;
 pub use headless::lit_recording::{EachSample, LitPart};
-pub use headless::parts::PartsOptions;
 pub use headless::plan::{HostPeak, PictureRequest, RenderPlan, StructurePlans};
 pub use headless::progress::{
     Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,

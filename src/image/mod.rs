@@ -8,13 +8,11 @@ mod layer;
 pub(crate) mod outline;
 mod parts;
 mod rows;
-mod sample_mean;
 pub mod tone;
 
 pub use layer::{Layer, LayerSet, UnknownLayer};
 pub use parts::DoesNotFit;
 pub(crate) use rows::{Averages, RowMut};
-pub use sample_mean::{NoMean, SampleMean};
 
 /// The id of a pixel whose ray hit nothing.
 pub const NO_ID: u32 = u32::MAX;

@@ -202,17 +202,14 @@ fn check_brightness(
 }
 
 impl Sampling {
-    /// Checks that the number of samples and the number of the first are in their ranges.
+    /// Checks that the number of samples is in its range.
     ///
     /// # Errors
-    /// Returns an error if one of them is out of range; the error names the first.
+    /// Returns an error if the number of samples is out of range.
     pub fn check(&self) -> Result<(), RangeError> {
         let most = f64::from(Self::MAX_SAMPLES);
         let range = "from 1 to 16777216";
-        RangeError::unless_within("samples", self.samples.into(), [1.0, most], range)?;
-        let last = most - f64::from(self.samples);
-        let range = "at most 16777216 less the number of samples";
-        RangeError::unless_within("first", self.first.into(), [0.0, last], range).map(drop)
+        RangeError::unless_within("samples", self.samples.into(), [1.0, most], range).map(drop)
     }
 }
 

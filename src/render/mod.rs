@@ -32,7 +32,7 @@ pub use integrator::{Integrator, LightSampling, PathTracing, PrimarySettings, Sh
 pub use nearest::{Nearest, NotOfOneScene};
 pub use notes::SettingsNote;
 pub use progress::{Decision, Picture, Progress, Watch};
-pub(crate) use progress::{InParts, Totals, batch, to_the_end};
+pub(crate) use progress::{Totals, batch};
 pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
 /// All settings of a picture apart from the scene and the view.
@@ -63,10 +63,6 @@ pub struct RenderSettings {
 pub struct Sampling {
     /// The number of samples for each pixel: 1 to 2²⁴.
     pub samples: u32,
-    /// The number of the first sample, usually 0. Samples with other numbers have other random numbers, so that several
-    /// machines can take the samples of one picture; [`crate::image::SampleMean`] puts their pictures together. Scene
-    /// files describe whole pictures and do not have it.
-    pub first: u32,
     /// Seed of the random numbers: another seed gives different noise.
     pub seed: u32,
     /// The filter that places samples around the centre of a pixel.
@@ -76,23 +72,12 @@ pub struct Sampling {
 impl Sampling {
     /// The largest number of samples for each pixel, 2²⁴.
     pub const MAX_SAMPLES: u32 = 1 << 24;
-
-    /// The same samples in parts of `samples_per_part`, of which the last may have fewer. With 0, there is one part.
-    #[must_use]
-    pub fn parts(self, samples_per_part: u32) -> impl ExactSizeIterator<Item = Self> {
-        let most = if samples_per_part == 0 { self.samples.max(1) } else { samples_per_part };
-        (0..self.samples.div_ceil(most).max(1)).map(move |part| {
-            let done = part * most;
-            let samples = most.min(self.samples - done);
-            Self { first: self.first.saturating_add(done), samples, ..self }
-        })
-    }
 }
 
 impl Default for Sampling {
     /// Sixteen samples, as for a picture with lighting.
     fn default() -> Self {
-        Self { samples: 16, first: 0, seed: 0, filter: PixelFilter::default() }
+        Self { samples: 16, seed: 0, filter: PixelFilter::default() }
     }
 }
 
@@ -202,13 +187,6 @@ impl RenderSettings {
             studio.outline = None;
         }
         settings
-    }
-
-    /// The settings of pictures with parts of the samples, without what looks at neighbours of pixels.
-    pub(crate) fn unfinished_parts(&self, samples_per_part: u32) -> impl Iterator<Item = Self> {
-        let unfinished = self.unfinished();
-        let parts = self.sampling.parts(samples_per_part);
-        parts.map(move |sampling| Self { sampling, ..unfinished.clone() })
     }
 
     /// The layers that rendering needs, including those that are wanted in the result: outlines and denoising are guided

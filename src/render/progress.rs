@@ -1,6 +1,6 @@
 //! The progress of a render, the decisions of its caller, and its result: the same on a device and on the CPU.
 
-use crate::image::{Image, NoMean, SampleMean};
+use crate::image::Image;
 
 /// The progress of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,53 +49,6 @@ pub struct Picture {
     /// Number of camera rays that hit something, over all samples, weighted by opacity. It is `None` for pictures of
     /// primary rays, whose hits are not counted.
     pub hits: Option<f64>,
-}
-
-/// The mean of pictures of parts of the samples, which are rendered one after the other.
-pub(crate) struct InParts {
-    mean: Option<SampleMean>,
-    hits: f64,
-    total: u32,
-}
-
-impl InParts {
-    /// `total` is the number of samples of all parts.
-    pub(crate) fn new(total: u32) -> Self {
-        Self { mean: None, hits: 0.0, total }
-    }
-
-    /// The progress of all parts, of which the next has this progress.
-    pub(crate) fn progress(&self, of_part: &Progress) -> Progress {
-        let done = self.mean.as_ref().map_or(0, SampleMean::samples);
-        let part = f64::from(of_part.total) * of_part.part + f64::from(done);
-        let samples = done + of_part.samples;
-        Progress { samples, total: self.total, part: part / f64::from(self.total), noise: None }
-    }
-
-    /// Adds the next part.
-    pub(crate) fn add(&mut self, part: Picture) -> Result<(), NoMean> {
-        self.hits += part.hits.unwrap_or_default();
-        match &mut self.mean {
-            None => self.mean = Some(SampleMean::new(part.image, part.samples)),
-            Some(mean) => mean.add(&part.image, part.samples)?,
-        }
-        Ok(())
-    }
-
-    /// The picture, before anything looks at neighbours of pixels; `None` if there is no part.
-    pub(crate) fn picture(self) -> Option<Picture> {
-        let mean = self.mean?;
-        let samples = mean.samples();
-        Some(Picture { image: mean.into_image(), samples, noise: None, hits: Some(self.hits) })
-    }
-}
-
-/// What a watch may say to a picture of which all samples are taken: it goes on or stops.
-pub(crate) fn to_the_end(decision: Decision) -> Decision {
-    match decision {
-        Decision::Stop => Decision::Stop,
-        Decision::GoOn | Decision::MeasureNoise | Decision::Finish => Decision::GoOn,
-    }
 }
 
 /// Sums over all pixels.

@@ -22,7 +22,6 @@ mod duplicates;
 mod error;
 mod frame;
 pub mod material;
-mod parts;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
@@ -35,7 +34,6 @@ pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
-pub use parts::{PartExtent, ScenePart, SceneParts};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 pub use whole::Whole;
 

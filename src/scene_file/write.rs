@@ -152,7 +152,7 @@ fn output(encoding: &Encoding) -> String {
 }
 
 fn sampling(sampling: &Sampling, denoise: bool) -> String {
-    let Sampling { samples, first: _, seed, filter } = sampling;
+    let Sampling { samples, seed, filter } = sampling;
     let filter = filter.name();
     format!(
         "\n[sampling]\nsamples = {samples}\nseed = {seed}\nfilter = \"{filter}\"\ndenoise = {denoise}"

@@ -45,6 +45,11 @@ mkdir one
 # shellcheck disable=SC2086
 "$program" render a.xyz $flags -o one/m.apng -q
 
+# What the recipes of docs/scale.md call `pinhole`.
+page=$OLDPWD/../../docs/scale.md
+mkdir bin
+ln -s "$program" bin/pinhole
+
 # same FOLDER: compares all files with those of one machine.
 same() {
     local count
@@ -59,13 +64,6 @@ split() {
     "$program" job split a.xyz $flags --tiles 2x2 --layer depth -o "$1" -q
 }
 
-# merge JOB FOLDER: pictures and layers were merged by the scheduler's own job where there is one.
-merge() {
-    mkdir -p "$2"
-    "$program" job merge "$1" --layer depth="$2"/d%03d.npy -o "$2"/f%03d.png -q
-    "$program" job merge "$1" -o "$2"/m.apng -q
-}
-
 if command -v slurmctld slurmd sbatch munged >/dev/null && [ "$(id -u)" = 0 ]; then
     # shellcheck source=slurm.sh
     . "$OLDPWD/slurm.sh"
@@ -73,16 +71,24 @@ if command -v slurmctld slurmd sbatch munged >/dev/null && [ "$(id -u)" = 0 ]; t
     echo "== Slurm of two nodes: random kills, and a node set down =="
     split killed
     mkdir killed-out
-    submit() { "$program" job submit killed --slurm --units-per-task 8 --layer depth=killed-out/d%03d.npy \
-        -o killed-out/f%03d.png -- --time=10; }
-    submit
+    # submit JOB UNITS AT_ONCE MERGE_FLAGS: the recipe of docs/scale.md, with other numbers.
+    submit() {
+        rm -f JOB
+        ln -s "$1" JOB
+        for name in part submit; do
+            { echo '#!/bin/bash'; sed -n "/^# $name.sh: /,/^\`\`\`/p" "$page" | grep -v '^```'; } >$name.sh
+        done
+        sed -i "s/-n 8/-n $2/; s/%100/%$3/; s|-o movie.apng|$4|" submit.sh
+        PATH=$work/bin:$PATH bash submit.sh
+    }
+    submit killed 8 100 "--layer depth=killed-out/d%03d.npy -o killed-out/f%03d.png"
     killed=0
     end=$((SECONDS + 600))
     down=0
     while [ -n "$(squeue --noheader --name=pinhole-part)" ] && [ "$SECONDS" -lt "$end" ]; do
         sleep "0.$((RANDOM % 4 + 1))"
         # What renders a part now, and not this script.
-        mapfile -t running < <(pgrep -f "job part $work/killed" || true)
+        mapfile -t running < <(pgrep -f "^pinhole job part JOB" || true)
         if [ ${#running[@]} -gt 0 ] && [ "$killed" -lt 40 ]; then
             kill -KILL "${running[RANDOM % ${#running[@]}]}" 2>/dev/null && killed=$((killed + 1))
         fi
@@ -99,8 +105,8 @@ if command -v slurmctld slurmd sbatch munged >/dev/null && [ "$(id -u)" = 0 ]; t
     # Tasks that failed are submitted again, until none is missing.
     for _ in 1 2 3 4 5; do
         wait_for_slurm 600
-        "$program" job status killed --json | grep -q '"complete": true' && [ -e "killed-out/f$(printf %03d $((frames - 1))).png" ] && break
-        submit
+        [ -z "$("$program" job status killed --missing)" ] && [ -e "killed-out/f$(printf %03d $((frames - 1))).png" ] && break
+        submit killed 8 100 "--layer depth=killed-out/d%03d.npy -o killed-out/f%03d.png"
     done
     wait_for_slurm 600
     echo "$killed processes were killed; node n2 was set down: $([ "$down" = 0 ] && echo no || echo yes)"
@@ -114,9 +120,9 @@ if command -v slurmctld slurmd sbatch munged >/dev/null && [ "$(id -u)" = 0 ]; t
         # shellcheck disable=SC2086
         "$program" job split a.xyz ${flags/$PINHOLE_SIZE/320x240} --tiles 2x2 -o "speed$limit" -q
         began=$(date +%s.%N)
-        "$program" job submit "speed$limit" --slurm --units-per-task $((frames / 2)) --array-limit "$limit" 2>/dev/null
+        submit "speed$limit" $((frames / 2)) "$limit" "-o speed$limit.apng"
         wait_for_slurm 3000
-        "$program" job status "speed$limit" --json | grep -q '"complete": true'
+        [ -z "$("$program" job status "speed$limit" --missing)" ]
         times+=("$(awk -v a="$began" -v b="$(date +%s.%N)" 'BEGIN { print b - a }')")
     done
     awk -v one="${times[0]}" -v two="${times[1]}" -v frames="$frames" 'BEGIN {
@@ -134,17 +140,13 @@ else
     skip "Dask: $python has no package dask or pinhole; pip install 'dask[distributed]' and the wheel"
 fi
 
-# The recipes of docs/scale.md, for the number of units that this job has.
-page=$OLDPWD/../../docs/scale.md
-mkdir bin
-ln -s "$program" bin/pinhole
+# The other recipes of docs/scale.md, for the number of units that this job has.
 # shellcheck disable=SC2086
 "$program" job split a.xyz ${flags/--frames :/--frames :5} --tiles 2x2 -o recipe -q
 # shellcheck disable=SC2086
 "$program" render a.xyz ${flags/--frames :/--frames :5} -o recipe.apng -q
 recipe() {
-    rm -f recipe/parts/* movie.apng
-    rm -rf JOB
+    rm -f recipe/parts/* movie.apng JOB
     ln -s recipe JOB
     PATH=$work/bin:$PATH "$@"
     cmp recipe.apng movie.apng
@@ -152,7 +154,7 @@ recipe() {
 }
 if command -v parallel >/dev/null; then
     echo "== GNU parallel =="
-    line=$(grep '^parallel ' "$page" | sed 's/--sshlogin [^ ]* //; s/seq 0 39/seq 0 19/; s/f%04d.png/movie.apng/')
+    line=$(grep '| parallel ' "$page" | sed 's/--sshlogin [^ ]* //; s/f%04d.png/movie.apng/')
     recipe bash -c "$line" 2>/dev/null
 else
     skip "GNU parallel: apt-get install parallel"

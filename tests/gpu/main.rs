@@ -26,7 +26,6 @@ mod film_parts;
 mod host;
 mod lens;
 mod light;
-mod light_parts;
 mod lit;
 mod parts;
 mod paths;
@@ -36,7 +35,6 @@ mod planted;
 mod profile;
 mod ray_query;
 mod replayed;
-mod sample_parts;
 mod scenes;
 mod self_test;
 mod structures;
@@ -59,7 +57,6 @@ fn main() {
             async_forms::trials(),
             lens::trials(),
             light::trials(),
-            light_parts::trials(),
             pictures::trials(),
             parts::trials(),
             paths::trials(),
@@ -74,7 +71,6 @@ fn main() {
             plan::trials(),
             profile::trials(),
             ray_query::trials(),
-            sample_parts::trials(),
             self_test::trials(),
             twin::trials(),
             update::trials(),

@@ -79,7 +79,6 @@ fn readers_and_writers_touch_no_files() {
     let but = ["kernels/tests.rs", "kernels/page_tests.rs", "load/source.rs", "src/lib.rs"];
     assert_absent("src", &["std::fs", "fs::File"], &but);
     let program = [
-        "bricks/array.rs",
         "bricks/read.rs",
         "bricks/stream.rs",
         "read_file.rs",

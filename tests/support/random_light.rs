@@ -327,7 +327,6 @@ impl Random {
                 light_sampling: samplings[self.0.usize(0..3)],
             }),
             sampling: Sampling {
-                first: 0,
                 samples: 2,
                 seed: self.0.u32(..),
                 filter: filters[self.0.usize(0..3)],

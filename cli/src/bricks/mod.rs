@@ -3,14 +3,11 @@
 //!
 //! `stream` reads the spheres in input order, as often as needed; `cuts` divides space by a sample of them; `outer` finds
 //! the spheres that decide what a camera frames; `sort` writes the file, `file` says what it holds, `read` reads it, and
-//! `picture` renders one brick after the other; `light` adds light.
+//! `picture` renders one brick after the other.
 
-mod array;
 mod cuts;
 mod file;
 mod info;
-#[cfg(feature = "gpu")]
-mod light;
 mod outer;
 mod picture;
 mod read;
@@ -19,7 +16,7 @@ mod stream;
 mod writer;
 
 pub(super) use info::lines as info_lines;
-pub(super) use picture::{Look, nearest_of, render};
+pub(super) use picture::{check_without_light, nearest_of, render};
 pub(super) use read::BrickFile;
 pub(super) use sort::{SortArgs, run};
 

@@ -1,10 +1,9 @@
-//! Renders files of bricks by one ray for each pixel: one brick after the other is read, traced and dropped, and of all of
-//! them each pixel keeps what is nearest. Bricks that are hidden by nearer ones are not read.
+//! Renders files of bricks: one brick after the other is read, traced and dropped, and of all of them each pixel keeps what
+//! is nearest. Bricks that are hidden by nearer ones are not read.
 
 use std::ops::Range;
 
 use anyhow::{Context, anyhow};
-use pinhole::LinearRgb;
 use pinhole::camera::View;
 use pinhole::cpu::{self, SearchPlan};
 use pinhole::glam::DVec2;
@@ -17,8 +16,6 @@ use pinhole::render::{Nearest, RenderSettings};
 use pinhole::scene::Scene;
 
 use super::BrickFile;
-#[cfg(feature = "gpu")]
-use super::light::light;
 use crate::device::Opened;
 #[cfg(feature = "gpu")]
 use crate::device::explained;
@@ -37,44 +34,35 @@ pub(crate) fn render(
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
-    if !input.settings.integrator.is_primary() {
-        #[cfg(feature = "gpu")]
-        if let Opened::Device { headless, choice, .. } = opened {
-            return light(file, input, views, layers, opened, (headless, *choice));
-        }
-        return Err(Failure::usage(format!(
-            "{}: light in bricks needs an adapter, and the CPU reference all spheres in memory; choose --style fast, or \
-             render the data that was sorted",
-            file.path.display()
-        )));
-    }
-    let nearest = nearest_of(file, 0..file.len(), Look::of(input), views, layers, opened)?;
+    let nearest = nearest_of(file, 0..file.len(), input, views, layers, opened)?;
     Ok(nearest.map(Nearest::into_image))
 }
 
-/// How bricks are rendered by one ray for each pixel.
-#[derive(Clone, Copy)]
-pub(crate) struct Look<'a> {
-    /// The color of spheres without one.
-    pub(super) color: LinearRgb,
-    pub(super) settings: &'a RenderSettings,
-}
-
-impl<'a> Look<'a> {
-    pub(crate) fn of(input: &'a Input) -> Self {
-        Self { color: input.color, settings: &input.settings }
+/// Refuses light, for which all spheres must be there.
+pub(crate) fn check_without_light(
+    file: &BrickFile,
+    settings: &RenderSettings,
+) -> Result<(), Failure> {
+    if settings.integrator.is_primary() {
+        return Ok(());
     }
+    Err(Failure::usage(format!(
+        "{}: light needs all spheres in memory, and bricks are rendered one by one; choose --style fast, or render the \
+         data that was sorted, if it fits into memory",
+        file.path.display()
+    )))
 }
 
 /// What is nearest of some bricks, in each view.
 pub(crate) fn nearest_of(
     file: &BrickFile,
     bricks: Range<usize>,
-    look: Look<'_>,
+    input: &Input,
     views: &Views<View<'_>>,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Nearest>, Failure> {
+    check_without_light(file, &input.settings)?;
     // The left and the right eye see the bricks in the same order, more or less.
     let first = match views {
         Views::One(view) | Views::Two([view, _]) => view,
@@ -92,8 +80,8 @@ pub(crate) fn nearest_of(
         }
         let of = format!("brick {} of {}", number + 1, order.len());
         progress::stage(format!("reading {}: {of}", file.path.display()));
-        let read = file.read(*brick, look.color)?;
-        let of_brick = of_scene(&read.scene, look.settings, views, layers, opened)?;
+        let read = file.read(*brick, input.color)?;
+        let of_brick = of_scene(&read.scene, input, views, layers, opened)?;
         for (nearest, new) in nearest.as_mut_slice().iter_mut().zip(into_vec(of_brick)) {
             let new = new.with_ids(&read.ids);
             match nearest {
@@ -133,7 +121,7 @@ fn nearest_first(file: &BrickFile, bricks: Range<usize>, view: &View<'_>) -> Vec
 /// The pictures of one brick.
 fn of_scene(
     scene: &Scene,
-    settings: &RenderSettings,
+    input: &Input,
     views: &Views<View<'_>>,
     layers: LayerSet,
     opened: &Opened,
@@ -141,7 +129,7 @@ fn of_scene(
     match opened {
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, .. } => {
-            views.try_each(|view| on_gpu(headless, scene, settings, view, layers, *choice))
+            views.try_each(|view| on_gpu(headless, scene, input, view, layers, *choice))
         }
         _ => {
             let plan = SearchPlan::new(scene);
@@ -150,7 +138,7 @@ fn of_scene(
                 .map_err(anyhow::Error::msg)?;
             let structure = plan.build().context("the structure cannot be built")?;
             views.try_each(|view| {
-                let done = cpu::render_nearest(&structure, view, settings, layers);
+                let done = cpu::render_nearest(&structure, view, &input.settings, layers);
                 let done = done.context("the CPU cannot render this picture")?;
                 Ok(done.context("this picture has light")?)
             })
@@ -162,11 +150,12 @@ fn of_scene(
 fn on_gpu(
     headless: &Headless,
     scene: &Scene,
-    settings: &RenderSettings,
+    input: &Input,
     view: &View<'_>,
     layers: LayerSet,
     choice: pinhole::accel::AccelChoice,
 ) -> Result<Nearest, Failure> {
+    let settings = &input.settings;
     let extra = memory::ENCODING_BYTES_PER_PIXEL + Nearest::BYTES_PER_PIXEL;
     let plan = |choice| headless.plan(scene, view, settings, layers, choice, extra);
     let rendered = with_structures(headless, choice, plan, |plan| {

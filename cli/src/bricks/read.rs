@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use data_encoding::HEXLOWER;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
-use pinhole::scene::{Appearance, Colors, Scene, ScenePart, Whole};
+use pinhole::scene::{Appearance, Colors, Scene, Whole};
 use sha2::{Digest, Sha256};
 
 use super::file::{
@@ -26,6 +26,13 @@ pub(crate) struct BrickFile {
     pub(super) path: PathBuf,
     pub(super) header: Header,
     pub(super) whole: Whole,
+}
+
+/// A brick in memory.
+pub(super) struct ReadBrick {
+    pub(super) scene: Scene,
+    /// The ids of the spheres in the file that was sorted, ascending.
+    pub(super) ids: Vec<u32>,
 }
 
 impl BrickFile {
@@ -106,15 +113,8 @@ impl BrickFile {
         self.part(spheres, self.one_color(color).into())
     }
 
-    /// The corners of the box of a brick, in the frame.
-    #[cfg(feature = "gpu")]
-    pub(super) fn corners(&self, brick: usize) -> Option<[pinhole::glam::Vec3; 2]> {
-        let brick = self.header.bricks.get(brick)?;
-        Some([corner(brick.min), corner(brick.max)])
-    }
-
     /// Reads a brick and checks every byte of it. Spheres without colours get `color`.
-    pub(super) fn read(&self, brick: usize, color: LinearRgb) -> Result<ScenePart> {
+    pub(super) fn read(&self, brick: usize, color: LinearRgb) -> Result<ReadBrick> {
         let section = &self.header.bricks.get(brick).ok_or_else(|| self.damaged())?.section;
         let mut digest = Sha256::new();
         let mut file = self.at(section)?;
@@ -137,7 +137,7 @@ impl BrickFile {
         if !ids.is_sorted_by(|a, b| a < b) || u64::from(last) >= self.whole.count {
             return Err(self.damaged());
         }
-        Ok(ScenePart { scene: self.part(spheres, Appearance::new(colors))?, ids })
+        Ok(ReadBrick { scene: self.part(spheres, Appearance::new(colors))?, ids })
     }
 
     fn one_color(&self, color: LinearRgb) -> LinearRgb {

@@ -11,11 +11,10 @@ use pinhole::load::Format as DataFormat;
 use pinhole::scene::{Colors, Scene, Whole};
 
 use super::EXTENSION;
-use super::array::Array;
 use super::cuts::Sample;
 use super::file::{COLOR, Header, ID, SPHERE, StoredColors, WholeBits};
 use super::outer::{Cells, Outer};
-use super::stream::Stream;
+use super::stream::{Array, Stream};
 use super::writer::{self, Writer};
 use crate::args::ViewArgs;
 use crate::camera::CameraArgs;
@@ -240,8 +239,8 @@ fn write(
     let (cuts, outermost) = (sample.cuts(bricks), cells.outermost());
     stage(3, "how many are in each brick");
     let (mut counts, mut outer) = (vec![0_u64; cuts.bricks], Outer::default());
-    stream.for_each(&frame, &mut |_, sphere| {
-        counts[cuts.brick(sphere)] += 1;
+    stream.for_each(&frame, &mut |id, sphere| {
+        counts[cuts.brick(id, sphere)] += 1;
         outer.add(&outermost, sphere);
         Ok(())
     })?;
@@ -279,7 +278,7 @@ fn write(
         let mut writer = Writer::new(&mut file, &counts, has_colors);
         let mut unwritten = None;
         let passed = stream.for_each(&frame, &mut |id, sphere| {
-            let brick = place[cuts.brick(sphere)];
+            let brick = place[cuts.brick(id, sphere)];
             writer.add(brick, id, sphere, color_of(scene, id)).map_err(|error| {
                 unwritten = Some(error);
                 anyhow!("the bricks cannot be written")

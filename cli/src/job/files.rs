@@ -1,11 +1,15 @@
 //! The files of jobs: everything that jobs ask of the file system, except for what appears whole or not at all, which
-//! `output.rs` writes.
+//! `output.rs` writes; and the digests by which files are known.
 
 use std::fs;
 pub(super) use std::fs::File;
-use std::io;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
+
+use data_encoding::HEXLOWER;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 pub(super) fn open(path: &Path) -> io::Result<File> {
     File::open(path)
@@ -23,11 +27,6 @@ pub(super) fn create_folder(path: &Path) -> io::Result<()> {
     fs::create_dir(path)
 }
 
-/// Creates a folder if there is none.
-pub(super) fn ensure_folder(path: &Path) -> io::Result<()> {
-    fs::create_dir_all(path)
-}
-
 /// Removes a folder that this program has created, with all that is in it.
 pub(super) fn remove_folder(path: &Path) {
     let _ = fs::remove_dir_all(path);
@@ -39,17 +38,95 @@ pub(super) fn names(folder: &Path) -> Vec<String> {
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
 }
 
-/// Writes a mark. One that cannot be written is not an error.
-pub(super) fn mark(path: &Path, text: &str) {
-    let _ = fs::write(path, text);
-}
-
-/// Removes a mark, if it is there.
-pub(super) fn unmark(path: &Path) {
+/// Removes a file, if it is there.
+pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
 }
 
 /// When a file was written, by the clock of the file system.
 pub(super) fn modified(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).and_then(|file| file.modified()).ok()
+}
+
+/// Files of at most this many bytes have a digest of all bytes.
+const SMALL: u64 = 256 << 20;
+
+/// How many pieces of a larger file are in its digest, and how long each is.
+const PIECES: u64 = 64;
+const PIECE: u64 = 1 << 20;
+
+/// What identifies the contents of a file that a job reads.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InputFile {
+    /// The path, relative to the folder in which the job was split.
+    pub(super) path: String,
+    pub(super) bytes: u64,
+    /// Of all bytes, or of some pieces of a large file, so that a part does not read it all.
+    pub(super) sha256: String,
+}
+
+/// The digest of bytes, in hexadecimal digits.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    HEXLOWER.encode(&Sha256::digest(bytes))
+}
+
+/// The length and the digest of a file.
+pub(super) fn digest(path: &Path) -> io::Result<(u64, String)> {
+    let mut file = open(path)?;
+    let length = file.metadata()?.len();
+    let mut digest = Sha256::new();
+    let mut piece = vec![0; PIECE as usize];
+    if length <= SMALL {
+        loop {
+            match file.read(&mut piece)? {
+                0 => break,
+                read => digest.update(&piece[..read]),
+            }
+        }
+    } else {
+        for number in 0..PIECES {
+            // No file is so long that this overflows. The last piece ends with the file.
+            let start = (length - PIECE) * number / (PIECES - 1);
+            file.seek(SeekFrom::Start(start))?;
+            file.read_exact(&mut piece)?;
+            digest.update(&piece);
+        }
+    }
+    Ok((length, HEXLOWER.encode(&digest.finalize())))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn digests_are_those_of_sha256() {
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(b"abc").unwrap();
+        // From FIPS 180-2.
+        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(digest(file.path()).unwrap(), (3, abc.to_owned()));
+        assert_eq!(hex(b"abc"), abc);
+    }
+
+    #[test]
+    fn the_digest_of_a_large_file_has_both_ends_of_it() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        // Without contents, it takes no room.
+        file.as_file().set_len(SMALL + 5).unwrap();
+        let digest = || digest(file.path()).unwrap();
+        let empty = digest();
+        for place in [0, SMALL + 4] {
+            let mut changed = file.as_file();
+            changed.seek(SeekFrom::Start(place)).unwrap();
+            changed.write_all(b"x").unwrap();
+            assert_ne!(digest(), empty, "{place}");
+            changed.seek(SeekFrom::Start(place)).unwrap();
+            changed.write_all(&[0]).unwrap();
+            assert_eq!(digest(), empty);
+        }
+    }
 }

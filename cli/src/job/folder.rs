@@ -1,15 +1,15 @@
 //! The folder of a job: its files and their places.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use pinhole::color_by::JoinedKeys;
 use rayon::prelude::*;
 
-use super::digest;
 use super::files;
 use super::manifest::{Manifest, NAME, StoredOverview};
-use super::part_file::{Header, Problem, glance};
+use super::part_file::{self, Header, Problem};
 use crate::failure::Failure;
 use crate::frames::Overview;
 
@@ -19,11 +19,12 @@ pub(super) struct Folder {
     pub(super) manifest: Manifest,
 }
 
-/// The folders inside.
+/// The folder of the parts, and the file of the overview.
 pub(super) const PARTS: &str = "parts";
-pub(super) const RUNNING: &str = "running";
-pub(super) const FAILED: &str = "failed";
 pub(super) const OVERVIEW: &str = "overview.bin";
+
+/// What a process that was killed leaves is removed after this time.
+const LEFT: Duration = Duration::from_secs(3600);
 
 impl Folder {
     /// Reads the description of a job.
@@ -48,20 +49,35 @@ impl Folder {
         self.path.join(PARTS).join(format!("{unit:06}.part"))
     }
 
-    /// The file that says that a unit is being rendered.
-    pub(super) fn running(&self, unit: usize) -> PathBuf {
-        self.path.join(RUNNING).join(format!("{unit:06}"))
-    }
-
-    /// The file that says why a unit failed.
-    pub(super) fn failed(&self, unit: usize) -> PathBuf {
-        self.path.join(FAILED).join(format!("{unit:06}"))
-    }
-
     /// Looks at the headers of all parts.
     pub(super) fn glance(&self) -> Vec<Result<Header, Problem>> {
         let all = (0..self.manifest.units).into_par_iter();
-        all.map(|unit| glance(&self.part(unit), &self.manifest, unit)).collect()
+        all.map(|unit| part_file::glance(&self.part(unit), &self.manifest, unit)).collect()
+    }
+
+    /// Checks every byte of all parts.
+    pub(super) fn check(&self) -> Vec<Result<Header, Problem>> {
+        let all = (0..self.manifest.units).into_par_iter();
+        all.map(|unit| part_file::check(&self.part(unit), &self.manifest, unit)).collect()
+    }
+
+    /// Removes files that were never given their names, because the processes that wrote them were killed.
+    pub(super) fn sweep(&self) {
+        let parts = self.path.join(PARTS);
+        let names = files::names(&parts);
+        let unnamed: Vec<_> = names.iter().filter(|name| name.starts_with(".pinhole-")).collect();
+        if unnamed.is_empty() {
+            return;
+        }
+        // The time as the file system has it, which may be that of another machine whose clock is different.
+        let Ok(now) = tempfile::NamedTempFile::new_in(&parts) else { return };
+        let Some(now) = files::modified(now.path()) else { return };
+        for path in unnamed.into_iter().map(|name| parts.join(name)) {
+            let age = files::modified(&path).and_then(|time| now.duration_since(time).ok());
+            if age.is_some_and(|age| age > LEFT) {
+                files::remove(&path);
+            }
+        }
     }
 
     /// Makes the folder current in which the job was split, so that its relative paths mean the same files.
@@ -75,7 +91,7 @@ impl Folder {
     /// Refuses inputs that are not those that were split. The current folder must be that of [`Folder::enter`].
     pub(super) fn check_inputs(&self) -> Result<(), Failure> {
         for file in &self.manifest.files {
-            let found = digest::of_file(Path::new(&file.path));
+            let found = files::digest(Path::new(&file.path));
             let found = found.with_context(|| format!("{}: cannot be read", file.path))?;
             if found != (file.bytes, file.sha256.clone()) {
                 return Err(Failure::Job(anyhow!(
@@ -93,7 +109,7 @@ impl Folder {
         let path = self.path.join(OVERVIEW);
         let bytes = files::read(&path)
             .with_context(|| format!("{}: cannot be read; split the job again", path.display()))?;
-        let overview = (digest::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
+        let overview = (files::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
         let damaged = || anyhow!("{}: this file is damaged; split the job again", path.display());
         Ok(Some(overview.flatten().ok_or_else(damaged)?))
     }
@@ -105,7 +121,7 @@ pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
     let numbers = range.iter().flatten().chain(overview.spheres.as_flattened());
     let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
     let stored = StoredOverview {
-        sha256: digest::hex(&bytes),
+        sha256: files::hex(&bytes),
         spheres: overview.spheres.len(),
         added: overview.added,
         has_range: range.is_some(),

@@ -6,11 +6,9 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::digest::{self, InputFile};
-use super::files;
+use super::files::{self, InputFile};
 use super::units::{Rectangle, tile};
 use pinhole::image::{Layer, LayerSet};
-use pinhole::render::Sampling;
 
 /// The name of the file in the folder of a job.
 pub(super) const NAME: &str = "job.json";
@@ -24,7 +22,7 @@ pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The most units of a job. Each is a file, and all of them are looked at together.
 pub(super) const MOST_UNITS: usize = 1_000_000;
 
-/// A job. Each unit of work is a tile of a picture with all its samples or a part of them, or a group of bricks.
+/// A job. Each unit of work is a tile of a picture, or a group of bricks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
@@ -61,14 +59,9 @@ pub(super) struct Manifest {
     pub(super) merged_layers: Vec<String>,
     pub(super) integrator: String,
     pub(super) samples: u32,
-    /// The most samples of a unit; without it, each unit has all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) samples_per_part: Option<u32>,
     pub(super) seed: u32,
     /// Whether noise is removed when parts are merged.
     pub(super) denoised: bool,
-    /// The time of a unit on a software device, in milliseconds, as the plan of the first picture expects it.
-    pub(super) expected_milliseconds: u64,
     /// What all frames are together.
     pub(super) overview: Option<StoredOverview>,
 }
@@ -109,7 +102,7 @@ impl Manifest {
 
     fn digest(&self) -> Result<String> {
         let unsealed = Self { sha256: String::new(), ..self.clone() };
-        Ok(digest::hex(serde_json::to_string(&unsealed)?.as_bytes()))
+        Ok(files::hex(serde_json::to_string(&unsealed)?.as_bytes()))
     }
 
     /// Reads the file of a job.
@@ -151,9 +144,8 @@ impl Manifest {
         }
         let pictures = self.pictures.as_ref().map_or(1, Vec::len);
         let has_tiles = self.groups.is_empty()
-            && self.samples_per_part != Some(0)
             && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
-        let units = units_of_tiles(pictures, self.tiles, self.sample_parts());
+        let units = units_of_tiles(pictures, self.tiles);
         has_tiles && units == Some(self.units) && self.units > 0
     }
 
@@ -162,39 +154,21 @@ impl Manifest {
         self.unit == UnitKind::Depth
     }
 
-    /// Into how many parts the samples of a tile are divided.
-    pub(super) fn sample_parts(&self) -> usize {
-        self.parts_of_samples().len()
-    }
-
-    /// The numbers of samples of each part.
-    fn parts_of_samples(&self) -> impl ExactSizeIterator<Item = Sampling> {
-        let whole = Sampling { samples: self.samples, ..Sampling::default() };
-        whole.parts(self.samples_per_part.unwrap_or(0))
-    }
-
     /// How many units a picture has.
     pub(super) fn units_of_picture(&self) -> usize {
         if self.is_by_depth() {
             return self.units;
         }
-        self.tiles[0] as usize * self.tiles[1] as usize * self.sample_parts()
+        self.tiles[0] as usize * self.tiles[1] as usize
     }
 
-    /// The place among all pictures, and the tile, of a unit. The parts of the samples of a tile follow each other.
+    /// The place among all pictures, and the tile, of a unit.
     pub(super) fn unit(&self, index: usize) -> (usize, Rectangle) {
         if self.is_by_depth() {
             return (0, ([0, 0], self.size));
         }
-        let units = self.units_of_picture();
-        (index / units, tile(self.size, self.tiles, index % units / self.sample_parts()))
-    }
-
-    /// The first sample of a unit, and how many it has.
-    pub(super) fn samples_of(&self, index: usize) -> (u32, u32) {
-        let mut parts = self.parts_of_samples();
-        let part = parts.nth(index % parts.len());
-        part.map_or((0, self.samples), |part| (part.first, part.samples))
+        let tiles = self.units_of_picture();
+        (index / tiles, tile(self.size, self.tiles, index % tiles))
     }
 
     /// The number of the picture of a unit; `None` for a single picture.
@@ -208,14 +182,10 @@ impl Manifest {
     }
 }
 
-/// How many units tiles of pictures are, with the samples of each in parts; `None` if that is more than [`MOST_UNITS`].
-pub(super) fn units_of_tiles(
-    pictures: usize,
-    tiles: [u32; 2],
-    sample_parts: usize,
-) -> Option<usize> {
+/// How many units tiles of pictures are; `None` if that is more than [`MOST_UNITS`].
+pub(super) fn units_of_tiles(pictures: usize, tiles: [u32; 2]) -> Option<usize> {
     let [columns, rows] = tiles.map(|side| side as usize);
-    let units = pictures.checked_mul(columns * rows)?.checked_mul(sample_parts)?;
+    let units = pictures.checked_mul(columns * rows)?;
     (units <= MOST_UNITS).then_some(units)
 }
 

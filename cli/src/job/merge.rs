@@ -1,15 +1,18 @@
 //! `pinhole job merge`: puts parts together and writes what `render` would have written.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 
-use super::folder::Folder;
-use super::join::{check_all, device_of, picture};
+use super::files;
+use super::folder::{Folder, PARTS};
 use super::manifest::layer_set;
 use super::part::described;
+use super::part_file::{self, Header, Pictures, Problem};
 use super::recipe::{Recipe, check_same, split_args};
+use super::units::ranges;
 use super::{MergeArgs, SplitArgs};
 use crate::device::Opened;
 use crate::failure::Failure;
@@ -18,7 +21,12 @@ use crate::picture::PictureFormat;
 use crate::render::finish_joined;
 use crate::speak::tell;
 use crate::threads;
-use pinhole::image::LayerSet;
+use crate::views::Views;
+use pinhole::image::{Image, LayerSet};
+use pinhole::render::Nearest;
+
+/// The time between two looks for parts that are not seen yet.
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// What the parts say about who rendered them.
 struct Devices {
@@ -110,8 +118,8 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
     writing.write(&wanted, all.len(), adapter, |written| {
         for (place, number) in all.iter().enumerate() {
             written.begin();
-            let parts = picture(folder, place)?;
-            let image = finish_joined(parts, &input.settings, writing.layers, &opened)?;
+            let joined = picture(folder, place)?;
+            let image = finish_joined(joined, &input.settings, writing.layers, &opened)?;
             if !written.send(*number, image) {
                 break;
             }
@@ -134,6 +142,140 @@ impl Devices {
             self.described.join(", ")
         )))
     }
+}
+
+/// Checks every byte of every part, and returns their headers. Waits for parts that are missing.
+fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, Failure> {
+    let end = Instant::now() + wait;
+    loop {
+        // Reading the folder makes a network file system look for new files.
+        let _ = files::names(&folder.path().join(PARTS));
+        let mut seen = folder.glance().into_iter();
+        if Instant::now() >= end || !seen.any(|found| matches!(found, Err(Problem::Missing))) {
+            break;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    let found = folder.check();
+    refuse(folder, &found)?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Refuses parts that are not there, damaged or foreign.
+fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Failure> {
+    let of = |problem: Problem| -> Vec<usize> {
+        let has = |unit: &usize| found[*unit].as_ref().err() == Some(&problem);
+        (0..found.len()).filter(has).collect()
+    };
+    let mut problems = found.iter().filter_map(|found| found.as_ref().err().copied());
+    if let Some(problem) = problems.find(|problem| matches!(problem, Problem::Unreadable(_))) {
+        let parts = ranges(&of(problem));
+        let words = problem.words();
+        return Err(Failure::Job(anyhow!(
+            "{}: parts {parts} are {words}; merge again where they can be read",
+            folder.path().display()
+        )));
+    }
+    let problems = [Problem::Missing, Problem::Damaged, Problem::Foreign];
+    let words: Vec<String> = problems
+        .into_iter()
+        .map(|problem| (problem, of(problem)))
+        .filter(|(_, units)| !units.is_empty())
+        .map(|(problem, units)| format!("{} {}", problem.words(), ranges(&units)))
+        .collect();
+    if words.is_empty() {
+        return Ok(());
+    }
+    let bad: Vec<usize> = (0..found.len()).filter(|unit| found[*unit].is_err()).collect();
+    Err(Failure::Job(anyhow!(
+        "{}: {} of {} parts cannot be merged: {}; render them again with --array={}",
+        folder.path().display(),
+        bad.len(),
+        found.len(),
+        words.join(", "),
+        ranges(&bad)
+    )))
+}
+
+/// What rendered the parts, and which units each rendered. Refuses more than one unless mixtures are allowed.
+fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Failure> {
+    let mut devices: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for header in headers {
+        devices.entry(&header.device).or_default().push(header.unit);
+    }
+    if devices.len() > 1 && !allows_mixed {
+        let words: Vec<String> =
+            devices.iter().map(|(device, units)| format!("{device} {}", ranges(units))).collect();
+        return Err(Failure::Job(anyhow!(
+            "parts were rendered by different devices, whose pixels may differ in the last bits: {}; render some of them \
+             again, or add --allow-mixed-adapters",
+            words.join(", ")
+        )));
+    }
+    Ok(devices.into_keys().map(str::to_owned).collect())
+}
+
+/// The pictures of all eyes at a place among all pictures, from their parts.
+fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Failure> {
+    let manifest = &folder.manifest;
+    if manifest.is_by_depth() {
+        return Ok(nearest(folder)?.map(Nearest::into_image));
+    }
+    let [width, height] = manifest.size;
+    let empty = || {
+        let image = Image::new(width, height, manifest.layer_set());
+        image.map_err(|error| Failure::Job(error.into()))
+    };
+    let mut whole = match manifest.eyes {
+        2 => Views::Two([empty()?, empty()?]),
+        _ => Views::One(empty()?),
+    };
+    let tiles = manifest.units_of_picture();
+    for unit in place * tiles..(place + 1) * tiles {
+        let (_, (origin, _)) = manifest.unit(unit);
+        let tile = tile(folder, unit)?;
+        for (whole, tile) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
+            whole.put(tile, origin).map_err(|error| Failure::Job(error.into()))?;
+        }
+    }
+    Ok(whole)
+}
+
+/// The pictures of a unit that is a tile.
+fn tile(folder: &Folder, unit: usize) -> Result<Views<Image>, Failure> {
+    match read_part(folder, unit)? {
+        Pictures::Tile(images) => Ok(images),
+        Pictures::Depth(_) => Err(unusable(folder, unit, Problem::Foreign)),
+    }
+}
+
+/// What is nearest in the parts of all groups of bricks, of which one is in memory at a time.
+fn nearest(folder: &Folder) -> Result<Views<Nearest>, Failure> {
+    let mut all: Option<Views<Nearest>> = None;
+    for unit in 0..folder.manifest.units {
+        let Pictures::Depth(part) = read_part(folder, unit)? else {
+            return Err(unusable(folder, unit, Problem::Foreign));
+        };
+        let Some(all) = &mut all else {
+            all = Some(part);
+            continue;
+        };
+        for (all, part) in all.as_mut_slice().iter_mut().zip(part.as_slice()) {
+            all.keep_nearer(part).map_err(|error| Failure::Job(error.into()))?;
+        }
+    }
+    all.ok_or_else(|| Failure::Job(anyhow!("there are no parts to put together")))
+}
+
+/// Reads a part, which was checked, but may have changed since.
+fn read_part(folder: &Folder, unit: usize) -> Result<Pictures, Failure> {
+    let part = part_file::read(&folder.part(unit), &folder.manifest, unit);
+    part.map(|(_, pictures)| pictures).map_err(|problem| unusable(folder, unit, problem))
+}
+
+/// Why a part cannot be used.
+fn unusable(folder: &Folder, unit: usize, problem: Problem) -> Failure {
+    Failure::Job(anyhow!("{}: this part is {}", folder.part(unit).display(), problem.words()))
 }
 
 /// Refuses an output of another kind than that of the job.
@@ -171,7 +313,7 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
 }
 
 /// The value of `--layer`, with an absolute path.
-pub(super) fn absolute_layer(text: &str) -> Result<String, Failure> {
+fn absolute_layer(text: &str) -> Result<String, Failure> {
     let Some((layer, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
         return Ok(text.to_owned());
     };

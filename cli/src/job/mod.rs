@@ -1,33 +1,30 @@
-//! Pictures that many machines render: `split` divides them into units, `part` renders units, `status` says what is
-//! done, `merge` puts parts together, and `submit` hands all that to a scheduler.
+//! Pictures that many machines render: `split` divides them into units, `part` renders units, `status` lists those that
+//! are missing, and `merge` puts the parts together. Schedulers hand units to machines: `docs/scale.md` has recipes.
 //!
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
-mod depth;
-mod digest;
 mod files;
 mod folder;
-mod join;
 mod manifest;
-mod marks;
 mod merge;
 mod part;
 mod part_file;
-mod pieces;
 mod recipe;
-mod slurm;
 mod split;
-mod status;
 mod units;
 
 use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::{Args, Subcommand};
 
+use self::folder::Folder;
 use super::args::RenderArgs;
 use super::failure::Failure;
 use super::frames::Raw;
+use super::speak::answer;
+use super::threads;
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the job failed, or parts are missing, damaged or of another job; \
     2 wrong usage, such as an INDEX that the job has not; 5 the device was lost or did not answer, or the time of \
@@ -46,14 +43,10 @@ enum JobCommand {
     Split(Box<SplitArgs>),
     /// Render parts; those that are there already are left as they are
     Part(PartArgs),
-    /// Say which parts are done, missing, running or failed, and how much time is left
+    /// List the units that have no part, for another try
     Status(StatusArgs),
     /// Put the parts together: the same bytes as `render` writes on one machine
     Merge(MergeArgs),
-    /// Join parts of a job that was split by depth into one, so that machines can merge them in a tree
-    Join(JoinArgs),
-    /// Hand the parts to a scheduler, and what puts them together after them
-    Submit(SubmitArgs),
 }
 
 #[derive(Debug, Args)]
@@ -71,9 +64,8 @@ enum JobCommand {
     mut_arg("stereo", |arg| arg.hide(true)),
     mut_arg("certify", |arg| arg.hide(true)),
     mut_arg("print_scene", |arg| arg.hide(true)),
-    after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture, or some of its \
-    samples; its INDEX counts from 0, picture by picture, in each the tiles row by row, and in each of these the parts of \
-    the samples."
+    after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture; its INDEX \
+    counts from 0, picture by picture and in each the tiles row by row."
 )]
 #[cfg_attr(feature = "gpu", command(mut_arg("profile", |arg| arg.hide(true))))]
 struct SplitArgs {
@@ -108,29 +100,16 @@ struct PartArgs {
 }
 
 #[derive(Debug, Args)]
-struct JoinArgs {
-    /// Folder of the job
-    #[arg(value_name = "JOB")]
-    job: PathBuf,
-    /// Indices of units that follow each other, such as 0-3
-    #[arg(value_name = "INDEX")]
-    units: String,
-    /// Say nothing but warnings and errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-#[derive(Debug, Args)]
 struct StatusArgs {
     /// Folder of the job
     #[arg(value_name = "JOB")]
     job: PathBuf,
+    /// Print the INDEX of every unit that has no part, or one that is damaged or of another job, one a line
+    #[arg(long, required = true)]
+    missing: bool,
     /// Read every part to its end and check its digest
     #[arg(long)]
     check: bool,
-    /// Print the results as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -161,44 +140,21 @@ struct MergeArgs {
     quiet: bool,
 }
 
-#[derive(Debug, Args)]
-struct SubmitArgs {
-    /// Folder of the job
-    #[arg(value_name = "JOB")]
-    job: PathBuf,
-    /// Use Slurm: an array for the parts that are missing, and a job that depends on it and merges them
-    #[arg(long, required = true)]
-    slurm: bool,
-    /// What `merge` writes, as its -o; without it nothing is merged
-    #[arg(short, long, value_name = "OUT.png")]
-    output: Option<PathBuf>,
-    /// Data layer that `merge` writes in addition, as its --layer; may be repeated
-    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]", requires = "output")]
-    layers: Vec<String>,
-    /// Let at most this number of tasks of the array run at once
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    array_limit: Option<u32>,
-    /// Units of one task of the array [default: as many as keep the array below 1000 tasks]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    units_per_task: Option<u32>,
-    /// Partition of the cluster
-    #[arg(long, value_name = "NAME")]
-    partition: Option<String>,
-    /// Write the scripts to standard output, and submit nothing
-    #[arg(long)]
-    print: bool,
-    /// Further arguments of sbatch for the array, after --
-    #[arg(last = true, value_name = "SBATCH_ARGS")]
-    sbatch: Vec<String>,
-}
-
 pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
     match &args.command {
         JobCommand::Split(args) => split::run(args),
         JobCommand::Part(args) => part::run(args),
-        JobCommand::Status(args) => status::run(args),
-        JobCommand::Join(args) => depth::run(args),
+        JobCommand::Status(args) => status(args),
         JobCommand::Merge(args) => merge::run(args),
-        JobCommand::Submit(args) => slurm::run(args),
     }
+}
+
+/// Lists the units that are to be rendered.
+fn status(args: &StatusArgs) -> Result<(), Failure> {
+    let folder = Folder::open(&args.job)?;
+    threads::start()?;
+    let found = if args.check { folder.check() } else { folder.glance() };
+    let missing = (0..found.len()).filter(|unit| found[*unit].is_err());
+    let text: String = missing.map(|unit| format!("{unit}\n")).collect();
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }

@@ -7,17 +7,13 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 
 use super::PartArgs;
-use super::depth::covered;
-#[cfg(feature = "gpu")]
-use super::files;
 use super::folder::{Folder, PARTS};
 use super::manifest::VERSION;
-use super::marks::{Mark, clear_failed, set_failed, sweep};
 use super::part_file::{self, Header, Pictures, payload};
-use super::pieces;
 use super::recipe::{Recipe, check_same};
 use super::units::parse_list;
-use crate::bricks::{Look, nearest_of};
+use crate::bricks::nearest_of;
+use crate::deadline::Deadline;
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, ready};
@@ -28,7 +24,6 @@ use crate::render::{check_device, render_part};
 use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
-use pinhole::render::Sampling;
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -53,34 +48,23 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
         })
     });
     let limit = limit.transpose()?;
-    let joined = covered(&folder);
-    let is_missing = |unit: &usize| {
-        let of = || part_file::check(&folder.part(*unit), &folder.manifest, *unit);
-        !joined.contains_key(unit) && of().is_err()
-    };
+    let is_missing =
+        |unit: &usize| part_file::check(&folder.part(*unit), &folder.manifest, *unit).is_err();
     let units: Vec<usize> = asked.iter().copied().filter(is_missing).collect();
     if units.is_empty() {
         return Ok(());
     }
     #[cfg(feature = "gpu")]
     if let Some(limit) = limit {
-        let failed = folder.failed(units[0]);
-        crate::deadline::limit_opening(limit, move |why| files::mark(&failed, why));
+        crate::deadline::limit_opening(limit);
     }
     threads::start()?;
     folder.enter()?;
     folder.check_inputs()?;
     interrupt::set_message(STOPPED);
-    sweep(&folder);
+    folder.sweep();
     let (count, quiet) = (units.len(), args.quiet);
-    let work = Work { folder: &folder, units, limit, quiet };
-    // What fails before a unit is begun, such as a device that cannot be opened, is the failure of the first.
-    let first = work.units[0];
-    work.run().inspect_err(|failure| {
-        if !matches!(failure, Failure::Stopped | Failure::StoppedBetween(_)) {
-            set_failed(&folder, first, &failure.message());
-        }
-    })?;
+    Work { folder: &folder, units, limit, quiet }.run()?;
     if !quiet {
         let plural = if count == 1 { "" } else { "s" };
         let seconds = started.elapsed().as_secs_f64();
@@ -121,54 +105,29 @@ impl Work<'_> {
         })
     }
 
-    /// Renders a unit and writes it. Why it failed is kept.
+    /// Renders a unit and writes it.
     fn render(&self, unit: usize, input: &mut Input, opened: &Opened) -> Result<(), Failure> {
-        let mark = Mark::new(self.folder, unit, self.limit);
-        let done = self.render_marked(unit, input, opened);
-        drop(mark);
-        match &done {
-            Ok(()) => clear_failed(self.folder, unit),
-            Err(Failure::Stopped | Failure::StoppedBetween(_)) => {}
-            Err(failure) => set_failed(self.folder, unit, &failure.message()),
-        }
-        done
-    }
-
-    fn render_marked(
-        &self,
-        unit: usize,
-        input: &mut Input,
-        opened: &Opened,
-    ) -> Result<(), Failure> {
+        let unit_did_not_end = format!("unit {unit} did not end");
+        let _deadline = self.limit.map(|limit| Deadline::new(limit, unit_did_not_end));
         let manifest = &self.folder.manifest;
         let started = Instant::now();
-        let (_, rectangle) = manifest.unit(unit);
+        let (_, (origin, size)) = manifest.unit(unit);
         // The layers that guide outlines and denoising are in the job already.
         let layers = manifest.layer_set();
         let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
             let views = Views::of(input);
             check_device(input, &views, layers, opened)?;
-            let nearest =
-                nearest_of(&bricks, *first..*end, Look::of(input), &views, layers, opened)?;
+            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
             Pictures::Depth(nearest)
         } else {
-            let whole = input.settings.sampling;
-            let (first, samples) = manifest.samples_of(unit);
-            input.settings.sampling = Sampling { first, samples, ..whole };
-            let tile = pieces::render(rectangle, layers, self.quiet, &mut |(origin, size)| {
-                let part =
-                    input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
-                render_part(input, part, layers, opened)
-            });
-            input.settings.sampling = whole;
-            Pictures::Tile(tile?)
+            let tile = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
+            Pictures::Tile(render_part(input, tile, layers, opened)?)
         };
         let header = Header {
             version: VERSION.to_owned(),
             job: manifest.sha256.clone(),
             unit,
-            last: None,
             device: described(opened),
             adapter: opened.adapter().map(str::to_owned),
             milliseconds: started.elapsed().as_millis() as u64,
@@ -179,7 +138,7 @@ impl Work<'_> {
 }
 
 /// Writes the file of a part, whole or not at all.
-pub(super) fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
+fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
     let file = unnamed_with(path, |file| {
         let mut out = BufWriter::new(file);
         part_file::write(header, pictures, &mut out)?;

@@ -30,13 +30,11 @@ pub(super) struct Header {
     /// The digest of the job.
     pub(super) job: String,
     pub(super) unit: usize,
-    /// The last unit of a part that was joined from several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) last: Option<usize>,
     /// What rendered: an adapter with its driver, or the CPU.
     pub(super) device: String,
     /// The name of the adapter, as files of pictures have it.
     pub(super) adapter: Option<String>,
+    /// How long the unit took.
     pub(super) milliseconds: u64,
     /// Bytes of the layers that follow.
     pub(super) bytes: u64,

@@ -5,22 +5,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 
 use super::SplitArgs;
-use super::digest::{self, InputFile};
-use super::files;
-use super::folder::{FAILED, Folder, OVERVIEW, PARTS, RUNNING, packed};
+use super::files::{self, InputFile};
+use super::folder::{Folder, OVERVIEW, PARTS, packed};
 use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
 use super::recipe::Recipe;
-use super::units::{parse_tiles, ranges, tile};
+use super::units::parse_tiles;
 use crate::args::Stereo;
 use crate::failure::Failure;
 use crate::frames::{Known, Overview, Ready, ready};
 use crate::input::Input;
 use crate::output::{name_all, unnamed};
 use crate::speak::tell;
-use crate::{progress, threads};
-use pinhole::accel::{AccelChoice, AccelPlan};
+use crate::{bricks, progress, threads};
 use pinhole::image::{Layer, LayerSet};
-use pinhole::render::{Integrator, RenderSettings};
 
 /// What is known of the pictures when the first was read.
 struct Found {
@@ -54,33 +51,21 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let size = [input.film.width(), input.film.height()];
     let tiles = parse_tiles(&args.tiles, size)?;
     let groups = groups(args.by_depth, &input, pictures.is_some())?;
+    if let Some(file) = &input.bricks {
+        bricks::check_without_light(file, &input.settings)?;
+    }
     let merged = asked.iter().chain(layers.iter()).collect::<LayerSet>();
     let stored = overview.as_ref().map(packed);
     let sampling = input.settings.sampling;
-    let samples_per_part = args.render.stop_rule.samples_per_part;
-    if samples_per_part.is_some() && input.bricks.is_some() {
-        return Err(Failure::usage(
-            "--samples-per-part: all samples of a file of bricks are complete at the same time; choose --tiles in its place",
-        ));
-    }
     let units = match groups.len() {
-        0 => {
-            let sample_parts = sampling.parts(samples_per_part.unwrap_or(0)).len();
-            units_of_tiles(pictures.as_ref().map_or(1, Vec::len), tiles, sample_parts)
-        }
+        0 => units_of_tiles(pictures.as_ref().map_or(1, Vec::len), tiles),
         count => Some(count),
     };
     let Some(units) = units else {
-        let remedy =
-            if samples_per_part.is_some() { "a larger --samples-per-part, or " } else { "" };
         return Err(Failure::usage(format!(
-            "these are more than {MOST_UNITS} units; choose {remedy}fewer tiles or frames"
+            "these are more than {MOST_UNITS} units; choose fewer tiles or frames"
         )));
     };
-    let (_, [width, height]) = tile(size, tiles, 0);
-    let pixels = u64::from(width) * u64::from(height);
-    let samples = sampling.samples.min(samples_per_part.unwrap_or(u32::MAX));
-    let expected_milliseconds = expected(&input, pixels, samples, groups.len());
     let manifest = Manifest {
         pinhole_job: 1,
         version: VERSION.to_owned(),
@@ -99,10 +84,8 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         merged_layers: layer_names(merged),
         integrator: input.settings.integrator.name().to_owned(),
         samples: sampling.samples,
-        samples_per_part,
         seed: sampling.seed,
         denoised: input.settings.is_denoised,
-        expected_milliseconds,
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
     };
     let (manifest, text) = manifest.sealed()?;
@@ -234,45 +217,10 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
         if files.iter().any(|file| file.path == name) {
             continue;
         }
-        let (bytes, sha256) = digest::of_file(path).with_context(cannot)?;
+        let (bytes, sha256) = files::digest(path).with_context(cannot)?;
         files.push(InputFile { path: name.to_owned(), bytes, sha256 });
     }
     Ok(files)
-}
-
-/// About how long a software device takes for each sphere of a brick.
-const NANOSECONDS_OF_SPHERE: u64 = 600;
-
-/// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
-/// each sample has the rays that its integrator traces.
-fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
-    if let Some(bricks) = &input.bricks {
-        // Reading, building and copying are nearly all of it.
-        let spheres = bricks.whole().count / groups.max(1) as u64;
-        return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
-    }
-    let rays = pixels.saturating_mul(rays_of_pixel(&input.settings, samples));
-    let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
-    let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
-    // Few spheres need no structure, and a test takes some nanoseconds.
-    let of_list = || 4.0 * rays as f64 * input.scene.len() as f64;
-    let nanoseconds = candidate.map_or_else(of_list, |candidate| candidate.total(rays));
-    ((nanoseconds / 1e6).ceil() as u64).max(1)
-}
-
-/// About how many rays a pixel needs for some samples.
-fn rays_of_pixel(settings: &RenderSettings, samples: u32) -> u64 {
-    let lights = settings.lights.len() as u64;
-    let of_sample = match &settings.integrator {
-        Integrator::Primary(_) => return 1,
-        Integrator::Studio(studio) => {
-            let ambient = studio.occlusion.map_or(0, |occlusion| u64::from(occlusion.samples));
-            1 + ambient + if studio.has_shadows { lights } else { 0 }
-        }
-        // What a later version may add, and paths: one of mean length has a ray to a light at each of its surfaces.
-        _ => 8,
-    };
-    of_sample.saturating_mul(samples.into())
 }
 
 /// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
@@ -281,9 +229,7 @@ fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Fa
     let cannot = || format!("{}: cannot be created", path.display());
     files::create_folder(path).with_context(cannot)?;
     let fill = || {
-        for inside in [PARTS, RUNNING, FAILED] {
-            files::create_folder(&path.join(inside)).with_context(cannot)?;
-        }
+        files::create_folder(&path.join(PARTS)).with_context(cannot)?;
         if let Some(bytes) = overview {
             let file = path.join(OVERVIEW);
             name_all(vec![(&file, unnamed(&file, bytes)?)])?;
@@ -296,28 +242,19 @@ fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Fa
 
 fn said(folder: &Folder) {
     let manifest = &folder.manifest;
-    let all: Vec<usize> = (0..manifest.units).collect();
     let pictures = manifest.pictures.as_ref().map_or(1, Vec::len);
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let [columns, rows] = manifest.tiles;
     let what = match manifest.is_by_depth() {
         true => "1 picture of groups of bricks".to_owned(),
-        false => {
-            let parts = match manifest.sample_parts() {
-                1 => String::new(),
-                parts => format!(" with {parts} parts of the samples each"),
-            };
-            format!("{pictures} picture{} of {columns}x{rows} tiles{parts}", plural(pictures))
-        }
+        false => format!("{pictures} picture{} of {columns}x{rows} tiles", plural(pictures)),
     };
     tell(format_args!(
-        "{}: {} unit{}, {what}, each expected to take {:.1} s on a software \
-         device; render them with `pinhole job part {} {}`",
+        "{}: {} unit{}, {what}; render them with `pinhole job part {} 0-{}`",
         folder.path().display(),
         manifest.units,
         plural(manifest.units),
-        manifest.expected_milliseconds as f64 / 1e3,
         folder.path().display(),
-        ranges(&all)
+        manifest.units.saturating_sub(1)
     ));
 }

@@ -45,11 +45,11 @@ pub(super) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure
         ))
     };
     let mut all = Vec::new();
-    for part in text.split(',') {
+    for range in text.split(',') {
         let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
-        let (first, last) = match part.split_once('-') {
+        let (first, last) = match range.split_once('-') {
             Some((first, last)) => (number(first)?, number(last)?),
-            None => (number(part)?, number(part)?),
+            None => (number(range)?, number(range)?),
         };
         if last < first {
             return Err(wrong());
@@ -70,14 +70,14 @@ pub(super) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure
 
 /// Writes indices, which ascend, as `sbatch --array` and [`parse_list`] read them.
 pub(super) fn ranges(indices: &[usize]) -> String {
-    let mut parts: Vec<(usize, usize)> = Vec::new();
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
     for &index in indices {
-        match parts.last_mut() {
+        match ranges.last_mut() {
             Some((_, last)) if *last + 1 == index => *last = index,
-            _ => parts.push((index, index)),
+            _ => ranges.push((index, index)),
         }
     }
-    let words = parts.into_iter().map(|(first, last)| match last - first {
+    let words = ranges.into_iter().map(|(first, last)| match last - first {
         0 => first.to_string(),
         _ => format!("{first}-{last}"),
     });

@@ -3,8 +3,8 @@
 use std::fs;
 
 use crate::bricks::{f32_array, spheres};
-use crate::job::{part, status};
-use crate::support::{Folder, Run};
+use crate::job::{missing, part};
+use crate::support::Folder;
 
 const LAYERS: [&str; 4] = ["depth", "normal", "position", "id"];
 
@@ -40,20 +40,13 @@ fn assert_merged(folder: &Folder) {
     }
 }
 
-#[track_caller]
-fn assert_refused(run: &Run, code: i32, says: &str) {
-    assert_eq!(run.code, code, "{}", run.stderr);
-    assert!(run.stderr.starts_with("error: ") && run.stderr.contains(says), "{}", run.stderr);
-    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
-}
-
 #[test]
 fn merged_groups_are_the_same_bytes() {
     let folder = folder();
     for groups in [1, 2, 13] {
         split(&folder, groups);
         folder.run(&format!("job part job 0-{} -q", groups - 1)).succeeded();
-        assert_eq!(status(&folder)["complete"], true);
+        assert_eq!(missing(&folder), [0_usize; 0]);
         assert_merged(&folder);
         fs::remove_dir_all(folder.path("job")).unwrap();
     }
@@ -66,50 +59,17 @@ fn merged_groups_are_the_same_bytes() {
 }
 
 #[test]
-fn parts_are_merged_in_a_tree() {
-    let folder = folder();
-    split(&folder, 7);
-    folder.run("job part job 0-6 -q").succeeded();
-    for units in ["0-1", "2-3", "4-6", "0-3"] {
-        folder.run(&format!("job join job {units} -q")).succeeded();
-    }
-    // What was joined is not needed any more, and is not rendered again.
-    for unit in 0..7 {
-        fs::remove_file(part(&folder, unit)).unwrap();
-    }
-    for name in ["000000-000001", "000002-000003"] {
-        fs::remove_file(folder.path(&format!("job/parts/{name}.part"))).unwrap();
-    }
-    folder.run("job part job 0-6 -q").succeeded();
-    assert!(!part(&folder, 3).exists());
-    assert_merged(&folder);
-    // Joining once more changes nothing.
-    let before = folder.read("job/parts/000004-000006.part");
-    folder.run("job join job 4-6 -q").succeeded();
-    assert_eq!(folder.read("job/parts/000004-000006.part"), before);
-    // A damaged joined part is not used, and says so.
-    let mut bytes = before;
-    bytes[200] ^= 1;
-    fs::write(folder.path("job/parts/000004-000006.part"), bytes).unwrap();
-    let run = folder.run("job merge job -o again.png -q");
-    assert_refused(&run, 1, "missing 4-6; render them again with --array=4-6");
-    folder.run("job part job 4-6 -q").succeeded();
-    assert_merged(&folder);
-}
-
-#[test]
 fn missing_damaged_and_foreign_groups_are_named() {
     let folder = folder();
     split(&folder, 4);
     folder.run("job part job 0-2 -q").succeeded();
     let merge = || folder.run("job merge job -o merged.png -q");
-    assert_refused(&merge(), 1, "missing 3; render them again with --array=3");
+    merge().refused(1, "missing 3; render them again with --array=3");
     folder.run("job part job 3 -q").succeeded();
     let good = fs::read(part(&folder, 2)).unwrap();
     fs::write(part(&folder, 2), &good[..good.len() - 9]).unwrap();
     fs::copy(part(&folder, 0), part(&folder, 1)).unwrap();
-    assert_refused(&merge(), 1, "damaged 2, of another job 1");
-    assert_refused(&folder.run("job join job 1-2"), 1, "this part is of another job");
+    merge().refused(1, "damaged 2, of another job 1");
     folder.run("job part job 0-3 -q").succeeded();
     assert_merged(&folder);
     // A part of the same groups of another file.
@@ -119,13 +79,9 @@ fn missing_damaged_and_foreign_groups_are_named() {
     split(&other, 4);
     other.run("job part job 0 -q").succeeded();
     fs::copy(part(&other, 0), part(&folder, 0)).unwrap();
-    assert_refused(&merge(), 1, "of another job 0");
+    merge().refused(1, "of another job 0");
     fs::copy(other.path("a.bricks"), folder.path("a.bricks")).unwrap();
-    assert_refused(
-        &folder.run("job part job 0"),
-        1,
-        "this file has changed since the job was split",
-    );
+    folder.refuses("job part job 0", 1, "this file has changed since the job was split");
 }
 
 #[test]
@@ -141,15 +97,6 @@ fn what_groups_cannot_be_is_refused_with_a_reason() {
         ("a.bricks --by-depth 2 --tiles 2x2", "cannot be used with"),
     ];
     for (flags, says) in cases {
-        let run = folder.run(&format!("job split {flags} -o no --backend cpu"));
-        assert_refused(&run, 2, says);
-        assert!(!folder.path("no").exists(), "{flags}");
+        folder.refuses(&format!("job split {flags} -o no --backend cpu"), 2, says);
     }
-    split(&folder, 3);
-    for (units, says) in [("1", "two or more"), ("0,2", "follow each other"), ("0-3", "3 units")] {
-        assert_refused(&folder.run(&format!("job join job {units}")), 2, says);
-    }
-    fs::remove_dir_all(folder.path("job")).unwrap();
-    folder.run("job split a.npy --tiles 2x1 -o job -q --style fast --backend cpu").succeeded();
-    assert_refused(&folder.run("job join job 0-1"), 2, "only parts of groups of bricks are joined");
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use sha2::{Digest, Sha256};
 
-use crate::job::{folder, part, status, through_parts};
+use crate::job::{folder, missing, part, through_parts};
 use crate::support::Folder;
 
 const SPLIT: &str = "a.xyz --frames :4 --tiles 2x2 --size 120x90 --samples 6";
@@ -55,8 +55,9 @@ fn killed_parts_are_rendered_again() {
             let _ = fs::remove_file(part(&folder, unit));
         }
     }
-    let found = status(&folder);
-    assert_eq!((&found["damaged"], &found["foreign"]), (&"".into(), &"".into()));
+    let is_there = |unit: &usize| part(&folder, *unit).exists();
+    let not_there: Vec<usize> = (0..16).filter(|unit| !is_there(unit)).collect();
+    assert_eq!(missing(&folder), not_there);
     assert_completed(&folder, &wanted);
 }
 
@@ -86,9 +87,8 @@ fn a_full_disk_leaves_no_part() {
         let parts: Vec<_> = fs::read_dir(folder.path("job/parts")).unwrap().collect();
         assert!(parts.is_empty(), "{blocks}: {parts:?}");
     }
-    assert_eq!(status(&folder)["failed"][0]["unit"], 0);
+    assert_eq!(missing(&folder).len(), 16);
     assert_completed(&folder, &wanted);
-    assert_eq!(status(&folder)["failed"], serde_json::json!([]));
 }
 
 #[test]
@@ -122,31 +122,21 @@ fn merge_waits_for_parts_that_are_not_seen_yet() {
     assert_completed(&folder, &wanted);
 }
 
-/// Marks of running units count by the clock of the file system, and one from the future is fresh.
 #[test]
 fn clocks_that_differ_do_no_harm() {
     let folder = folder();
     split(&folder);
-    let mark = folder.path("job/running/000003");
-    fs::write(&mark, "process 1 of elsewhere\n").unwrap();
     let day = Duration::from_secs(86_400);
-    for (time, running) in
-        [(SystemTime::now(), "3"), (SystemTime::now() + day, "3"), (SystemTime::now() - day, "")]
-    {
-        File::options().write(true).open(&mark).unwrap().set_modified(time).unwrap();
-        assert_eq!(status(&folder)["running"], running);
-    }
     // What a process left that was killed long ago is removed.
     let [old, new] = ["old", "new"].map(|name| folder.path(&format!("job/parts/.pinhole-{name}")));
     File::create(&old).unwrap().set_modified(SystemTime::now() - day).unwrap();
     File::create(&new).unwrap();
     folder.run("job part job 0-15 -q").succeeded();
     assert!(!old.exists() && new.exists());
-    assert_eq!(status(&folder)["running"], "");
     // Parts of any age are parts.
     let old = File::options().write(true).open(part(&folder, 0)).unwrap();
     old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
-    assert_eq!(status(&folder)["complete"], true);
+    assert_eq!(missing(&folder), [0_usize; 0]);
 }
 
 #[test]
@@ -162,9 +152,6 @@ fn a_part_that_hangs_ends_with_a_code_of_its_own() {
         run.stderr,
         "error: unit 0 did not end within 0.5 s; the device may hang: try again\n"
     );
-    let found = status(&folder);
-    assert_eq!(found["failed"][0]["why"], "unit 0 did not end within 0.5 s");
-    assert_eq!((&found["running"], &found["done"]), (&"".into(), &0.into()));
     assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
 }
 
@@ -214,7 +201,6 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     assert!(run.stderr.contains("Another GPU (driver 1.2) 3, CPU ("), "{}", run.stderr);
     assert!(run.stderr.ends_with("add --allow-mixed-adapters\n"), "{}", run.stderr);
     assert!(!folder.path("m0.png").exists());
-    assert_eq!(status(&folder)["devices"]["Another GPU (driver 1.2)"], 1);
     folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
     assert!(folder.read("m0.png") == folder.read("good0.png"));
 }

@@ -1,6 +1,6 @@
 //! Jobs refuse bad input with one line, and overwrite nothing.
 
-use crate::job::{folder, part, status, through_parts};
+use crate::job::{folder, missing, part, through_parts};
 use crate::support::Folder;
 
 /// A job of four parts that is complete.
@@ -12,17 +12,6 @@ fn complete() -> Folder {
         "-o good%d.png",
     );
     folder
-}
-
-#[track_caller]
-fn assert_refused(folder: &Folder, arguments: &str, code: i32, words: &str) {
-    let before = folder.files();
-    let run = folder.run(arguments);
-    assert_eq!(run.code, code, "{arguments}: {}", run.stderr);
-    assert!(run.stderr.starts_with("error: "), "{arguments}: {}", run.stderr);
-    assert!(run.stderr.contains(words), "{arguments}: {}", run.stderr);
-    assert_eq!(run.stderr.lines().count(), 1, "{arguments}: {}", run.stderr);
-    assert_eq!(folder.files(), before, "{arguments}");
 }
 
 #[test]
@@ -37,20 +26,17 @@ fn wrong_usage_is_one_line() {
         ("split a.xyz -o new --time 3", "choose --samples N"),
         ("split a.xyz -o new --noise 0.1", "choose --samples N"),
         ("split a.xyz -o new --frames : --resume", "belongs to `pinhole job merge`"),
-        ("split a.xyz -o new --samples-per-part 0", "0 is not in 1.."),
-        ("split a.xyz -o new --samples-per-part 4 --noise 0.1", "--noise"),
         (
-            "split a.xyz -o new --samples 16777216 --samples-per-part 1",
-            "these are more than 1000000 units; choose a larger --samples-per-part, or fewer tiles",
+            "split a.xyz -o new --size 3000x2000 --tiles 2000x1000",
+            "more than 1000000 units; choose fewer tiles or frames",
         ),
-        ("split a.xyz -o new --size 3000x2000 --tiles 2000x1000", "choose fewer tiles or frames"),
-        ("split a.xyz -o new --samples-per-part 4 --style fast", "only to lit pictures"),
         ("split a.xyz -o new --layer deth", "there is no layer `deth`"),
         ("split a.xyz -o new --frames 9", "there is no frame 9"),
         ("split stereo.toml -o new --stereo two-files", "remove it"),
         ("split - --format xyz -o new", "name a file"),
         ("part job 4", "this job has 4 units, 0 to 3"),
         ("part job 2-9", "this job has 4 units, 0 to 3"),
+        ("status job", "--missing"),
         ("part job x", "write an index"),
         ("part job 3-1", "write an index"),
         ("part job 0 --timeout 0", "greater than 0"),
@@ -62,10 +48,10 @@ fn wrong_usage_is_one_line() {
         ("merge job -o no/m%d.png", "does not exist"),
         ("merge job -o m%d.png --wait -1", "at least 0"),
     ] {
-        assert_refused(&folder, &format!("job {arguments}"), 2, words);
+        folder.refuses(&format!("job {arguments}"), 2, words);
     }
-    assert_refused(&folder, "job split none.xyz -o new", 1, "none.xyz");
-    assert_refused(&folder, "job part none 0", 1, "this is not the folder of a job");
+    folder.refuses("job split none.xyz -o new", 1, "none.xyz");
+    folder.refuses("job part none 0", 1, "this is not the folder of a job");
 }
 
 /// Each file of a job missing, cut off, altered, or of another job or version.
@@ -75,7 +61,7 @@ fn damaged_files_of_a_job_are_refused() {
     let read = |name: &str| folder.read(name);
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path(name), bytes).unwrap();
     let merge = "job merge job -o bad%d.png";
-    let all = ["job part job 0", "job status job", merge];
+    let all = ["job part job 0", "job status job --missing", merge];
     let good = read("job/job.json");
     let text = String::from_utf8(good.clone()).unwrap();
     let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
@@ -91,21 +77,20 @@ fn damaged_files_of_a_job_are_refused() {
         (text.replace("\"samples\"", "\"sample\"").into(), "this file is damaged"),
     ] {
         write("job/job.json", &bytes);
-        all.iter().for_each(|arguments| assert_refused(&folder, arguments, 1, words));
+        all.iter().for_each(|arguments| folder.refuses(arguments, 1, words));
     }
     std::fs::remove_file(folder.path("job/job.json")).unwrap();
-    all.iter()
-        .for_each(|arguments| assert_refused(&folder, arguments, 1, "not the folder of a job"));
+    all.iter().for_each(|arguments| folder.refuses(arguments, 1, "not the folder of a job"));
     write("job/job.json", &good);
     // What all frames are together is needed only by parts that are not there.
     let overview = read("job/overview.bin");
     std::fs::remove_file(part(&folder, 0)).unwrap();
     for bytes in [&overview[8..], &[]] {
         write("job/overview.bin", bytes);
-        assert_refused(&folder, "job part job 0", 1, "this file is damaged; split the job again");
+        folder.refuses("job part job 0", 1, "this file is damaged; split the job again");
     }
     std::fs::remove_file(folder.path("job/overview.bin")).unwrap();
-    assert_refused(&folder, "job part job 0", 1, "overview.bin: cannot be read");
+    folder.refuses("job part job 0", 1, "overview.bin: cannot be read");
     write("job/overview.bin", &overview);
     // The data has changed, and is as long as before.
     let data = read("a.xyz");
@@ -113,12 +98,7 @@ fn damaged_files_of_a_job_are_refused() {
     let last = other.iter().rposition(u8::is_ascii_digit).unwrap();
     other[last] ^= 1;
     write("a.xyz", &other);
-    assert_refused(
-        &folder,
-        "job part job 0",
-        1,
-        "a.xyz: this file has changed since the job was split",
-    );
+    folder.refuses("job part job 0", 1, "a.xyz: this file has changed since the job was split");
     write("a.xyz", &data);
     folder.run("job part job 0 -q").succeeded();
     folder.run(&format!("{merge} -q")).succeeded();
@@ -144,26 +124,25 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
     damaged.extend([[&good[0][..], b"x"].concat(), vec![0; end], b"pinhole part 1\n".to_vec()]);
     for bytes in damaged {
         put(0, &bytes);
-        assert_refused(
-            &folder,
+        folder.refuses(
             "job merge job -o m%d.png",
             1,
             "damaged 0; render them again with --array=0",
         );
-        assert_eq!(status(&folder)["done"], 3);
+        assert_eq!(missing(&folder), [0]);
         folder.run("job part job 0 -q").succeeded();
-        assert_eq!(status(&folder)["done"], 4);
+        assert_eq!(missing(&folder), [0_usize; 0]);
     }
     // A part of another unit, and one of another job.
     put(2, &good[1]);
-    assert_refused(&folder, "job merge job -o m%d.png", 1, "of another job 2; ");
+    folder.refuses("job merge job -o m%d.png", 1, "of another job 2; ");
     put(2, &good[2]);
     let other = complete();
     std::fs::remove_dir_all(other.path("job")).unwrap();
     through_parts(&other, "a.xyz --frames :2 --tiles 2x1 --size 40x30 --samples 3", "-o o%d.png");
     std::fs::copy(part(&other, 3), part(&folder, 3)).unwrap();
-    assert_refused(&folder, "job merge job -o m%d.png", 1, "of another job 3; ");
-    assert_eq!(status(&folder)["foreign"], "3");
+    folder.refuses("job merge job -o m%d.png", 1, "of another job 3; ");
+    assert_eq!(missing(&folder), [3]);
     folder.run("job part job 3 -q").succeeded();
     folder.run("job merge job -o m%d.png -q").succeeded();
     assert!(folder.read("m1.png") == folder.read("good1.png"));

@@ -23,8 +23,8 @@ mod job_depth;
 #[cfg(unix)]
 mod job_faults;
 mod job_input;
-#[cfg(unix)]
-mod job_slurm;
+#[cfg(target_os = "linux")]
+mod job_recipes;
 mod legend_room;
 mod light;
 mod looks;

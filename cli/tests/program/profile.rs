@@ -71,7 +71,6 @@ fn a_trace_that_cannot_be_written_is_refused_before_the_work() {
         ("scene.toml --profile=no/a.json", "no/a.json: the folder no does not exist"),
         ("data.json --format csv --profile=data.json", "data.json: this output is also an input"),
         ("scene.toml --print-scene --profile", "cannot be used with"),
-        ("scene.toml --print-scene --samples-per-part 2", "cannot be used with"),
         ("scene.toml --print-scene --keep-partial", "cannot be used with"),
     ];
     for (arguments, message) in cases {

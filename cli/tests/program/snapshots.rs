@@ -51,8 +51,7 @@ fn compare(name: &str, found: &str) {
 #[cfg_attr(not(feature = "gpu"), ignore = "without the feature `gpu` there are fewer commands")]
 fn help() {
     let folder = Folder::new();
-    let jobs =
-        ["job", "job split", "job part", "job status", "job merge", "job join", "job submit"];
+    let jobs = ["job", "job split", "job part", "job status", "job merge"];
     let others =
         ["", "render", "verify", "certify", "plan", "bench", "demo", "generate", "info", "sort"];
     for command in others.into_iter().chain(jobs) {
@@ -106,6 +105,7 @@ macro_rules! areas {
 
 areas!(
     cases::arguments
+    cases::removed
     cases::files
     cases::arrays
     certify::certify

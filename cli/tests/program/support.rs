@@ -63,6 +63,14 @@ impl Folder {
         Run::new(output)
     }
 
+    /// Runs `pinhole`, which ends with this exit code and one line that has these words, and changes no file.
+    #[track_caller]
+    pub(crate) fn refuses(&self, arguments: &str, code: i32, words: &str) {
+        let before = self.files();
+        self.run(arguments).refused(code, words);
+        assert_eq!(self.files(), before, "{arguments}");
+    }
+
     /// Runs `pinhole` like [`Folder::run`], but the Vulkan loader finds no driver.
     pub(crate) fn run_without_drivers(&self, arguments: &str) -> Run {
         let mut command = self.command(arguments);
@@ -101,6 +109,15 @@ impl Run {
             stderr: text[..text.len() - length].to_owned(),
             said,
         }
+    }
+
+    /// Checks that the run ended with this exit code and one line that has these words.
+    #[track_caller]
+    pub(crate) fn refused(&self, code: i32, words: &str) {
+        let said = &self.stderr;
+        assert_eq!(self.code, code, "{said}");
+        assert!(said.starts_with("error: ") && said.contains(words), "{said} lacks {words}");
+        assert_eq!(said.lines().count(), 1, "{said}");
     }
 
     #[track_caller]

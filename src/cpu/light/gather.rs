@@ -8,7 +8,7 @@ use super::film_sums::{FilmSums, STRIP};
 use crate::cpu::pace::Pace;
 use crate::cpu::{RenderError, for_rows, primary_watched};
 use crate::image::{Image, LayerSet};
-use crate::render::{Decision, Picture, Progress, Sampling, Watch, batch};
+use crate::render::{Decision, Picture, Progress, Watch, batch};
 
 impl SampledPicture<'_> {
     /// Renders all pixels batch by batch of samples, and asks after parts of each batch how to continue; see
@@ -63,7 +63,7 @@ impl SampledPicture<'_> {
     fn gather(&self, sums: &mut FilmSums, watch: &mut Watch<'_>) -> Result<(), RenderError> {
         // Its own, because a sample may take many times as long as what the layers of data need.
         let mut pace = Pace::new();
-        let Sampling { samples: total, first: start, .. } = self.context.settings.sampling;
+        let total = self.context.settings.sampling.samples;
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
         let mut wants_noise = false;
         let count = sums.strips();
@@ -73,7 +73,7 @@ impl SampledPicture<'_> {
             let mut decision = Decision::GoOn;
             let done = pace.run(count, |strips| {
                 let last = strips.end;
-                sums.add(strips, first..end, |pixel, sample| self.sample(pixel, start + sample));
+                sums.add(strips, first..end, |pixel, sample| self.sample(pixel, sample));
                 if last == count {
                     return Ok(());
                 }

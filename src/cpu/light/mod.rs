@@ -18,7 +18,7 @@ use crate::cpu::search::Search;
 use crate::geometry::math::wide;
 use crate::image::outline;
 use crate::image::{Averages, Image, LayerSet, NO_ID, Pixel};
-use crate::render::{Integrator, PrimarySettings, RenderSettings, Sampling, SettingsError};
+use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
 
 mod bsdf;
 mod color;
@@ -69,8 +69,8 @@ impl<'a> SampledPicture<'a> {
         })
     }
 
-    /// One sample of a pixel, given as column and row. It has the random numbers of this sample, wherever those of the
-    /// picture begin. With the integrator `primary`, all samples of a pixel are the same.
+    /// One sample of a pixel, given as column and row. With the integrator `primary`, all samples of a pixel are the
+    /// same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
@@ -124,10 +124,10 @@ impl<'a> SampledPicture<'a> {
     }
 
     fn averages(&self, pixel: [u32; 2]) -> Averages {
-        let Sampling { samples, first, .. } = self.context.settings.sampling;
+        let count = self.context.settings.sampling.samples;
         let mut sums = PixelSums::default();
-        (first..first + samples).for_each(|sample| sums.add(&self.sample(pixel, sample)));
-        sums.means(samples).averages
+        (0..count).for_each(|sample| sums.add(&self.sample(pixel, sample)));
+        sums.means(count).averages
     }
 
     /// The data layers of a pixel, from the ray through its centre.

@@ -6,7 +6,6 @@ use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_recording::{EachSample, LitPart};
-use crate::gpu::headless::parts::PartsOptions;
 use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch};
 use crate::gpu::headless::timer::TraceTime;
@@ -18,7 +17,7 @@ use crate::gpu::self_test::{SelfTestExtent, SelfTestReport};
 use crate::gpu::waiting::block_on;
 use crate::image::{Image, LayerSet};
 use crate::render::{Nearest, RenderSettings};
-use crate::scene::{Scene, SceneParts, SceneUpdate};
+use crate::scene::{Scene, SceneUpdate};
 use crate::verify::{Certificate, Recording};
 
 impl Headless {
@@ -90,35 +89,6 @@ impl Headless {
         block_on(self.render_async(scene, view, settings, layers))
     }
 
-    /// Renders a picture with light of a scene that is too large for memory: the paths of as many samples as
-    /// `options.bytes_in_flight` allows are in flight at once, and for each of their steps, one part of the scene after
-    /// the other is read, built, copied to the device, searched and dropped. The picture is that of the whole scene, to
-    /// the bit.
-    ///
-    /// `image` has the layers of [`RenderSettings::layers_for`]; those of one ray for each pixel (depth, normal, id,
-    /// position) are those of [`Nearest`], which [`Headless::render_nearest`] makes with the settings
-    /// [`RenderSettings::default`], and the others may have any values. `upload_watch` is called before each part is read,
-    /// `watch` after each submission. Samples are complete only at the end, so that [`Decision::Finish`](crate::gpu::Decision) and
-    /// `MeasureNoise` are not followed.
-    ///
-    /// # Errors
-    /// [`GpuError::NotLit`] for the integrator `primary`, [`GpuError::PartLayers`] for another image,
-    /// [`GpuError::PartMaterials`] if spheres are transparent, shine, or are of several materials, [`GpuError::Part`] if a
-    /// part cannot be read; else as for [`Headless::render`].
-    #[expect(clippy::too_many_arguments, reason = "they are those of one picture")]
-    pub fn light_parts(
-        &self,
-        parts: &mut dyn SceneParts,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        image: Image,
-        layers: LayerSet,
-        options: PartsOptions,
-        watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
-    ) -> Result<Picture, GpuError> {
-        block_on(self.light_parts_async(parts, view, settings, image, layers, options, watches))
-    }
-
     /// Builds the planned structures of a scene and renders one picture, like [`Headless::upload_planned`] and
     /// [`Headless::render_uploaded`], which call the two callbacks.
     ///
@@ -188,27 +158,6 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
         block_on(self.render_uploaded_async(scene, view, settings, layers, watch))
-    }
-
-    /// Renders a lit picture in parts of `samples_per_part` samples, each a picture of its own, and takes the mean of all
-    /// as [`SampleMean`](crate::image::SampleMean) does: these are the bits of parts that several machines with such a
-    /// device render. Else it is like [`Headless::render_uploaded`], except that the picture cannot be finished early and
-    /// its noise is not measured.
-    ///
-    /// # Errors
-    /// The same as for [`Headless::render_uploaded`].
-    pub fn render_in_parts(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        samples_per_part: u32,
-        watch: &mut Watch<'_>,
-    ) -> Result<Picture, GpuError> {
-        let rendered =
-            self.render_in_parts_async(scene, view, settings, layers, samples_per_part, watch);
-        block_on(rendered)
     }
 
     /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with

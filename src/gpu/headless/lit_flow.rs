@@ -72,7 +72,7 @@ impl<'a> Flow<'a> {
     pub(in crate::gpu) async fn round(
         &mut self,
         tile: usize,
-        steps: &[Step<'_>],
+        steps: &[Step<'a>],
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         self.begin(tile);
@@ -84,20 +84,15 @@ impl<'a> Flow<'a> {
 
     /// Starts new paths in a tile.
     pub(in crate::gpu) fn begin(&mut self, tile: usize) {
-        self.go_to(tile);
-        let frame = self.frame;
-        frame.record_clear_lists(self.encoder(), tile);
-    }
-
-    /// Goes on with the paths of a tile.
-    pub(in crate::gpu) fn go_to(&mut self, tile: usize) {
         self.recorder.tile = tile;
+        let frame = self.frame;
+        frame.record_clear_lists(self.encoder());
     }
 
     /// Records a dispatch, divided into slices if it takes long.
     pub(in crate::gpu) async fn step(
         &mut self,
-        step: &Step<'_>,
+        step: &Step<'a>,
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         // A slice of a list needs one more dispatch.
@@ -139,13 +134,13 @@ impl<'a> Flow<'a> {
     }
 
     /// Notes how many samples the tile has after a dispatch, if it completes some.
-    fn note_samples(&mut self, step: &Step<'_>) {
+    fn note_samples(&mut self, step: &Step<'a>) {
         if step.moment == Some(Moment::Accumulated) {
             self.accumulated.push((self.recorder.tile, step.samples_after()));
         }
     }
 
-    fn record(&mut self, step: &Step<'_>, slice: Option<Groups>) {
+    fn record(&mut self, step: &Step<'a>, slice: Option<Groups>) {
         let headless = self.headless;
         let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
         self.recorder.record(encoder, step, slice);

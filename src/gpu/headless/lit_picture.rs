@@ -16,7 +16,7 @@ use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
-use crate::render::{InParts, PrimarySettings, RenderSettings, Totals, batch, to_the_end};
+use crate::render::{PrimarySettings, RenderSettings, Totals, batch};
 
 impl Headless {
     /// Renders a lit picture of a scene that is already on this device.
@@ -69,30 +69,6 @@ impl Headless {
         }
         image.keep(layers);
         Ok(image)
-    }
-
-    /// Renders a lit picture in parts of its samples like [`Headless::render_in_parts`], without blocking the thread.
-    ///
-    /// # Errors
-    /// The same as for [`Headless::render_uploaded`].
-    pub async fn render_in_parts_async(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        samples_per_part: u32,
-        watch: &mut Watch<'_>,
-    ) -> Result<Picture, GpuError> {
-        let mut whole = InParts::new(settings.sampling.samples);
-        for part in settings.unfinished_parts(samples_per_part) {
-            let watch = &mut |progress: &Progress| to_the_end(watch(&whole.progress(progress)));
-            let layers = settings.layers_for(layers);
-            let picture = self.render_uploaded_async(scene, view, &part, layers, watch).await?;
-            whole.add(picture)?;
-        }
-        let picture = whole.picture().ok_or(GpuError::Stopped)?;
-        Ok(Picture { image: self.finish_async(picture.image, settings, layers).await?, ..picture })
     }
 
     /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples
@@ -148,15 +124,15 @@ impl Headless {
 }
 
 /// The inputs of a lit picture.
-pub(in crate::gpu) struct Work<'a> {
-    pub(in crate::gpu) headless: &'a Headless,
-    pub(in crate::gpu) passes: &'a LitPasses,
-    pub(in crate::gpu) scenes: LitScene<'a>,
-    pub(in crate::gpu) view: &'a View<'a>,
-    pub(in crate::gpu) settings: &'a RenderSettings,
-    pub(in crate::gpu) lighting: &'a LightingData,
+struct Work<'a> {
+    headless: &'a Headless,
+    passes: &'a LitPasses,
+    scenes: LitScene<'a>,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+    lighting: &'a LightingData,
     /// Maximum number of directions of ambient light that one dispatch searches.
-    pub(in crate::gpu) at_once: u32,
+    at_once: u32,
 }
 
 impl Work<'_> {
@@ -269,7 +245,7 @@ impl Work<'_> {
 
 /// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
 async fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
-    frame.record_copy_spent(flow.encoder(), 0);
+    frame.record_copy_spent(flow.encoder());
     flow.finish(&[frame.spent_back.buffer()]).await?;
     frame.read_spent()
 }

@@ -71,9 +71,7 @@ impl Headless {
         }
         check_whole(&view.film)?;
         settings.check_with(scene.appearance())?;
-        let mut lighting = LightingData::new(settings, scene.summary(), view.camera);
-        // What is recorded has the numbers that `samples` names, wherever the samples of the picture begin.
-        lighting.first_sample = 0;
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let side = if lighting.mode.is_studio() { longest_side(&lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };

@@ -5,7 +5,6 @@ use wgpu::Device;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
-use crate::gpu::passes::lit::records::HIT_SLOT;
 use crate::gpu::passes::lit::{LitFrame, Mode, Moment};
 use crate::verify::{LitRecording, PathState, PixelSums, RecordedFilm};
 
@@ -82,8 +81,8 @@ pub(super) trait Keep {
     fn recording(&self) -> LitRecording<'_>;
 }
 
-/// Index of the slot of the hit.
-const HIT: usize = HIT_SLOT as usize;
+/// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
+const HIT: usize = 6;
 
 /// The source of a slot of a [`PathState`].
 #[derive(Clone, Copy, Debug)]
@@ -126,18 +125,14 @@ pub(super) struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of the states and sums of a frame with this number of pixels.
     pub(super) fn new(device: &Device, frame: &'a LitFrame, pixels: u32, mode: Mode) -> Self {
-        let paths = ReadableBuffer::new(
-            device,
-            "pinhole paths read-back",
-            frame.tiles[0].in_flight.paths.size(),
-        );
+        let paths = ReadableBuffer::new(device, "pinhole paths read-back", frame.paths.size());
         Self { frame, paths, pixels: pixels as usize, slots: slot_sources(mode) }
     }
 
     pub(super) async fn film(&self, flow: &mut Flow<'_>) -> Result<Vec<PixelSums>, GpuError> {
         let frame = self.frame;
         frame.record_copy_film(flow.encoder(), 0);
-        frame.record_copy_spent(flow.encoder(), 0);
+        frame.record_copy_spent(flow.encoder());
         flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()]).await?;
         frame.read_spent()?;
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
@@ -161,7 +156,7 @@ impl<'a> Reader<'a> {
             },
             Wanted::All => 0..self.paths.buffer().size(),
         };
-        let paths = &self.frame.tiles[0].in_flight.paths;
+        let paths = &self.frame.paths;
         let (start, size) = (range.start, range.end - range.start);
         flow.encoder().copy_buffer_to_buffer(paths, start, self.paths.buffer(), start, size);
         flow.finish(&[self.paths.buffer()]).await?;

@@ -17,7 +17,6 @@ mod lit_states;
 pub(in crate::gpu) mod measure;
 mod nearest_picture;
 pub(in crate::gpu) mod one_picture;
-pub(in crate::gpu) mod parts;
 mod path_recording;
 pub(in crate::gpu) mod plan;
 pub(in crate::gpu) mod planning;

@@ -119,17 +119,7 @@ impl ReadableBuffer {
 
     /// Records a copy of a buffer of the same size, or of the start of a larger one, to this buffer.
     pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, written: &Buffer) {
-        self.record_copy_from(encoder, written, 0);
-    }
-
-    /// Records a copy of the part of a larger buffer that begins at a byte.
-    pub(in crate::gpu) fn record_copy_from(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        written: &Buffer,
-        first: u64,
-    ) {
-        encoder.copy_buffer_to_buffer(written, first, &self.buffer, 0, self.buffer.size());
+        encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
     }
 
     /// Returns the result of `read` for the elements, and unmaps the buffer, which must be mapped.

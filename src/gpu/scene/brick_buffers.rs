@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use wgpu::{BindGroup, BindingResource, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
-use crate::accel::{Brick, BrickBounds, BrickKind, Index, Primitive, Structure};
+use crate::accel::{Brick, BrickBounds, BrickKind, Index};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
@@ -40,29 +40,16 @@ pub(in crate::gpu) struct BrickContents<'a> {
     bounds: BrickBounds,
     /// The shapes in the order of the structure, in the layout that the primitive's WGSL file reads.
     shapes: &'a [u8],
-    /// The id of each shape in the scene that was given.
+    /// The id of each shape.
     ids: &'a [u32],
-    /// The id of each shape that kernels report.
-    reported: &'a [u32],
     index: &'a Index,
 }
 
 impl<'a> BrickContents<'a> {
-    pub(in crate::gpu) fn of_spheres(
-        brick: &'a Brick,
-        [ids, reported]: [&'a [u32]; 2],
-        kind: BrickKind,
-    ) -> Self {
+    pub(in crate::gpu) fn of_spheres(brick: &'a Brick, ids: &'a [u32], kind: BrickKind) -> Self {
         let Brick { index, spheres, .. } = brick;
         let bounds = BrickBounds::of_spheres(spheres);
-        Self { kind, bounds, shapes: bytemuck::cast_slice(spheres), ids, reported, index }
-    }
-
-    /// No shapes: a brick that shades misses and the ground, and is never searched.
-    pub(in crate::gpu) fn nothing() -> Self {
-        let kind = BrickKind { structure: Structure::List, primitive: Primitive::Sphere };
-        let (bounds, index) = (BrickBounds::EMPTY, &Index::List);
-        Self { kind, bounds, shapes: &[], ids: &[], reported: &[], index }
+        Self { kind, bounds, shapes: bytemuck::cast_slice(spheres), ids, index }
     }
 }
 
@@ -92,7 +79,7 @@ impl Upload<'_> {
         brick: &BrickContents<'_>,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
-        let BrickContents { kind, bounds, shapes, ids, reported, index } = *brick;
+        let BrickContents { kind, bounds, shapes, ids, index } = *brick;
         let layouts = &self.renderer.layouts;
         let trace_layout = layouts.brick_like(kind)?;
         let appearances = AppearanceWords::of(&self.appearance, ids);
@@ -110,7 +97,7 @@ impl Upload<'_> {
         // A buffer binding must not be empty.
         let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
         let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
-        let ids = if reported.is_empty() { &no_word[..] } else { reported };
+        let ids = if ids.is_empty() { &no_word[..] } else { ids };
         // What shares a buffer with the ids, so that a kernel has enough bindings.
         let mut with_ids: Vec<&[u32]> = vec![ids];
         let mut words: Vec<&[u32]> = Vec::new();

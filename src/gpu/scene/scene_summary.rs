@@ -49,11 +49,6 @@ impl SceneSummary {
         }
     }
 
-    /// The summary of a part of a scene without emissive spheres.
-    pub(in crate::gpu) fn of_part(origin: DVec3, appearance: Arc<SceneAppearance>) -> Self {
-        Self { origin, appearance, emitters: Emitters::default(), emissive: Vec::new() }
-    }
-
     /// The summary for a structure of occluders, whose appearance is never used.
     pub(in crate::gpu) fn of_occluders(scene: &Scene) -> Self {
         Self {

@@ -93,32 +93,14 @@ impl<'a> SceneUpload<'a> {
         let ids = self.ids.of(&brick.ids);
         let structure = self.space.structure.with_nested(brick.is_nested());
         let kind = BrickKind { structure, primitive: Primitive::Sphere };
-        let reported = self.ids.reported(&ids);
-        let contents = BrickContents::of_spheres(brick, [&ids, &reported], kind);
+        let contents = BrickContents::of_spheres(brick, &ids, kind);
         self.bricks.push(self.upload.brick(&contents, &self.palette).await?);
         Ok(())
-    }
-
-    /// Queues a brick without shapes, which shades misses and the ground.
-    pub(in crate::gpu) async fn nothing(&mut self) -> Result<(), GpuError> {
-        self.bricks.push(self.upload.brick(&BrickContents::nothing(), &self.palette).await?);
-        Ok(())
-    }
-
-    /// The same upload for bricks whose shapes are counted from `first_shape` on.
-    pub(in crate::gpu) fn counted_from(mut self, first_shape: u32) -> Self {
-        self.upload.first_shape = first_shape;
-        self
     }
 
     /// Returns the work since the last call that has to be submitted before the bricks are searched.
     pub(in crate::gpu) fn take_work(&mut self) -> Vec<CommandEncoder> {
         std::mem::take(&mut self.upload.work)
-    }
-
-    /// The bytes of all bricks so far on the device.
-    pub(in crate::gpu) fn bytes(&self) -> u64 {
-        self.upload.bytes
     }
 
     /// Returns the bricks since the last call, each of which is searched as what it is.

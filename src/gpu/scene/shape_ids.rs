@@ -23,8 +23,6 @@ impl ExcludeBy {
 pub(in crate::gpu) struct ShapeIds {
     /// The id of every sphere that the structure was built from; `None` if every sphere's id is its index.
     ids: Option<Vec<u32>>,
-    /// The id in the whole scene of every sphere of a part; `None` if all spheres are there.
-    in_whole: Option<Vec<u32>>,
     pub(in crate::gpu) exclude_by: ExcludeBy,
 }
 
@@ -36,32 +34,14 @@ impl ShapeIds {
         let duplicates = may_part_equals.then(|| Duplicates::of(scene.spheres()));
         let ids = duplicates.and_then(Duplicates::into_firsts);
         let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
-        Self { ids, in_whole: None, exclude_by }
+        Self { ids, exclude_by }
     }
 
     /// The ids for a structure of the opaque spheres only: their indices among all spheres.
     pub(in crate::gpu) fn of_opaque(scene: &Scene) -> Self {
         let duplicates = Duplicates::of(scene.spheres());
         let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
-        Self { ids: Some(ids), in_whole: None, exclude_by: ExcludeBy::Id }
-    }
-
-    /// The ids of no spheres.
-    pub(in crate::gpu) fn none() -> Self {
-        Self { ids: None, in_whole: None, exclude_by: ExcludeBy::Index }
-    }
-
-    /// The same ids for a part of a scene whose spheres have these ids in the whole.
-    pub(in crate::gpu) fn of_part(self, in_whole: Vec<u32>) -> Self {
-        Self { in_whole: Some(in_whole), ..self }
-    }
-
-    /// The ids that kernels report for some of [`ShapeIds::of`].
-    pub(in crate::gpu) fn reported<'a>(&self, ids: &'a [u32]) -> Cow<'a, [u32]> {
-        match &self.in_whole {
-            None => ids.into(),
-            Some(in_whole) => ids.iter().map(|id| in_whole[*id as usize]).collect(),
-        }
+        Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
     }
 
     /// The ids of spheres that are given by their indices in the input of the structure.

@@ -45,7 +45,6 @@ pub(super) fn read_sampling(
     let SamplingTable { samples, seed, filter, .. } = table.into_inner().0;
     let sampling = Sampling {
         samples: samples.as_ref().map_or(defaults.samples, |samples| *samples.get_ref()),
-        first: 0,
         seed: seed.unwrap_or(defaults.seed),
         filter: filter.unwrap_or(defaults.filter),
     };

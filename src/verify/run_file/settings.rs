@@ -52,8 +52,7 @@ pub(super) fn numbers(settings: &RenderSettings) -> Vec<f64> {
             all.extend([2.0, f64::from(*max_depth), f64::from(*roulette_from), sampling]);
         }
     }
-    // Where the samples of a picture begin does not matter to those that were recorded, which have numbers of their own.
-    let Sampling { samples, first: _, seed, filter } = sampling;
+    let Sampling { samples, seed, filter } = sampling;
     all.extend([f64::from(*samples), f64::from(*seed), place(PixelFilter::ALL, filter)]);
     let Sky { light, is_visible } = sky;
     match light {
@@ -218,7 +217,6 @@ pub(super) fn settings(
     };
     let sampling = Sampling {
         samples: all.whole()?,
-        first: 0,
         seed: all.whole()?,
         filter: all.one_of(PixelFilter::ALL)?,
     };

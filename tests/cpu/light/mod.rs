@@ -35,7 +35,7 @@ pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> RenderSettin
     let tracing = PathTracing { max_depth: 64, roulette_from: u32::MAX, light_sampling };
     RenderSettings {
         integrator: Integrator::Path(tracing),
-        sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box, ..Sampling::default() },
+        sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box },
         lights: Vec::new(),
         sky: Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: true },
         ground: None,

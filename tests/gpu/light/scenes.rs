@@ -6,7 +6,9 @@ use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{
     DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio,
 };
-use pinhole::{Environment, Film, LinearRgb, Material, RenderSettings, Scene, Sphere, View};
+use pinhole::{
+    Environment, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere, View,
+};
 
 /// A scene with its view and its render settings.
 pub(crate) struct LitView {
@@ -206,7 +208,7 @@ fn lit(integrator: Integrator, lights: Vec<Light>) -> RenderSettings {
     RenderSettings {
         integrator,
         lights,
-        sampling: Sampling { samples: SAMPLES, seed: 7, ..Sampling::default() },
+        sampling: Sampling { samples: SAMPLES, seed: 7, filter: PixelFilter::default() },
         background: rgb(0.2, 0.3, 0.4),
         ..RenderSettings::studio()
     }

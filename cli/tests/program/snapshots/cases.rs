@@ -143,6 +143,17 @@ pub(super) fn arguments() -> Vec<Case> {
     )
 }
 
+/// Flags and commands that earlier versions had.
+pub(super) fn removed() -> Vec<Case> {
+    lines(
+        "render scene.toml -o out.png --samples-per-part 4
+         job split scene.toml -o job --samples-per-part=4
+         job join job 0-3
+         job status job --json
+         job submit job --slurm",
+    )
+}
+
 /// Files that are missing, of another kind, or in a place that cannot be written.
 pub(super) fn files() -> Vec<Case> {
     lines(

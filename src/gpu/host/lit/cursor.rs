@@ -104,7 +104,7 @@ impl Cursor {
             if step.is_search() { u64::from(step.layers()) * u64::from(step.rays()) } else { 0 };
         if self.step == 0 && self.left.is_none() {
             // The first step of a round finds empty lists.
-            frame.record_clear_lists(encoder, recorder.tile);
+            frame.record_clear_lists(encoder);
         }
         let mut left = self.left.take().unwrap_or_else(|| vec![whole]);
         // A slice of a list takes two dispatches, and the caller may add one to those of a step.

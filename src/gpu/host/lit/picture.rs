@@ -253,7 +253,7 @@ impl LitPicture {
             return Ok(progress(self, &budget, LitState::Waiting));
         };
         if !self.is_cleared {
-            for word in [self.frame.spent(0), self.data.status()] {
+            for word in [self.frame.spent(), self.data.status()] {
                 encoder.clear_buffer(word, 0, Some(4));
             }
             for tile in 0..self.frame.tiles.len() {
@@ -265,7 +265,7 @@ impl LitPicture {
             self.record_samples(queue, encoder, scene, place, &mut budget)?;
         }
         self.is_cleared = true;
-        self.tickets.record(encoder, place, [self.frame.spent(0), self.data.status()]);
+        self.tickets.record(encoder, place, [self.frame.spent(), self.data.status()]);
         let is_done = self.cursor.samples >= self.total;
         Ok(progress(self, &budget, if is_done { LitState::Done } else { LitState::Refining }))
     }

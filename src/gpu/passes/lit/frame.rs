@@ -39,6 +39,10 @@ pub(in crate::gpu) struct LitFrame {
     parameters: Buffer,
     parameter_stride: usize,
     frame_stride: usize,
+    pub(super) queue: Buffer,
+    pub(super) groups_needed: Buffer,
+    /// The state of all paths, slot by slot.
+    pub(in crate::gpu) paths: Buffer,
     variations: Buffer,
     lit: LightingBuffers,
     pub(in crate::gpu) tiles: Vec<LitTile>,
@@ -53,8 +57,6 @@ pub(in crate::gpu) struct LitFrame {
 pub(in crate::gpu) enum RecordedBy {
     /// This crate, which submits one recording before it makes the next, and reads the sums.
     Headless,
-    /// This crate, with the paths of all tiles in flight at once, because one part of the scene at a time is there.
-    Parts,
     /// A host program, which may have so many recordings under way, and shows the sums.
     Host {
         /// Number of recordings.
@@ -65,29 +67,16 @@ pub(in crate::gpu) enum RecordedBy {
 impl RecordedBy {
     fn at_once(self) -> usize {
         match self {
-            Self::Headless | Self::Parts => 1,
+            Self::Headless => 1,
             Self::Host { at_once } => at_once,
         }
     }
-}
-
-/// The buffers of paths in flight.
-#[derive(Clone, Debug)]
-pub(in crate::gpu) struct PathBuffers {
-    /// The state of all paths, slot by slot.
-    pub(in crate::gpu) paths: Buffer,
-    /// The lists of paths, after the status word and the lengths of the lists.
-    pub(super) lists: Buffer,
-    /// The arguments of indirect dispatches.
-    pub(super) groups_needed: Buffer,
 }
 
 /// A tile, and the sums of its pixels.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitTile {
     pub(in crate::gpu) tile: Tile,
-    /// All tiles have the same, unless all are in flight at once.
-    pub(in crate::gpu) in_flight: PathBuffers,
     pub(super) frames: Frames,
     records: Buffer,
     film: Buffer,
@@ -126,29 +115,33 @@ impl LitFrame {
         let lit = LightingBuffers::new((device, queue), &passes.layouts, lighting).await?;
         let make = Make { device, queue };
         scoped(device, || {
+            let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let parameters = make.buffer(
                 "pinhole parameters",
                 by.at_once() * MAX_DISPATCHES * parameter_stride,
                 BufferUsages::UNIFORM,
             );
-            let variations = make.buffer(
-                "pinhole variations",
-                sizes.variation_bytes() as usize,
-                BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-            );
-            let shared =
-                Shared { passes, frame_stride, parameters: &parameters, variations: &variations };
-            let of_all = (by != RecordedBy::Parts).then(|| make.paths(sizes));
-            let tiles = tiles.map(|(tile, frames)| {
-                let in_flight = of_all.clone().unwrap_or_else(|| make.paths(sizes));
-                make.tile(&shared, sizes, in_flight, tile, frames)
-            });
+            let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
+            let paths = of_paths("pinhole paths", sizes.path_bytes());
+            let lists = of_paths("pinhole lists of paths", sizes.queue_bytes());
+            let variations = of_paths("pinhole variations", sizes.variation_bytes());
+            let needed = storage | BufferUsages::INDIRECT;
+            let groups_needed =
+                make.buffer("pinhole groups needed", sizes.groups_bytes() as usize, needed);
+            let shared = Shared {
+                passes,
+                frame_stride,
+                parameters: &parameters,
+                lists: &lists,
+                paths: &paths,
+                groups_needed: &groups_needed,
+                variations: &variations,
+            };
+            let tiles = tiles.map(|(tile, frames)| make.tile(&shared, sizes, tile, frames));
             let tiles = tiles.collect();
             // A host reads nothing back.
             let back = |label, bytes| match by {
-                RecordedBy::Headless | RecordedBy::Parts => {
-                    ReadableBuffer::new(device, label, bytes)
-                }
+                RecordedBy::Headless => ReadableBuffer::new(device, label, bytes),
                 RecordedBy::Host { .. } => ReadableBuffer::new(device, label, 4),
             };
             Self {
@@ -161,6 +154,9 @@ impl LitFrame {
                 parameters,
                 parameter_stride,
                 frame_stride,
+                queue: lists,
+                groups_needed,
+                paths,
                 variations,
             }
         })
@@ -226,14 +222,14 @@ impl LitFrame {
         self.lit.set(queues, &passes.layouts, lighting, is_new).await
     }
 
-    /// The buffer that begins with the status word of a tile, which becomes nonzero if the search of a ray is abandoned.
-    pub(in crate::gpu) fn spent(&self, tile: usize) -> &Buffer {
-        &self.tiles[tile].in_flight.lists
+    /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
+    pub(in crate::gpu) fn spent(&self) -> &Buffer {
+        &self.queue
     }
 
-    /// Records a command that empties the lists of a tile.
-    pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder, tile: usize) {
-        encoder.clear_buffer(&self.tiles[tile].in_flight.lists, 4, Some(QUEUE_HEAD - 4));
+    /// Records a command that empties the lists.
+    pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
+        encoder.clear_buffer(&self.queue, 4, Some(QUEUE_HEAD - 4));
     }
 
     /// Records a command that clears the sums of a tile.
@@ -241,9 +237,9 @@ impl LitFrame {
         encoder.clear_buffer(&self.tiles[tile].film, 0, None);
     }
 
-    /// Records the copy of the status word of a tile.
-    pub(in crate::gpu) fn record_copy_spent(&self, encoder: &mut CommandEncoder, tile: usize) {
-        self.spent_back.record_copy(encoder, self.spent(tile));
+    /// Records the copy of the status word.
+    pub(in crate::gpu) fn record_copy_spent(&self, encoder: &mut CommandEncoder) {
+        self.spent_back.record_copy(encoder, &self.queue);
     }
 
     /// Returns an error if the searches of some rays were abandoned. The copy of the status word must be mapped.
@@ -265,35 +261,19 @@ impl LitFrame {
     }
 }
 
-/// The passes and buffers that all tiles share in any case.
+/// The passes and buffers that all tiles share.
 struct Shared<'a> {
     passes: &'a LitPasses,
     frame_stride: usize,
     parameters: &'a Buffer,
+    lists: &'a Buffer,
+    paths: &'a Buffer,
+    groups_needed: &'a Buffer,
     variations: &'a Buffer,
 }
 
 impl Make<'_> {
-    fn paths(&self, sizes: LitSizes) -> PathBuffers {
-        let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let buffer = |label, bytes: u64| self.buffer(label, bytes as usize, storage);
-        let indirect = storage | BufferUsages::INDIRECT;
-        let bytes = sizes.groups_bytes() as usize;
-        PathBuffers {
-            paths: buffer("pinhole paths", sizes.path_bytes()),
-            lists: buffer("pinhole lists of paths", sizes.queue_bytes()),
-            groups_needed: self.buffer("pinhole groups needed", bytes, indirect),
-        }
-    }
-
-    fn tile(
-        &self,
-        shared: &Shared<'_>,
-        sizes: LitSizes,
-        in_flight: PathBuffers,
-        tile: Tile,
-        frames: Frames,
-    ) -> LitTile {
+    fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
         let stride = shared.frame_stride;
         let bytes = strided(&frames, stride);
         let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
@@ -303,14 +283,14 @@ impl Make<'_> {
         let common = |area: usize| -> Vec<Entry<'_>> {
             vec![
                 (0, part(&records, area * stride, size_of::<FrameParameters>())),
-                whole(2, &in_flight.lists),
-                whole(3, &in_flight.paths),
+                whole(2, shared.lists),
+                whole(3, shared.paths),
                 (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
             ]
         };
         let layouts = &shared.passes.layouts;
         let mut advance = common(0);
-        advance.push(whole(5, &in_flight.groups_needed));
+        advance.push(whole(5, shared.groups_needed));
         let mut sums = common(0);
         sums.extend([whole(5, &film), whole(6, shared.variations)]);
         LitTile {
@@ -325,7 +305,7 @@ impl Make<'_> {
                 &layouts.samples,
                 &[
                     (0, part(&records, 0, size_of::<FrameParameters>())),
-                    whole(2, &in_flight.lists),
+                    whole(2, shared.lists),
                     (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
                     whole(5, &film),
                 ],
@@ -334,7 +314,6 @@ impl Make<'_> {
             sums: bind_group(self.device, "pinhole film", &layouts.film, &sums),
             records,
             film,
-            in_flight,
         }
     }
 }

@@ -36,8 +36,6 @@ pub(in crate::gpu) struct LightingData {
     /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
     pub(in crate::gpu) max_surfaces: u32,
-    /// The number of the first sample.
-    pub(in crate::gpu) first_sample: u32,
     /// Whether all spheres are opaque.
     is_opaque: bool,
     /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
@@ -97,7 +95,6 @@ impl LightingData {
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
                 Integrator::Path(path) => path.max_depth,
             },
-            first_sample: settings.sampling.first,
             is_opaque: scene.appearance.is_opaque(),
             is_sharp: is_sharp(settings, scene, &lights),
             has_shadows: settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
@@ -115,8 +112,7 @@ impl LightingData {
 impl LightingData {
     /// Whether pictures with this light are the same as with another light, of the same scene.
     pub(in crate::gpu) fn is_same(&self, other: &Self) -> bool {
-        let counts =
-            |of: &Self| (of.mode, of.max_surfaces, of.first_sample, of.is_opaque, of.has_shadows);
+        let counts = |of: &Self| (of.mode, of.max_surfaces, of.is_opaque, of.has_shadows);
         counts(self) == counts(other)
             && self.has_same_images(other)
             && self.casts_shadow == other.casts_shadow

@@ -41,7 +41,7 @@ pub(in crate::gpu) use live::{LiveKey, LivePasses, LiveView};
 pub(in crate::gpu) use make::{bind_group, buffer, whole};
 pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
 pub(in crate::gpu) use recorder::Recorder;
-pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step, Visit};
+pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
 pub(in crate::gpu) use sizes::LitSizes;
 
 /// The buffers of a scene that a lit picture uses.

@@ -77,7 +77,7 @@ impl<'a> Recorder<'a> {
     pub(in crate::gpu) fn record(
         &mut self,
         encoder: &mut CommandEncoder,
-        step: &Step<'_>,
+        step: &Step<'a>,
         slice: Option<Groups>,
     ) {
         let groups = slice.unwrap_or_else(|| self.groups(step));
@@ -99,7 +99,7 @@ impl<'a> Recorder<'a> {
             }
             Work::List(area) => {
                 let group = &tile.groups[area as usize];
-                let needed = &tile.in_flight.groups_needed;
+                let needed = &self.frame.groups_needed;
                 match (self.is_indirect, slice) {
                     (false, _) => (group, Extent::Groups([x, y, 1])),
                     (true, None) => (group, Extent::Indirect(needed, 0)),

@@ -75,9 +75,6 @@ pub(in crate::gpu) struct LightingParameters {
 /// slot is a `vec4f`.
 pub(in crate::gpu) const COMMON_SLOTS: u64 = 7;
 
-/// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
-pub(in crate::gpu) const HIT_SLOT: u64 = 6;
-
 /// Number of slots including those of a path's sampled light.
 pub(in crate::gpu) const LIGHT_SLOTS: u64 = 9;
 

@@ -10,7 +10,6 @@ use super::pass::Pass;
 use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses};
 use super::records::{DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
-use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 /// Number of lights that are tested before their contributions are added. Each has a bit in a word.
@@ -28,64 +27,18 @@ pub(in crate::gpu) struct Step<'a> {
     pub(super) work: Work,
     /// Number of samples in flight.
     pub(super) in_flight: u32,
-    /// The number of the first sample of the picture.
-    first_sample: u32,
     /// Number of rays that each invocation traces.
     rays: u32,
     /// Whether the dispatch traces rays, and so may take long.
     is_search: bool,
-    /// What the dispatch does in a brick, if there is one like it for every brick.
-    pub(in crate::gpu) visit: Option<Visit>,
     /// The stage of the sample that this dispatch completes, if it is the last one of the stage.
     pub(in crate::gpu) moment: Option<Moment>,
-}
-
-/// What a dispatch does in a brick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum Visit {
-    /// Finds the nearest hits of rays.
-    Extend,
-    /// Shades the hits in the brick.
-    Shade,
-    /// Finds whether light is hidden.
-    Occlude,
-}
-
-impl<'a> Step<'a> {
-    /// The same dispatch for another brick, which is the first that rays search or a later one. `None` if there are no
-    /// passes for several bricks.
-    pub(in crate::gpu) fn in_brick<'b>(
-        &self,
-        brick: &'b BrickBuffers,
-        passes: &'b LitPasses,
-        is_first: bool,
-    ) -> Option<Step<'b>>
-    where
-        'a: 'b,
-    {
-        let group = match self.visit? {
-            Visit::Shade => &brick.surface_group,
-            Visit::Extend | Visit::Occlude => &brick.trace_group,
-        };
-        let mut step = Step { brick: Some(group), ..*self };
-        if let (Visit::Extend, SamplePasses::Steps(steps)) = (self.visit?, &passes.of_samples) {
-            let (first, later) = &steps.extend;
-            let by = if is_first { first } else { later.as_ref()? };
-            step.pass = by_surface(by, self.dispatch, Area::Visible).0;
-        }
-        Some(step)
-    }
 }
 
 impl Step<'_> {
     /// Whether the dispatch traces rays, and so may take long.
     pub(in crate::gpu) fn is_search(&self) -> bool {
         self.is_search
-    }
-
-    /// Whether the dispatch is about rays that start at the camera.
-    pub(in crate::gpu) fn is_from_camera(&self) -> bool {
-        self.dispatch.surface == 0
     }
 
     /// Number of rays that each invocation traces.
@@ -95,7 +48,7 @@ impl Step<'_> {
 
     /// Number of samples that every pixel has after the dispatch, if it completes samples.
     pub(in crate::gpu) fn samples_after(&self) -> u32 {
-        self.dispatch.sample + self.dispatch.count - self.first_sample
+        self.dispatch.sample + self.dispatch.count
     }
 
     /// Number of layers of workgroups, each of which covers the area of a tile.
@@ -168,11 +121,11 @@ const SAMPLES_AT_ONCE: u32 = 8;
 pub(super) const MOST_LOOPS: u32 = 2500;
 
 impl<'a> Round<'a> {
-    /// The dispatches of some samples, counted from the first of the picture, which are traced together.
+    /// The dispatches of some samples, which are traced together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
         let dispatch = DispatchParameters {
-            sample: self.lighting.first_sample + samples.start,
+            sample: samples.start,
             count,
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
@@ -222,10 +175,8 @@ impl<'a> Round<'a> {
                     appearance: Some(&brick.appearance_group),
                     work: Work::Samples,
                     in_flight: 1,
-                    first_sample: self.lighting.first_sample,
                     rays: count * rays,
                     is_search: true,
-                    visit: None,
                     moment: Some(Moment::Accumulated),
                 }
             })
@@ -263,28 +214,23 @@ impl<'a> Steps<'a> {
             appearance: None,
             work,
             in_flight: self.in_flight,
-            first_sample: self.round.lighting.first_sample,
             rays: 1,
             is_search: false,
-            visit: None,
             moment: None,
         });
     }
 
-    /// Adds a dispatch that does something in a brick.
-    fn push_visit(
+    /// Adds a dispatch that traces rays in a brick.
+    fn push_search(
         &mut self,
-        visit: Visit,
         pass: &'a Pass,
         dispatch: DispatchParameters,
-        brick: &'a BrickBuffers,
+        brick: &'a BindGroup,
         work: Work,
     ) {
-        let is_search = visit != Visit::Shade;
-        let group = if is_search { &brick.trace_group } else { &brick.surface_group };
-        self.push(pass, dispatch, Some(group), work);
+        self.push(pass, dispatch, Some(brick), work);
         if let Some(last) = self.steps.last_mut() {
-            (last.is_search, last.visit) = (is_search, Some(visit));
+            last.is_search = true;
         }
     }
 
@@ -310,7 +256,7 @@ impl<'a> Steps<'a> {
                 (_, None) => return Err(GpuError::OtherRenderer),
             };
             let (pass, work) = by_surface(by, dispatch, Area::Visible);
-            self.push_visit(Visit::Extend, pass, dispatch, brick, work);
+            self.push_search(pass, dispatch, &brick.trace_group, work);
         }
         Ok(())
     }
@@ -320,7 +266,7 @@ impl<'a> Steps<'a> {
         for brick in self.round.scene.bricks() {
             // Pixels outside the visible region show the background.
             let (pass, work) = by_surface(by, dispatch, Area::Whole);
-            self.push_visit(Visit::Shade, pass, dispatch, brick, work);
+            self.push(pass, dispatch, Some(&brick.surface_group), work);
         }
     }
 
@@ -347,7 +293,7 @@ impl<'a> Steps<'a> {
     /// Adds the search for occluders for all paths in the list of light.
     fn search_occluders(&mut self, pass: &'a Pass, dispatch: DispatchParameters, area: Area) {
         for brick in self.round.occluders.bricks() {
-            self.push_visit(Visit::Occlude, pass, dispatch, brick, Work::List(area));
+            self.push_search(pass, dispatch, &brick.trace_group, Work::List(area));
         }
     }
 

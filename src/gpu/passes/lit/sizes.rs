@@ -4,7 +4,7 @@ use wgpu::Limits;
 
 use super::kernels::{Materials, Mode, Sources};
 use super::records::{
-    COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, HIT_SLOT, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
+    COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
     PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
 };
 use crate::camera::film::Film;
@@ -14,9 +14,6 @@ use crate::gpu::passes::tiles::WORKGROUP_SIDE;
 /// Number of samples of a pixel that are traced together, if not fewer are left. Each of them then costs less, because
 /// the sums are read and written once for all of them. Tiles become smaller in return.
 const TOGETHER: u32 = 4;
-
-/// The same number for a scene of which one part at a time is there.
-const TOGETHER_IN_PARTS: u32 = 64;
 
 /// Maximum number of workgroups in a row, which every WebGPU device allows. Without indirect dispatches, a dispatch over
 /// a list has one for every workgroup of a tile and each sample in flight.
@@ -42,33 +39,11 @@ impl LitSizes {
         mode: Mode,
         samples: u32,
     ) -> Self {
-        Self::with_together(limits, shape, film, mode, [samples, TOGETHER])
-    }
-
-    /// The sizes for a scene of which one part at a time is there: as many samples of a pixel as possible are traced
-    /// together, because each round reads all parts.
-    pub(in crate::gpu) fn of_parts(
-        limits: &Limits,
-        shape: DeviceShape,
-        film: &Film,
-        mode: Mode,
-        samples: u32,
-    ) -> Self {
-        Self::with_together(limits, shape, film, mode, [samples, TOGETHER_IN_PARTS])
-    }
-
-    fn with_together(
-        limits: &Limits,
-        shape: DeviceShape,
-        film: &Film,
-        mode: Mode,
-        [samples, together]: [u32; 2],
-    ) -> Self {
         let slots = slots(mode);
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_path = 16 * slots.max(FILM_SLOTS);
         let max_paths = (binding / of_path).clamp(64, shape.max_paths);
-        let max_pixels = (max_paths / u64::from(samples.clamp(1, together))).max(64);
+        let max_pixels = (max_paths / u64::from(samples.clamp(1, TOGETHER))).max(64);
         let width = u64::from(film.width()).min((max_pixels / 8).max(8));
         let rows = (max_pixels / width).max(1);
         let side = u64::from(WORKGROUP_SIDE);
@@ -105,17 +80,6 @@ impl LitSizes {
     /// Size in bytes of the state of all paths.
     pub(in crate::gpu) fn path_bytes(&self) -> u64 {
         16 * self.slots * self.paths()
-    }
-
-    /// Size in bytes of what a tile needs whose paths are in flight beside those of other tiles.
-    pub(in crate::gpu) fn tile_bytes(&self) -> u64 {
-        self.path_bytes() + self.queue_bytes() + self.groups_bytes() + self.film_bytes()
-    }
-
-    /// The first byte of the hits in the state of all paths, and their size in bytes.
-    pub(in crate::gpu) fn hits(&self) -> [u64; 2] {
-        let slot = 16 * self.paths();
-        [HIT_SLOT * slot, slot]
     }
 
     /// Size in bytes of the lists of paths.
