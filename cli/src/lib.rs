@@ -88,7 +88,6 @@ mod verify_kept;
 mod verify_light;
 mod verify_lit;
 mod verify_open;
-mod verify_outline;
 mod verify_output;
 mod verify_page;
 mod verify_page_light;

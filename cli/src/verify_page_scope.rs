@@ -19,15 +19,8 @@ pub(super) fn not_covered(report: &Report, wanted: Option<u32>) -> Vec<String> {
             "The denoiser on the whole picture. It was checked on a small noisy picture of the same scene.".to_owned(),
         );
     }
-    if report.outline.is_some() {
-        all.push(
-            "The outlines on the whole picture. They were checked on a small picture of the same scene, by one ray for \
-             each pixel and without shadows, with which they have nothing to do."
-                .to_owned(),
-        );
-    }
     all.extend([
-        "What happens after the device is done: exposure, tone curve, legends, and the file. pinhole render --certify \
+        "What happens after the device is done: outlines, exposure, tone curve, legends, and the file. pinhole render --certify \
          judges the very samples of the file that it writes."
             .to_owned(),
         "Errors that are smaller than the bounds. A device that conforms to WGSL may make the same, so they cannot be \

@@ -51,7 +51,6 @@ mod lit_recording;
 pub mod means;
 mod number;
 mod outcome;
-pub mod outlined;
 pub(crate) mod paths;
 #[cfg(feature = "run-file")]
 pub mod picture_certificate;
