@@ -13,7 +13,6 @@ use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads, verify_kept, verify_picture};
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::outlined::OutlineCertificate;
 use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
 
@@ -21,8 +20,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
         return verify_picture::run(args, picture, scene);
     }
-    let Recorded { run, outputs, light, denoiser, outline, kept } = match (&args.replay, &args.path)
-    {
+    let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
         (Some(path), _) => replayed(path, args)?,
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
@@ -30,17 +28,15 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     progress::stage("checking");
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
-    let mut report =
-        Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref(), outline.as_ref());
-    report.open_pixels = open_pixels(&checker, &run.recording, &certificate);
+    let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
+    report.open = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report, &kept)?;
     let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
-    let of_outline = outline.as_ref().map_or(Ok(()), verdict_of_outline);
-    worse(worse(worse(verdict(&certificate), of_light), of_denoiser), of_outline)
+    worse(worse(verdict(&certificate), of_light), of_denoiser)
 }
 
 /// The first failure, but a violation says more than what is undecided.
@@ -56,8 +52,8 @@ fn replayed(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
-    let Replayed { run, light, denoiser, outline, kept } = verify_kept::replay(path)?;
-    Ok(Recorded { run, outputs, light, denoiser, outline, kept })
+    let Replayed { run, light, denoiser, kept } = verify_kept::replay(path)?;
+    Ok(Recorded { run, outputs, light, denoiser, kept })
 }
 
 fn verdict(certificate: &Certificate) -> Result<(), Failure> {
@@ -120,21 +116,6 @@ fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> 
     }
 }
 
-fn verdict_of_outline(certificate: &OutlineCertificate) -> Result<(), Failure> {
-    let OutlineCertificate { pixels, touched, undecided: vague, violation_count, .. } =
-        *certificate;
-    if certificate.outcome() == Outcome::Undecided {
-        let what = format!("the bounds of {vague} of {touched} pixels with outlines say little");
-        return Err(undecided(&what));
-    }
-    match certificate.violations.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::CheckFailed(anyhow!(
-            "the outlines are not legal: {violation_count} of {pixels} pixels; the first is {first}"
-        ))),
-    }
-}
-
 /// What is to be checked and written.
 struct Recorded {
     run: Run,
@@ -143,8 +124,6 @@ struct Recorded {
     light: Option<LitCertificate>,
     /// The certificate of the denoiser, if the scene asks for it.
     denoiser: Option<DenoiseCertificate>,
-    /// The certificate of the outlines, if the scene has them.
-    outline: Option<OutlineCertificate>,
     /// What is kept of the light, for a run file and the page.
     kept: Kept,
 }
@@ -172,7 +151,6 @@ mod recorded {
     use crate::with_scene::{upload, with_structures};
     use crate::{
         interrupt, memory, prices, progress, self_test, verify_denoiser, verify_light, verify_lit,
-        verify_outline,
     };
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
@@ -243,14 +221,12 @@ mod recorded {
             kept.denoised = Some(verify_denoiser::render(&headless, &input, choice)?);
         }
         let denoiser = kept.denoised.as_ref().map(verify_denoiser::judge).transpose()?;
-        kept.outlined = verify_outline::render(&headless, &input, choice)?;
-        let outline = kept.outlined.as_ref().map(verify_outline::judge).transpose()?;
         if is_lit && outputs.has_picture() {
             kept.shown = Some(verify_lit::render(&headless, &input, choice)?);
         }
         let run =
             Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-        Ok(Recorded { run, outputs, light, denoiser, outline, kept })
+        Ok(Recorded { run, outputs, light, denoiser, kept })
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

@@ -32,11 +32,6 @@ impl From<&DenoiseCertificate> for DenoiserReport {
 }
 
 impl DenoiserReport {
-    /// Whether a pixel is not legal.
-    pub(super) fn is_violated(&self) -> bool {
-        self.violation_count > 0
-    }
-
     /// The report as one line of text.
     pub(super) fn line(&self) -> String {
         let Self { pixels, undecided, violation_count, .. } = self;
@@ -53,7 +48,7 @@ pub(super) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
 }
 
 #[cfg(feature = "gpu")]
-pub(super) use rendered::{render, shrunk};
+pub(super) use rendered::render;
 
 #[cfg(feature = "gpu")]
 mod rendered {
@@ -101,7 +96,7 @@ mod rendered {
     }
 
     /// The same picture with a longer side of at most this many pixels.
-    pub(crate) fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
+    fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
         let (width, height) = (film.width(), film.height());
         let shrink = |side: u32| {
             let side =

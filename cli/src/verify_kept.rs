@@ -7,11 +7,10 @@ use anyhow::{Context, Result};
 #[cfg(feature = "gpu")]
 use super::output;
 use super::read_file::open_seekable;
-use super::{progress, verify_denoiser, verify_outline};
+use super::{progress, verify_denoiser};
 use pinhole::image::Image;
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::outlined::OutlineCertificate;
-use pinhole::verify::run_file::{Extras, LitSamples, OutlinedPicture, Run, RunFile, ShownPicture};
+use pinhole::verify::run_file::{Extras, LitSamples, Run, RunFile, ShownPicture};
 use pinhole::verify::{Checker, LitCertificate};
 
 /// What is kept of a lit picture.
@@ -21,8 +20,6 @@ pub(super) struct Kept {
     pub(super) samples: Option<LitSamples>,
     /// The noisy picture and the denoised one.
     pub(super) denoised: Option<[Image; 2]>,
-    /// A picture without outlines and with them.
-    pub(super) outlined: Option<OutlinedPicture>,
     /// The lit picture for people.
     pub(super) shown: Option<ShownPicture>,
 }
@@ -41,7 +38,6 @@ impl Kept {
         Extras {
             light: self.samples.as_ref(),
             denoised: self.denoised.as_ref().map(|[noisy, quiet]| [noisy, quiet]),
-            outlined: self.outlined.as_ref(),
             shown: self.shown.as_ref(),
         }
     }
@@ -52,7 +48,6 @@ pub(super) struct Replayed {
     pub(super) run: Run,
     pub(super) light: Option<LitCertificate>,
     pub(super) denoiser: Option<DenoiseCertificate>,
-    pub(super) outline: Option<OutlineCertificate>,
     pub(super) kept: Kept,
 }
 
@@ -73,8 +68,6 @@ pub(super) fn replay(path: &Path) -> Result<Replayed> {
     drop(checker);
     let denoised = file.denoised().with_context(of_file)?;
     let denoiser = denoised.as_ref().map(verify_denoiser::judge).transpose()?;
-    let outlined = file.outlined().with_context(of_file)?;
-    let outline = outlined.as_ref().map(verify_outline::judge).transpose()?;
     let kept = Kept { shown: file.shown().with_context(of_file)?, ..Kept::default() };
-    Ok(Replayed { run, light: has_light.then_some(certificate), denoiser, outline, kept })
+    Ok(Replayed { run, light: has_light.then_some(certificate), denoiser, kept })
 }

@@ -9,10 +9,8 @@ use super::shell::in_quotes;
 use super::verify_denoiser::DenoiserReport;
 use super::verify_light::LightReport;
 use super::verify_open::OpenPixel;
-use super::verify_outline::OutlineReport;
 use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::outlined::OutlineCertificate;
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{Certificate, Deviations, LitCertificate, Outcome, Verdict, Violation};
 
@@ -43,9 +41,6 @@ pub(super) struct Report {
     /// The check of the denoiser, for a scene whose picture is denoised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) denoiser: Option<DenoiserReport>,
-    /// The check of the outlines, for a scene with outlines.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) outline: Option<OutlineReport>,
     /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
     pub(super) biased: Vec<String>,
     pub(super) outcome: &'static str,
@@ -54,9 +49,8 @@ pub(super) struct Report {
     /// The certificate as a table of text.
     #[serde(skip)]
     table: String,
-    /// The first pixels with several legal answers, for the page.
-    #[serde(skip)]
-    pub(super) open_pixels: Vec<OpenPixel>,
+    /// The first pixels with several legal answers.
+    pub(super) open: Vec<OpenPixel>,
 }
 
 #[derive(Serialize)]
@@ -102,14 +96,12 @@ impl Report {
         certificate: &Certificate,
         light: Option<&LitCertificate>,
         denoiser: Option<&DenoiseCertificate>,
-        outline: Option<&OutlineCertificate>,
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
         let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);
         let of_denoiser = denoiser.map_or(Outcome::Proved, DenoiseCertificate::outcome);
-        let of_outline = outline.map_or(Outcome::Proved, OutlineCertificate::outcome);
-        let outcome = certificate.outcome().max(of_light).max(of_denoiser).max(of_outline);
+        let outcome = certificate.outcome().max(of_light).max(of_denoiser);
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter {
@@ -135,7 +127,6 @@ impl Report {
             paths: light.filter(|light| !light.is_studio).map(LightReport::from),
             studio: light.filter(|light| light.is_studio).map(LightReport::from),
             denoiser: denoiser.map(DenoiserReport::from),
-            outline: outline.map(OutlineReport::from),
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
@@ -146,7 +137,7 @@ impl Report {
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
             table: certificate.to_string(),
-            open_pixels: Vec::new(),
+            open: Vec::new(),
         }
     }
 
@@ -158,18 +149,13 @@ impl Report {
     /// Returns the verdict on one line.
     pub(super) fn verdict(&self) -> String {
         match (self.legal, &self.upload, self.count(Verdict::Violation)) {
-            (true, ..) if self.paths.is_some() => {
-                "legal: every pixel by one ray, and every path, is as a conforming device may have made it"
-                    .to_owned()
-            }
-            (true, ..) if self.studio.is_some() => {
-                "legal: every pixel by one ray, and every sample of its light, is as a conforming device may have made \
-                 it"
-                    .to_owned()
-            }
-            (true, ..) => {
-                "legal: every pixel is as a conforming device may have made it".to_owned()
-            }
+            (true, ..) => match self.light() {
+                Some(light) => format!(
+                    "legal: every pixel by one ray, and {}, are as a conforming device may have made them",
+                    light.judged.words()
+                ),
+                None => "legal: every pixel is as a conforming device may have made it".to_owned(),
+            },
             (false, ..) if self.outcome == Outcome::Undecided.name() => {
                 "undecided: no violation was found, but too many answers could be others".to_owned()
             }
@@ -177,10 +163,7 @@ impl Report {
                 "NOT legal: the data on the device are not those of this scene and view".to_owned()
             }
             (false, None, 0) if self.light().is_none_or(LightReport::is_without_fault) => {
-                match self.denoiser.as_ref().is_some_and(DenoiserReport::is_violated) {
-                    true => "NOT legal: violations in the denoised picture".to_owned(),
-                    false => "NOT legal: violations in the outlines".to_owned(),
-                }
+                "NOT legal: violations in the denoised picture".to_owned()
             }
             (false, None, 0) if self.studio.is_some() => {
                 "NOT legal: violations in the light of the studio".to_owned()
@@ -203,11 +186,10 @@ impl Report {
         let line = |line: String| line + "\n";
         let light = self.light().map_or(String::new(), LightReport::lines);
         let denoiser = self.denoiser.as_ref().map_or(String::new(), |found| line(found.line()));
-        let outline = self.outline.as_ref().map_or(String::new(), |found| line(found.line()));
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
-             structure: {structure}\n{}\n{light}{denoiser}{outline}{}\n",
+             structure: {structure}\n{}\n{light}{denoiser}{}\n",
             16 * spheres,
             self.table,
             self.verdict()

@@ -86,8 +86,6 @@ pub fn render_watched<'a>(
     SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
 }
 
-}
-
 /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is
 /// needed to put it together with those of the other parts. `None` for settings with light.
 ///

@@ -237,12 +237,6 @@ impl Image {
         (self.depth, self.variance) = (Some(depth), Some(variance));
     }
 
-    /// The same picture with another alpha, which has as many items as the picture has pixels.
-    #[cfg(feature = "run-file")]
-    pub(crate) fn with_alpha(self, alpha: Vec<f32>) -> Self {
-        Self { alpha: Some(alpha), ..self }
-    }
-
     pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
         &mut self.color
     }

@@ -51,7 +51,7 @@ mod light;
 mod nearest;
 mod npy;
 mod outliers;
-mod outlined;
+mod outline;
 mod pages;
 mod perspective;
 mod pictures;

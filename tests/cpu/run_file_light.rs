@@ -3,11 +3,9 @@
 use std::io::Cursor;
 
 use pinhole::camera::{OrthographicCamera, Pose};
-use pinhole::image::Layer;
 use pinhole::image::denoise::GUIDES;
-use pinhole::render::{Integrator, Outline, Studio};
 use pinhole::verify::run_file::{
-    self, Extras, LitSamples, OutlinedPicture, RunFile, RunFileError, ShownPicture, write_with,
+    self, Extras, LitSamples, RunFile, RunFileError, ShownPicture, write_with,
 };
 use pinhole::verify::{Checker, LitCertificate, LitRecording, Outcome, PathRecording, Recording};
 use pinhole::{
@@ -242,21 +240,8 @@ fn materials_and_pictures_are_kept() {
     let view = View::new(&camera, Film::new(size[0], size[1]).unwrap());
     let noisy = cpu::render(&scene, &view, &RenderSettings::studio(), GUIDES).unwrap();
     let denoised = cpu::denoise(&noisy).unwrap();
-    let layers = LayerSet::DATA.with(Layer::Alpha);
-    let drawn = LayerSet::COLOR.with(Layer::Alpha);
-    let outline = Outline { width: 1.5, depth: 0.02, ..Outline::default() };
-    let studio = Studio { outline: Some(outline), ..Studio::default() };
-    let settings =
-        RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
-    let before = cpu::render(&scene, &view, &settings.unfinished(), layers).unwrap();
-    let after = cpu::finish(before.clone(), &settings, drawn);
-    let lines = OutlinedPicture { outline, before, after };
-    let extras = Extras {
-        denoised: Some([&noisy, &denoised]),
-        outlined: Some(&lines),
-        shown: Some(&shown),
-        ..Extras::default()
-    };
+    let extras =
+        Extras { denoised: Some([&noisy, &denoised]), shown: Some(&shown), ..Extras::default() };
     let bytes = written(&scene, &picture, extras);
     let mut source = Cursor::new(&bytes);
     let file = RunFile::open(&mut source).unwrap();
@@ -268,14 +253,6 @@ fn materials_and_pictures_are_kept() {
     assert_eq!((again.normal(), again.depth()), (noisy.normal(), noisy.depth()));
     assert_eq!((again.albedo(), again.variance()), (noisy.albedo(), noisy.variance()));
     assert_eq!((again.layers(), quiet.layers()), (GUIDES, LayerSet::COLOR));
-    assert_eq!(file.outlined().unwrap().as_ref(), Some(&lines));
-    // A width that no outline has, and pictures that lack a layer.
-    let mut narrow = Cursor::new(with_numbers(&bytes, "outline", 0, &0.25_f64.to_le_bytes()));
-    let error = RunFile::open(&mut narrow).unwrap().outlined().unwrap_err();
-    is_contradiction(&error, "the array `outline`: ");
-    let bare = OutlinedPicture { after: noisy.clone(), ..lines.clone() };
-    let extras = Extras { outlined: Some(&bare), ..Extras::default() };
-    assert!(write_with(&scene, &picture, &provenance(), extras, &mut Vec::new()).is_err());
     // No such material, one that is out of range, and one that no sphere has.
     let number = |x: f32| x.to_le_bytes();
     for (name, at, numbers, words) in [

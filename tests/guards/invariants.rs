@@ -43,14 +43,6 @@ fn the_checker_knows_no_structure_and_no_renderer() {
     }
 }
 
-/// Lines are drawn by the host and judged by the checker, which finds them by itself.
-#[test]
-fn the_checker_does_not_draw_outlines() {
-    assert_absent("src/verify", &["image::outline", "outline::draw"], &[]);
-    let named = ["crate::verify", "verify::"];
-    assert_absent("src/image/outline", &named, &[]);
-}
-
 #[test]
 fn only_the_gpu_module_names_wgpu() {
     for (path, text) in sources("src") {

@@ -60,9 +60,6 @@
 //! |---|---|---|
 //! | `noisy_color`, `noisy_normal`, `noisy_depth`, `noisy_albedo`, `noisy_variance` | f32 (h, w, 3), (h, w) | the small picture that the device denoised |
 //! | `denoised_color` | f32 (h, w, 3) | what it made of it |
-//! | `outline` | f64 (6,) | width, colour, least jump and least angle of [`Outline`](crate::render::Outline) |
-//! | `unlined_color`, `unlined_normal`, `unlined_alpha`, `unlined_depth`, `unlined_id` | f32 (h, w, 3), f32 (h, w), u32 (h, w) | a small picture without outlines |
-//! | `outlined_color`, `outlined_alpha` | f32 (h, w, 3), (h, w) | the same with outlines |
 //! | `shown` | u8 (H, W, 3) | the lit picture as people see it, in sRGB; it is not judged |
 //!
 //! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the whole
@@ -98,7 +95,7 @@ use container::sink_into;
 use numbers::Array;
 
 pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
-pub use pictures::{OutlinedPicture, ShownPicture};
+pub use pictures::ShownPicture;
 pub use read::{RunFile, read};
 pub use write::{Extras, write, write_with};
 

@@ -1,5 +1,5 @@
-//! Pictures in a run file beside the recorded one: those of the denoiser, those without and with outlines, and the lit one
-//! that people are shown.
+//! Pictures in a run file beside the recorded one: those of the denoiser, and the lit one that people are
+//! shown.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -7,11 +7,9 @@ use std::io;
 use super::RunFileError;
 use super::container::{Container, contradiction};
 use super::numbers::Array;
-use super::settings;
 use crate::camera::film::Film;
 use crate::image::denoise::GUIDES;
-use crate::image::{Image, Layer, LayerSet};
-use crate::render::Outline;
+use crate::image::{Image, LayerSet};
 
 /// A lit picture as people see it. It is not judged.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,17 +22,6 @@ pub struct ShownPicture {
     pub samples: u32,
     /// The number of samples that the scene asks for.
     pub wanted: u32,
-}
-
-/// A picture before and after outlines were drawn into it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OutlinedPicture {
-    /// What was to be drawn.
-    pub outline: Outline,
-    /// Colour, alpha, depth, normal and id.
-    pub before: Image,
-    /// Colour and alpha.
-    pub after: Image,
 }
 
 fn shape(image: &Image) -> [usize; 2] {
@@ -79,52 +66,6 @@ pub(super) fn denoised(file: &Container<'_>) -> Result<Option<[Image; 2]>, RunFi
     );
     denoised.color_mut().copy_from_slice(&vectors("denoised_color")?);
     Ok(Some([noisy, denoised]))
-}
-
-/// `numbers` are those of the outlines.
-pub(super) fn add_outlined<'a>(
-    OutlinedPicture { before, after, .. }: &'a OutlinedPicture,
-    numbers: &'a [f64],
-    arrays: &mut Vec<Array<'a>>,
-) -> io::Result<()> {
-    let layers = (before.alpha(), before.depth(), before.normal(), before.id(), after.alpha());
-    let (Some(alpha), Some(depth), Some(normal), Some(id), Some(drawn)) = layers else {
-        return Err(io::Error::other("the picture with outlines lacks a layer"));
-    };
-    let size = shape(before);
-    arrays.extend([
-        Array::new("outline", &[numbers.len()], numbers, |number| [*number]),
-        Array::new("unlined_color", &size, before.color(), |color| *color),
-        Array::new("unlined_alpha", &size, alpha, |alpha| [*alpha]),
-        Array::new("unlined_depth", &size, depth, |depth| [*depth]),
-        Array::new("unlined_normal", &size, normal, |normal| *normal),
-        Array::new("unlined_id", &size, id, |id| [*id]),
-        Array::new("outlined_color", &shape(after), after.color(), |color| *color),
-        Array::new("outlined_alpha", &shape(after), drawn, |alpha| [*alpha]),
-    ]);
-    Ok(())
-}
-
-/// Reads the picture without outlines and with them.
-pub(super) fn outlined(file: &Container<'_>) -> Result<Option<OutlinedPicture>, RunFileError> {
-    if !file.has("outline") {
-        return Ok(None);
-    }
-    let size = size_of(file, "unlined_color")?;
-    let all = [size[1] as usize, size[0] as usize];
-    let other = || contradiction("the pictures of the outlines have no valid size");
-    let vectors = |name| file.items::<f32, 3>(name, &all);
-    let numbers = |name| file.numbers::<f32>(name, &all);
-    let [depth, alpha] = [numbers("unlined_depth")?, numbers("unlined_alpha")?];
-    let [color, normal] = [vectors("unlined_color")?, vectors("unlined_normal")?];
-    let before = Image::from_layers(size, color, depth, normal, file.numbers("unlined_id", &all)?)
-        .ok_or_else(other)?;
-    let mut after = Image::new(size[0], size[1], LayerSet::COLOR.with(Layer::Alpha))
-        .map_err(|_| other())?
-        .with_alpha(numbers("outlined_alpha")?);
-    after.color_mut().copy_from_slice(&vectors("outlined_color")?);
-    let outline = settings::outline(&file.numbers("outline", &[settings::OUTLINE])?)?;
-    Ok(Some(OutlinedPicture { outline, before: before.with_alpha(alpha), after }))
 }
 
 /// Width and height of a picture of three channels.

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::container::{Container, contradiction};
 use super::numbers::Flag;
-use super::pictures::{self, OutlinedPicture, ShownPicture};
+use super::pictures::{self, ShownPicture};
 use super::surfaces::with_surfaces;
 use super::{LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_read, scene_sha256};
 use crate::camera::film::{Film, YAxis};
@@ -70,14 +70,6 @@ impl<'a> RunFile<'a> {
     /// Returns an error if their shapes are not valid.
     pub fn denoised(&self) -> Result<Option<[Image; 2]>, RunFileError> {
         pictures::denoised(&self.file)
-    }
-
-    /// Reads the picture without outlines, and with them; `None` if the file has none.
-    ///
-    /// # Errors
-    /// Returns an error if their shapes, or the settings of the outlines, are not valid.
-    pub fn outlined(&self) -> Result<Option<OutlinedPicture>, RunFileError> {
-        pictures::outlined(&self.file)
     }
 
     /// Reads the lit picture that people are shown; `None` if the file has none.

@@ -93,26 +93,10 @@ fn studio_numbers(studio: &Studio, all: &mut Vec<f64>) {
         all.extend([*near, *far].into_iter().chain(rgb(*color)));
     }
     all.push(f64::from(outline.is_some()));
-    all.extend(outline.iter().flat_map(outline_numbers));
-}
-
-/// The number of numbers of outlines.
-pub(super) const OUTLINE: usize = 6;
-
-/// The width, the colour, the least jump and the least angle of outlines.
-pub(super) fn outline_numbers(outline: &Outline) -> [f64; OUTLINE] {
-    let Outline { width, color, depth, angle } = *outline;
-    let [r, g, b] = rgb(color);
-    let [width, depth, angle] = [width, depth, angle].map(f64::from);
-    [width, r, g, b, depth, angle]
-}
-
-/// Outlines from their numbers.
-pub(super) fn outline(numbers: &[f64]) -> Result<Outline, RunFileError> {
-    let outline = outline_of(&mut Numbers(numbers.iter()))?;
-    let studio = Studio { outline: Some(outline), ..Studio::default() };
-    studio.check().map_err(|error| contradiction(format!("the array `outline`: {error}")))?;
-    Ok(outline)
+    if let Some(Outline { width, color, depth, angle }) = outline {
+        all.push(f64::from(*width));
+        all.extend(rgb(*color).into_iter().chain([*depth, *angle].map(f64::from)));
+    }
 }
 
 fn outline_of(all: &mut Numbers<'_>) -> Result<Outline, RunFileError> {

@@ -7,8 +7,7 @@ use super::lit_inputs::{LitArrays, view_numbers};
 use super::lit_read::SAMPLES;
 use super::lit_samples::LitSamples;
 use super::numbers::{Array, Flag};
-use super::pictures::{self, OutlinedPicture, ShownPicture};
-use super::settings::outline_numbers;
+use super::pictures::{self, ShownPicture};
 use super::surfaces::surface_numbers;
 use super::{LIMIT, Provenance, container, scene_sha256};
 use crate::image::Image;
@@ -23,8 +22,6 @@ pub struct Extras<'a> {
     pub light: Option<&'a LitSamples>,
     /// A noisy picture, and what the device's denoiser made of it.
     pub denoised: Option<[&'a Image; 2]>,
-    /// A picture before and after outlines were drawn into it.
-    pub outlined: Option<&'a OutlinedPicture>,
     /// The lit picture as it is shown to people.
     pub shown: Option<&'a ShownPicture>,
 }
@@ -49,12 +46,12 @@ pub fn write(
 ///
 /// # Errors
 /// The same as for [`write()`]; and if the samples have another camera or film than the recording, or the noisy picture
-/// or the one without outlines lacks a layer.
+/// lacks a layer.
 pub fn write_with(
     scene: &Scene,
     recording: &Recording,
     provenance: &Provenance,
-    Extras { light, denoised, outlined, shown }: Extras<'_>,
+    Extras { light, denoised, shown }: Extras<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let Recording { camera, uploaded, film, primary, pixels, image, rendered } = recording;
@@ -115,7 +112,6 @@ pub fn write_with(
     let surfaces: Vec<[f32; 5]> = appearance.surfaces().iter().map(surface_numbers).collect();
     let given = light.and_then(LitSamples::given);
     let lit = given.map(LitArrays::new);
-    let numbers = outlined.map(|outlined| outline_numbers(&outlined.outline)).unwrap_or_default();
     let mut arrays = vec![
         Array::new("camera", &[5], &camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
@@ -186,9 +182,6 @@ pub fn write_with(
     }
     if let Some(denoised) = denoised {
         pictures::add_denoised(denoised, &mut arrays)?;
-    }
-    if let Some(outlined) = outlined {
-        pictures::add_outlined(outlined, &numbers, &mut arrays)?;
     }
     if let Some(shown) = shown {
         pictures::add_shown(shown, &mut arrays, &mut texts)?;
