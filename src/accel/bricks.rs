@@ -196,7 +196,7 @@ mod tests {
         for (choice, bytes) in
             [(AccelChoice::List, 4096), (AccelChoice::Tree, 4096), (AccelChoice::Grid, 1 << 17)]
         {
-            let plan = AccelPlan::for_rays(&spheres, choice, bytes, 1);
+            let plan = AccelPlan::new(&spheres, choice, bytes);
             let (all, one_by_one) = (plan.build(&spheres), plan.bricks(&spheres));
             let count = one_by_one.len();
             assert!(count > 1 && count == all.bricks().len(), "{choice}");

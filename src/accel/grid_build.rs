@@ -19,7 +19,7 @@ use crate::parallel::{for_each, map_parts, ranges};
 pub(super) const STEP_COST: f32 = 12.0;
 
 /// The largest number of spheres whose radii the choice of the cell size looks at.
-pub(super) const RADII: usize = 4096;
+const RADII: usize = 4096;
 
 /// Limits for the size of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ fn first_level(
 
 /// Chooses the cell size with the smallest expected cost of a ray, for a number of spheres of which a sample has the
 /// given radii: a ray of length L takes about L/size steps, each with the elements of one cell's list.
-pub(super) fn first_level_size(
+fn first_level_size(
     radii: &[f32],
     count: usize,
     extent: Vec3,

@@ -9,20 +9,20 @@ use super::grid_build::{GridBudget, STEP_COST};
 use crate::parallel::{map_parts, ranges};
 
 /// The length of a list from which a grid may be worthwhile: even the coarsest grid costs two steps.
-pub(super) const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
+const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
 
 /// The finest level of a grid inside a cell: 2⁵ cells along an axis.
-pub(super) const MAX_LEVEL: u8 = 5;
+const MAX_LEVEL: u8 = 5;
 
 /// The largest number of inner cells, and of inner list elements, for each element of the list that they replace.
 const MOST_GROWTH: usize = 64;
 
 /// A grid is worth its memory if its cost for a ray is less than this fraction of the cost of the list.
-pub(super) const GAIN: f32 = 0.9;
+const GAIN: f32 = 0.9;
 
 /// Two levels are worthwhile if they save this fraction of the cost of all cells: a kernel that supports two levels is
 /// slower in all of them, by a tenth.
-pub(super) const WORTH_IT: f32 = 0.1;
+const WORTH_IT: f32 = 0.1;
 
 /// A grid inside a cell that would reduce the cost of rays.
 #[derive(Clone, Copy)]

@@ -4,7 +4,6 @@
 use glam::{BVec3, Vec3};
 
 use super::ball::PartInCell;
-use super::count::Observer;
 use super::grid::{Grid, LAST, word};
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::slab::inverse_direction;
@@ -27,20 +26,8 @@ impl Grid {
         ray: &RayF32,
         nearest: &mut Nearest,
     ) {
-        self.find_nearest_observed(spheres, ids, ray, nearest, &mut ());
-    }
-
-    /// Like [`Grid::find_nearest`], and tells `observer` what the walk does.
-    pub(super) fn find_nearest_observed(
-        &self,
-        spheres: &[[f32; 4]],
-        ids: &[u32],
-        ray: &RayF32,
-        nearest: &mut Nearest,
-        observer: &mut impl Observer,
-    ) {
         let mut found = Found { t: nearest.t, shape_index: None };
-        self.walk(spheres, ray, &mut found, false, observer);
+        self.walk(spheres, ray, &mut found, false);
         if let Some(shape_index) = found.shape_index {
             nearest.offer(found.t, ids[shape_index as usize]);
         }
@@ -51,7 +38,7 @@ impl Grid {
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
         // A list accepts a hit at the same distance as the nearest so far, so the limit is just below `t_max`.
         let mut found = Found { t: t_max.next_down(), shape_index: None };
-        self.walk(spheres, ray, &mut found, true, &mut ());
+        self.walk(spheres, ray, &mut found, true);
         found.shape_index.is_some()
     }
 
@@ -61,7 +48,6 @@ impl Grid {
         ray: &RayF32,
         found: &mut Found,
         stop_at_first: bool,
-        observer: &mut impl Observer,
     ) {
         let forward = ray.direction.cmpge(Vec3::ZERO);
         let ahead = Vec3::select(forward, Vec3::ONE, Vec3::ZERO);
@@ -86,7 +72,6 @@ impl Grid {
         let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
         loop {
             let outer = self.word(cell.dot(strides) as usize);
-            observer.step();
             let kind = outer & word::KIND;
             let reach =
                 if kind == word::EMPTY { (outer >> octant & word::REACH) as f32 } else { 0.0 };
@@ -102,7 +87,6 @@ impl Grid {
                 loop {
                     let mut inner_word = outer;
                     if kind == word::GRID {
-                        observer.step();
                         let first = word::first_inner(outer);
                         inner_word = self.word(first + inner.dot(inner_strides) as usize);
                     }
@@ -118,7 +102,6 @@ impl Grid {
                             &part,
                             inner_word & !word::KIND,
                             found,
-                            observer,
                         );
                     }
                     if is_done(found, t_inner) || t_inner >= t_leave {
@@ -157,15 +140,12 @@ impl Grid {
         part: &PartInCell,
         start: u32,
         found: &mut Found,
-        observer: &mut impl Observer,
     ) {
         let mut best = Found { t: NO_HIT, shape_index: None };
         for at in self.list(start) {
-            observer.elements(1);
             if self.balls.as_ref().is_some_and(|balls| !part.meets(balls[at])) {
                 continue;
             }
-            observer.sphere();
             let shape_index = self.references[at] & !LAST;
             let t = intersect_sphere(ray, spheres[shape_index as usize]);
             if t < best.t {

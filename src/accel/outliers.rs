@@ -7,8 +7,6 @@
 
 use glam::Vec3;
 
-use super::brick::Structure;
-use super::plan::AccelChoice;
 use super::statistics::{MARGIN_PART, SceneStatistics, margin_of};
 use crate::parallel::map_chunks;
 
@@ -74,23 +72,12 @@ impl Crowd {
         ((1..=most).contains(&crowd.outliers) && is_small).then_some(crowd)
     }
 
-    /// The structure for a scene with these outliers, if that is because of them.
-    pub(super) fn decide(
-        &self,
-        statistics: &SceneStatistics,
-        choice: AccelChoice,
-    ) -> Option<(Structure, String)> {
-        let count = statistics.count;
+    /// Whether the scene's margin, which a grid has for all spheres, is not small beside the distance between neighbours in
+    /// the crowd.
+    pub(super) fn is_lost_in_margin(&self, statistics: &SceneStatistics) -> bool {
         // About the distance between neighbours, and as large as a cell.
-        let spacing = (self.max - self.min).max_element() / (count as f32).cbrt();
-        let is_lost_in_margin = statistics.margin() * CELL_MARGINS > spacing;
-        (choice == AccelChoice::Auto && is_lost_in_margin).then(|| {
-            let Self { outliers, .. } = self;
-            let reason = format!(
-                "{outliers} of {count} spheres lie far away from the others, which have a margin of their own in a tree"
-            );
-            (Structure::WideTree, reason)
-        })
+        let spacing = (self.max - self.min).max_element() / (statistics.count as f32).cbrt();
+        statistics.margin() * CELL_MARGINS > spacing
     }
 
     /// Whether a sphere is in the box of the crowd.

@@ -6,12 +6,10 @@ use glam::Vec3;
 
 use super::binary_tree::BinaryNode;
 use super::brick::Structure;
-use super::decide::{candidates, decide};
 use super::divide_by_sample::largest_part;
 use super::grid::{ListLayout, MAX_CELLS};
 use super::grid_build::GridBudget;
 use super::outliers::Crowd;
-use super::prices::{Candidate, Prices};
 use super::statistics::SceneStatistics;
 use super::wide_node::WideNode;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
@@ -35,6 +33,12 @@ pub enum AccelChoice {
     /// have them and are opened for it.
     RayQuery,
 }
+
+/// The number of spheres up to which no structure is worth its cost.
+const FEW: usize = 32;
+
+/// The number of spheres, in a cube of about the smallest cell of a nested grid, above which a tree is better.
+const MAX_IN_A_CUBE: f32 = 256.0;
 
 /// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
 /// in Mesa 22.3 silently leaves a loop.
@@ -90,51 +94,18 @@ pub struct AccelPlan {
     pub(super) box_margin: f32,
     /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
-    /// The structures that were compared, with what they are expected to cost; none for very few spheres, or if a
-    /// structure was asked for that never competes.
-    pub candidates: Vec<Candidate>,
 }
 
 impl AccelPlan {
     /// Makes a plan for the spheres of a scene, in the scene's frame, and a device whose bindings hold up to
-    /// `binding_bytes`. Assumes that many pictures will be rendered.
+    /// `binding_bytes`.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
-        Self::for_rays(spheres, choice, binding_bytes, u64::MAX)
-    }
-
-    /// Makes a plan like [`AccelPlan::new`], for a known number of rays in all pictures together: if there are few, a
-    /// structure that is slower to trace but faster to build may be better. The prices are [`Prices::SOFTWARE`].
-    #[must_use]
-    pub fn for_rays(
-        spheres: &[[f32; 4]],
-        choice: AccelChoice,
-        binding_bytes: u64,
-        rays: u64,
-    ) -> Self {
-        Self::with_prices(spheres, choice, binding_bytes, rays, &Prices::SOFTWARE)
-    }
-
-    /// Makes a plan like [`AccelPlan::for_rays`] for a device with these prices: of the structures that the choice
-    /// allows, the one in which building, copying and tracing take the least time. [`u64::MAX`] rays stand for many
-    /// pictures, for which only the time of a ray counts.
-    #[must_use]
-    pub fn with_prices(
-        spheres: &[[f32; 4]],
-        choice: AccelChoice,
-        binding_bytes: u64,
-        rays: u64,
-        prices: &Prices,
-    ) -> Self {
         let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
         let crowd = Crowd::find(spheres, &statistics);
-        let candidates = candidates(spheres, &statistics, choice, binding_bytes, prices);
-        let (structure, reason) = crowd
-            .and_then(|crowd| crowd.decide(&statistics, choice))
-            .unwrap_or_else(|| decide(&statistics, choice, &candidates, rays));
-        let plan = Self::of_structure(statistics, structure, reason, binding_bytes);
-        Self { crowd, candidates, ..plan }
+        let (structure, reason) = decide(&statistics, crowd.as_ref(), choice);
+        Self { crowd, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
     }
 
     /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels, and
@@ -159,7 +130,7 @@ impl AccelPlan {
         reason: String,
         binding_bytes: u64,
     ) -> Self {
-        let (count, crowd, candidates) = (statistics.count, None, Vec::new());
+        let (count, crowd) = (statistics.count, None);
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
         // Where bricks are not all of the same size, this takes one more brick at most.
@@ -178,7 +149,6 @@ impl AccelPlan {
             budget,
             box_margin,
             buffers,
-            candidates,
         };
         plan.buffers = plan.list_buffers();
         plan
@@ -297,6 +267,44 @@ impl AccelPlan {
                 bytes_per_binding: bytes,
             })
             .collect()
+    }
+}
+
+/// The structure for a choice, and why.
+fn decide(
+    statistics: &SceneStatistics,
+    crowd: Option<&Crowd>,
+    choice: AccelChoice,
+) -> (Structure, String) {
+    let SceneStatistics { count, densest, .. } = *statistics;
+    let asked = |structure| (structure, "asked for".to_owned());
+    match choice {
+        _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
+        AccelChoice::List => asked(Structure::List),
+        AccelChoice::Grid => asked(Structure::Grid(ListLayout::Balls)),
+        AccelChoice::Tree => asked(Structure::WideTree),
+        AccelChoice::BinaryTree => asked(Structure::BinaryTree),
+        AccelChoice::RayQuery => asked(Structure::RayQuery),
+        AccelChoice::Auto if count <= FEW => {
+            (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
+        }
+        AccelChoice::Auto => match crowd.filter(|crowd| crowd.is_lost_in_margin(statistics)) {
+            Some(Crowd { outliers, .. }) => (
+                Structure::WideTree,
+                format!(
+                    "{outliers} of {count} spheres lie far away from the others, which have a margin of their own in a \
+                     tree"
+                ),
+            ),
+            None if densest > MAX_IN_A_CUBE => (
+                Structure::WideTree,
+                format!(
+                    "about {densest:.0} spheres lie in a cube of 1/4096 of the scene's side, too close together for two \
+                     levels of cells"
+                ),
+            ),
+            None => (Structure::Grid(ListLayout::Balls), format!("{count} spheres")),
+        },
     }
 }
 

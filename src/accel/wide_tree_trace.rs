@@ -1,6 +1,5 @@
 //! Traversal of the compressed 8-wide tree. The WGSL twin is `shaders/accel/wide_tree.wgsl`.
 
-use super::count::Observer;
 use super::leaf::{any_in_leaf, offer_leaf};
 use super::query::{Nearest, RayF32};
 use super::slab::SlabRay;
@@ -21,18 +20,6 @@ impl WideTree {
         ray: &RayF32,
         nearest: &mut Nearest,
     ) {
-        self.find_nearest_observed(spheres, ids, ray, nearest, &mut ());
-    }
-
-    /// Like [`WideTree::find_nearest`], and tells `observer` what the walk does.
-    pub(super) fn find_nearest_observed(
-        &self,
-        spheres: &[[f32; 4]],
-        ids: &[u32],
-        ray: &RayF32,
-        nearest: &mut Nearest,
-        observer: &mut impl Observer,
-    ) {
         let slab = SlabRay::for_tree(ray, &self.near_rays());
         let octant = slab.octant();
         let mut stack = [Group::ROOT; WIDE_LEVELS as usize];
@@ -40,7 +27,6 @@ impl WideTree {
         let mut group = Group::ROOT;
         loop {
             let node = &self.nodes[group.first(octant) as usize];
-            observer.step();
             let rest = group.rest();
             if !rest.is_empty() {
                 stack[top] = rest;
@@ -48,7 +34,6 @@ impl WideTree {
             }
             let hits = node.hits(&slab, nearest.t);
             for (first, count) in leaves(node, hits) {
-                (0..count).for_each(|_| observer.sphere());
                 offer_leaf(spheres, ids, first, count, ray, nearest);
             }
             group = Group::of(node, hits, octant);

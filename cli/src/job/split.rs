@@ -243,8 +243,12 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
 /// About how long a software device takes for each sphere of a brick.
 const NANOSECONDS_OF_SPHERE: u64 = 600;
 
-/// The time of a unit in milliseconds on a software device, by the plan of the first picture: the structure is built, and
-/// each sample has the rays that its integrator traces.
+/// About how long a structure takes to build for each sphere, and a software device for each ray.
+const NANOSECONDS_OF_BUILDING: f64 = 180.0;
+const NANOSECONDS_OF_RAY: f64 = 100.0;
+
+/// The time of a unit in milliseconds on a software device: the structure is built, and each sample has the rays that its
+/// integrator traces.
 fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
     if let Some(bricks) = &input.bricks {
         // Reading, building and copying are nearly all of it.
@@ -252,11 +256,8 @@ fn expected(input: &Input, pixels: u64, samples: u32, groups: usize) -> u64 {
         return (spheres * NANOSECONDS_OF_SPHERE / 1_000_000).max(1);
     }
     let rays = pixels.saturating_mul(rays_of_pixel(&input.settings, samples));
-    let plan = AccelPlan::for_rays(input.scene.spheres(), AccelChoice::Auto, 1 << 27, rays);
-    let candidate = plan.candidates.iter().find(|candidate| candidate.structure == plan.structure);
-    // Few spheres need no structure, and a test takes some nanoseconds.
-    let of_list = || 4.0 * rays as f64 * input.scene.len() as f64;
-    let nanoseconds = candidate.map_or_else(of_list, |candidate| candidate.total(rays));
+    let building = NANOSECONDS_OF_BUILDING * input.scene.len() as f64;
+    let nanoseconds = building + NANOSECONDS_OF_RAY * rays as f64;
     ((nanoseconds / 1e6).ceil() as u64).max(1)
 }
 

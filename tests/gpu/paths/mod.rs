@@ -110,14 +110,14 @@ fn legal(view: &LitView) -> Result<(), Failed> {
 fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
     is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 
 /// Paths are legal in several bricks between which equal spheres are divided.
 fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, SMALL_BINDING, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, SMALL_BINDING).build(spheres);
     let brick_of = |sphere: &[f32; 4]| {
         let place = |brick: &Brick| brick.spheres.iter().any(|other| other[..3] == sphere[..3]);
         accel.bricks().iter().filter(|brick| place(brick)).count()

@@ -100,7 +100,7 @@ fn legal(view: &LitView) -> Result<(), Failed> {
 fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
     is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 

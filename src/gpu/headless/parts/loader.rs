@@ -69,7 +69,7 @@ impl<'a> Loader<'a> {
             let message = "all parts together have more spheres than ids of 32 bits".to_owned();
             GpuError::Part { part: largest, message }
         })?;
-        let plan = headless.plan_for_rays(&scene, choice, u64::MAX);
+        let plan = headless.plan_accel(&scene, choice);
         // A part of several bricks may have equal spheres in different ones.
         let exclude_by = if plan.brick_count > 1 { ExcludeBy::Id } else { ExcludeBy::Index };
         let structure = plan.structure;
