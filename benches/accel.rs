@@ -9,14 +9,14 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use pinhole::accel::{AccelChoice, AccelPlan, ListLayout};
+use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
 use pinhole::gpu::{Headless, HeadlessOptions, Query};
-use pinhole::internals::{BinaryTree, GridBudget, RayF32, WideTree, build_grid};
+use pinhole::internals::{GridBudget, RayF32, WideTree, build_grid};
 use pinhole::{Film, LinearRgb, Scene, View};
 
-const CHOICES: [AccelChoice; 3] = [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];
+const CHOICES: [AccelChoice; 2] = [AccelChoice::Grid, AccelChoice::Tree];
 
 /// Size of a binding that every device supports.
 const BINDING_BYTES: u64 = 1 << 27;
@@ -48,15 +48,8 @@ fn build(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene) {
     let ids: Vec<u32> = (0..count as u32).collect();
     group.throughput(Throughput::Elements(count as u64));
     let budget = GridBudget { listed: 5 * count, cells: 2 * count };
-    for (layout, name) in
-        [(ListLayout::Balls, "grid, copied"), (ListLayout::Referenced, "grid, referenced")]
-    {
-        group.bench_function(name, |b| {
-            b.iter(|| build_grid(spheres, &ids, margin, layout, budget));
-        });
-    }
+    group.bench_function("grid", |b| b.iter(|| build_grid(spheres, &ids, margin, budget)));
     group.bench_function("wide tree", |b| b.iter(|| WideTree::build(spheres, margin)));
-    group.bench_function("binary tree", |b| b.iter(|| BinaryTree::build(spheres, margin)));
 }
 
 /// Traces rays on one thread of the CPU.

@@ -1,8 +1,5 @@
 //! What tests, benchmarks and the program need of the inside. It may change in any version.
 
-pub use crate::accel::binary_tree::{
-    BINARY_INNER, BINARY_LEAF, BINARY_LEVELS, BinaryChild, BinaryNode, BinaryTree,
-};
 pub use crate::accel::grid::{Grid, GridStatistics};
 pub use crate::accel::grid_build::{BuiltGrid, GridBudget, build_grid};
 pub use crate::accel::grid_check::GridError;

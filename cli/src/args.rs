@@ -210,8 +210,6 @@ pub(super) enum Structure {
     Grid,
     /// A tree with eight children per node (BVH8)
     Tree,
-    /// A tree with two children per node (BVH2): slower, for comparison
-    BinaryTree,
     /// No structure, every ray tests every sphere: slow, for comparison
     List,
     /// Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`
@@ -224,7 +222,6 @@ impl From<Structure> for AccelChoice {
             Structure::Auto => Self::Auto,
             Structure::Grid => Self::Grid,
             Structure::Tree => Self::Tree,
-            Structure::BinaryTree => Self::BinaryTree,
             Structure::List => Self::List,
             Structure::Query => Self::RayQuery,
         }

@@ -195,11 +195,7 @@ fn readable(info: &Info) -> String {
         let mark = if adapter.chosen { ", used by `render`" } else { "" };
         text += &format!(
             "\n{} ({}, {}{mark})\n  driver: {} {}\n",
-            adapter.name,
-            adapter.backend,
-            adapter.device_type,
-            adapter.driver,
-            adapter.driver_info
+            adapter.name, adapter.backend, adapter.device_type, adapter.driver, adapter.driver_info
         );
         for (group, values) in [
             ("limits", serde_json::to_value(&adapter.limits)),

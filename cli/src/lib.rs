@@ -62,6 +62,7 @@ mod profile;
 mod profile;
 mod progress;
 mod read_file;
+mod removed;
 mod render;
 mod render_certified;
 mod report;
@@ -177,6 +178,10 @@ fn run() -> ExitCode {
 /// Prints the help or the version as clap formats it, and an error on one line. `arguments` are those of the program,
 /// without its name.
 fn explain(error: &clap::Error, arguments: &[String]) -> ExitCode {
+    if let Some(message) = removed::message(error, arguments) {
+        tell(message);
+        return failure::USAGE.into();
+    }
     let text = error.to_string();
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match answer(text.as_bytes()) {

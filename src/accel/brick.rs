@@ -2,8 +2,7 @@
 
 use glam::Vec3;
 
-use super::binary_tree::BinaryTree;
-use super::grid::{Grid, ListLayout};
+use super::grid::Grid;
 use super::list;
 use super::plan::AccelChoice;
 use super::primitive::{BrickKind, Primitive};
@@ -18,51 +17,30 @@ pub enum Structure {
     /// No structure: every sphere is tested.
     List,
     /// One level of grid cells.
-    Grid(ListLayout),
+    Grid,
     /// Two levels of grid cells: crowded cells have grids of their own.
-    NestedGrid(ListLayout),
+    NestedGrid,
     /// A compressed tree with eight children for each node.
     WideTree,
-    /// A tree with two children for each node, which is simple and serves as an independent check.
-    BinaryTree,
     /// A structure that the driver builds from boxes, and searches by ray queries; not all devices have these.
     RayQuery,
 }
 
 impl Structure {
     /// All structures for which there are kernels; the last needs more than any device has.
-    pub(crate) const WITH_KERNELS: &'static [Self] = &[
-        Self::List,
-        Self::Grid(ListLayout::Referenced),
-        Self::Grid(ListLayout::Balls),
-        Self::NestedGrid(ListLayout::Referenced),
-        Self::NestedGrid(ListLayout::Balls),
-        Self::WideTree,
-        Self::BinaryTree,
-        Self::RayQuery,
-    ];
+    pub(crate) const WITH_KERNELS: &'static [Self] =
+        &[Self::List, Self::Grid, Self::NestedGrid, Self::WideTree, Self::RayQuery];
 
-    /// All structures that any device can search: not [`Structure::RayQuery`].
+    /// All structures that any device can search: not [`Structure::RayQuery`]. [`AccelChoice::Auto`] chooses among them.
     pub const ALL: &'static [Self] = match Self::WITH_KERNELS {
         [any @ .., Self::RayQuery] => any,
         all => all,
     };
 
-    /// The structures that [`AccelChoice::Auto`](super::AccelChoice::Auto) chooses among. The binary
-    /// tree is built only if it is asked for.
-    pub const AUTOMATIC: &'static [Self] = &[
-        Self::List,
-        Self::Grid(ListLayout::Referenced),
-        Self::Grid(ListLayout::Balls),
-        Self::NestedGrid(ListLayout::Referenced),
-        Self::NestedGrid(ListLayout::Balls),
-        Self::WideTree,
-    ];
-
     /// The same structure, with nested grids if it is a grid and `is_nested`.
     pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
         match self {
-            Self::Grid(layout) if is_nested => Self::NestedGrid(layout),
+            Self::Grid if is_nested => Self::NestedGrid,
             other => other,
         }
     }
@@ -72,9 +50,8 @@ impl Structure {
     pub const fn choice(self) -> AccelChoice {
         match self {
             Self::List => AccelChoice::List,
-            Self::Grid(_) | Self::NestedGrid(_) => AccelChoice::Grid,
+            Self::Grid | Self::NestedGrid => AccelChoice::Grid,
             Self::WideTree => AccelChoice::Tree,
-            Self::BinaryTree => AccelChoice::BinaryTree,
             Self::RayQuery => AccelChoice::RayQuery,
         }
     }
@@ -84,12 +61,9 @@ impl Structure {
     pub const fn name(self) -> &'static str {
         match self {
             Self::List => "list",
-            Self::Grid(ListLayout::Referenced) => "grid, cells refer to spheres",
-            Self::Grid(ListLayout::Balls) => "grid, cells have balls",
-            Self::NestedGrid(ListLayout::Referenced) => "nested grids, cells refer to spheres",
-            Self::NestedGrid(ListLayout::Balls) => "nested grids, cells have balls",
+            Self::Grid => "grid",
+            Self::NestedGrid => "nested grids",
             Self::WideTree => "8-wide tree",
-            Self::BinaryTree => "binary tree",
             Self::RayQuery => "ray query",
         }
     }
@@ -104,8 +78,6 @@ pub enum Index {
     Grid(Grid),
     /// A tree with eight children for each node.
     WideTree(WideTree),
-    /// A tree with two children for each node.
-    BinaryTree(BinaryTree),
     /// Boxes from which a driver builds a structure. The host searches without one.
     RayQuery(QueryBoxes),
 }
@@ -134,7 +106,6 @@ impl Brick {
             Index::List | Index::RayQuery(_) => list::find_nearest(spheres, ids, ray, nearest),
             Index::Grid(grid) => grid.find_nearest(spheres, ids, ray, nearest),
             Index::WideTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
-            Index::BinaryTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
         }
     }
 
@@ -146,7 +117,6 @@ impl Brick {
             Index::List | Index::RayQuery(_) => list::find_any(spheres, ray, t_max),
             Index::Grid(grid) => grid.find_any(spheres, ray, t_max),
             Index::WideTree(tree) => tree.find_any(spheres, ray, t_max),
-            Index::BinaryTree(tree) => tree.find_any(spheres, ray, t_max),
         }
     }
 }

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::binary_tree::BinaryTree;
 use super::brick::{Accel, Brick, Index, Structure};
 #[cfg(feature = "gpu")]
 use super::brick_bounds::BrickBounds;
@@ -106,20 +105,21 @@ impl Bricks<'_> {
                 let spheres = ids.iter().map(|id| spheres[*id as usize]).collect();
                 Brick { index: Index::List, spheres, ids }
             }
-            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
+            Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } =
-                    build_grid(spheres, &ids, margin, layout, plan.budget);
+                    build_grid(spheres, &ids, margin, plan.budget);
                 Brick { index: Index::Grid(grid), spheres, ids }
             }
-            Structure::WideTree => build_tree(spheres, &ids, |spheres| {
-                let tree =
-                    WideTree::build_with(spheres, Margins { all: margin, crowd: plan.crowd });
-                (tree.ids().to_vec(), Index::WideTree(tree))
-            }),
-            Structure::BinaryTree => build_tree(spheres, &ids, |spheres| {
-                let tree = BinaryTree::build(spheres, margin);
-                (tree.ids().to_vec(), Index::BinaryTree(tree))
-            }),
+            Structure::WideTree => {
+                let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+                let margins = Margins { all: margin, crowd: plan.crowd };
+                let tree = WideTree::build_with(&own, margins);
+                Brick {
+                    spheres: tree.ids().iter().map(|index| own[*index as usize]).collect(),
+                    ids: tree.ids().iter().map(|index| ids[*index as usize]).collect(),
+                    index: Index::WideTree(tree),
+                }
+            }
             Structure::RayQuery => {
                 let spheres: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
                 let boxes = QueryBoxes::of(&spheres, plan.box_margin * margin);
@@ -167,21 +167,6 @@ impl Iterator for Bricks<'_> {
 }
 
 impl ExactSizeIterator for Bricks<'_> {}
-
-/// Builds a tree of some spheres. `build` returns the order of the given spheres in the tree, and the tree.
-fn build_tree(
-    spheres: &[[f32; 4]],
-    ids: &[u32],
-    build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
-) -> Brick {
-    let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-    let (order, index) = build(&own);
-    Brick {
-        index,
-        spheres: order.iter().map(|shape_index| own[*shape_index as usize]).collect(),
-        ids: order.iter().map(|shape_index| ids[*shape_index as usize]).collect(),
-    }
-}
 
 #[cfg(test)]
 mod tests {

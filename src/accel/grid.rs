@@ -54,28 +54,12 @@ pub(crate) const LAST: u32 = 1 << 31;
 /// The largest number of cells of a brick: cell indices are computed in f32, which is exact up to this number.
 pub(super) const MAX_CELLS: usize = 1 << 24;
 
-/// How lists store their spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum ListLayout {
-    /// A list is a range of references to spheres.
-    Referenced,
-    /// Beside each reference is a ball of four bytes around the sphere. Only spheres whose balls a ray meets are
-    /// loaded and tested. Lists are filled up to a multiple of four.
-    Balls,
+/// The number of elements that a list of `len` spheres takes: whole vectors of balls.
+pub(super) fn elements(len: usize) -> usize {
+    len.next_multiple_of(BALLS_PER_VECTOR)
 }
 
-impl ListLayout {
-    /// The number of elements that a list of `len` spheres takes.
-    pub(super) fn elements(self, len: usize) -> usize {
-        match self {
-            Self::Referenced => len,
-            Self::Balls => len.next_multiple_of(BALLS_PER_VECTOR),
-        }
-    }
-}
-
-/// A grid with one or two levels of cells, as plain data. `shaders/accel/grid.wgsl` reads the same words.
+/// A grid with one or two levels of cells, as plain data. `shaders/accel/nested_grid.wgsl` reads the same words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The corner with the smallest coordinates, in the scene's frame.
@@ -89,8 +73,9 @@ pub struct Grid {
     pub cells: Vec<u32>,
     /// Indices of spheres, list after list; the last element of each list has its highest bit set.
     pub references: Vec<u32>,
-    /// With [`ListLayout::Balls`], the ball of each reference; the last of each list has its highest bit set.
-    pub balls: Option<Vec<u32>>,
+    /// Beside each reference a ball around the sphere in four bytes: only spheres whose balls a ray meets are loaded and
+    /// tested. The last ball of each list has its highest bit set. Lists are filled up to a multiple of four.
+    pub balls: Vec<u32>,
 }
 
 /// Statistics of a grid.
@@ -113,12 +98,6 @@ impl Grid {
     #[must_use]
     pub fn first_level_len(&self) -> usize {
         self.cell_counts.iter().map(|count| *count as usize).product()
-    }
-
-    /// The layout of the lists.
-    #[must_use]
-    pub fn layout(&self) -> ListLayout {
-        if self.balls.is_some() { ListLayout::Balls } else { ListLayout::Referenced }
     }
 
     /// The list that starts at `start`, as indices into [`Grid::references`].

@@ -5,7 +5,7 @@
 use std::ops::RangeInclusive;
 
 use super::ball::BALLS_PER_VECTOR;
-use super::grid::{Grid, LAST, MAX_CELLS, word};
+use super::grid::{Grid, LAST, MAX_CELLS, elements, word};
 use super::grid_geometry::{Cell, Level};
 
 /// The valid levels of a grid inside a cell: 2 to 32 cells along an axis.
@@ -138,8 +138,7 @@ impl Grid {
         let is_length = self.cell_size.is_finite() && self.cell_size > 0.0;
         let count = self.cell_counts.iter().try_fold(1, |all: u32, count| all.checked_mul(*count));
         let is_box = count.is_some_and(|count| (1..=MAX_CELLS as u32).contains(&count));
-        let has_all_balls =
-            self.balls.as_ref().is_none_or(|balls| balls.len() == self.references.len());
+        let has_all_balls = self.balls.len() == self.references.len();
         if !is_length || !self.min.is_finite() || !is_box || !has_all_balls {
             return Err(GridError::Shape);
         }
@@ -261,15 +260,13 @@ impl Check<'_> {
             return Err(out);
         }
         let mut len = list.len();
-        if let Some(balls) = &self.grid.balls {
-            let ends = list.clone().filter(|at| balls[*at] & LAST != 0);
-            if !start.is_multiple_of(BALLS_PER_VECTOR) || !ends.eq([end - 1]) {
-                return Err(out);
-            }
-            let repeats = |at: &usize| self.id(*at) == self.id(end - 1);
-            len -= (start..end - 1).rev().take_while(repeats).count();
+        let ends = list.clone().filter(|at| self.grid.balls[*at] & LAST != 0);
+        if !start.is_multiple_of(BALLS_PER_VECTOR) || !ends.eq([end - 1]) {
+            return Err(out);
         }
-        if self.grid.layout().elements(len) != list.len() {
+        let repeats = |at: &usize| self.id(*at) == self.id(end - 1);
+        len -= (start..end - 1).rev().take_while(repeats).count();
+        if elements(len) != list.len() {
             return Err(out);
         }
         if (start..start + len).map(|at| self.id(at)).is_sorted_by(|a, b| a < b) {
@@ -419,9 +416,7 @@ impl Check<'_> {
             if !cell.is_near(sphere, MAY_LIST * self.margin) {
                 return Err(GridError::Far { cell: word, id });
             }
-            if let Some(balls) = &self.grid.balls
-                && !cell.has_in_ball(balls[at], sphere, MUST_LIST * self.margin)
-            {
+            if !cell.has_in_ball(self.grid.balls[at], sphere, MUST_LIST * self.margin) {
                 return Err(GridError::Ball { cell: word, id });
             }
         }

@@ -1,5 +1,5 @@
 //! Traversal of a grid in f32. The WGSL twin is `shaders/accel/nested_grid.wgsl`, with the same order of cells and spheres;
-//! `grid.wgsl` is the version for one level, without the inner loop.
+//! `ball_grid.wgsl` is the version for one level, without the inner loop.
 
 use glam::{BVec3, Vec3};
 
@@ -42,13 +42,7 @@ impl Grid {
         found.shape_index.is_some()
     }
 
-    fn walk(
-        &self,
-        spheres: &[[f32; 4]],
-        ray: &RayF32,
-        found: &mut Found,
-        stop_at_first: bool,
-    ) {
+    fn walk(&self, spheres: &[[f32; 4]], ray: &RayF32, found: &mut Found, stop_at_first: bool) {
         let forward = ray.direction.cmpge(Vec3::ZERO);
         let ahead = Vec3::select(forward, Vec3::ONE, Vec3::ZERO);
         let step = Vec3::select(forward, Vec3::ONE, Vec3::NEG_ONE);
@@ -96,13 +90,7 @@ impl Grid {
                         let from = (start + t_enter * speed - cell) * side - inner;
                         let length = (t_inner - t_enter) * per_cell * side;
                         let part = PartInCell::new(from, ray.direction, length);
-                        self.test_list(
-                            spheres,
-                            ray,
-                            &part,
-                            inner_word & !word::KIND,
-                            found,
-                        );
+                        self.test_list(spheres, ray, &part, inner_word & !word::KIND, found);
                     }
                     if is_done(found, t_inner) || t_inner >= t_leave {
                         break;
@@ -131,8 +119,8 @@ impl Grid {
         self.cells.get(index).copied().unwrap_or(word::EMPTY)
     }
 
-    /// Tests the spheres of a list, or, if the list has balls, those whose balls the part of the ray in the cell meets.
-    /// The nearest hit replaces an earlier one at the same distance; `shaders/accel/cell_list.wgsl` explains why.
+    /// Tests the spheres of a list whose balls the part of the ray in the cell meets.
+    /// The nearest hit replaces an earlier one at the same distance; `shaders/accel/ball_list.wgsl` explains why.
     fn test_list(
         &self,
         spheres: &[[f32; 4]],
@@ -143,7 +131,7 @@ impl Grid {
     ) {
         let mut best = Found { t: NO_HIT, shape_index: None };
         for at in self.list(start) {
-            if self.balls.as_ref().is_some_and(|balls| !part.meets(balls[at])) {
+            if !part.meets(self.balls[at]) {
                 continue;
             }
             let shape_index = self.references[at] & !LAST;

@@ -5,8 +5,6 @@
 //! in the same order. One walk of the 8-wide tree is in f64 and calls the tests of the CPU reference (`wide_tree_visit`).
 
 pub(crate) mod ball;
-pub(crate) mod binary_tree;
-mod binary_tree_trace;
 mod brick;
 #[cfg(feature = "gpu")]
 mod brick_bounds;
@@ -22,7 +20,6 @@ pub(crate) mod grid_build;
 pub(crate) mod grid_check;
 mod grid_dense;
 mod grid_empty;
-mod grid_flat;
 mod grid_geometry;
 mod grid_lists;
 mod grid_slabs;
@@ -54,7 +51,6 @@ pub use brick::{Accel, Brick, Index, Structure};
 #[cfg(feature = "gpu")]
 pub(crate) use brick_bounds::BrickBounds;
 pub use bricks::Bricks;
-pub use grid::ListLayout;
 pub use outliers::Crowd;
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
@@ -68,7 +64,6 @@ pub(crate) use statistics::margin_of;
 /// Constants that kernels share, for the test that compares both.
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) mod shared {
-    pub(crate) use super::binary_tree_trace::NO_ENTRY;
     pub(crate) use super::grid::{LAST, word};
     pub(crate) use super::wide_group::PACKED_ROOT;
     pub(crate) use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST};

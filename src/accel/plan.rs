@@ -4,10 +4,9 @@ use std::fmt;
 
 use glam::Vec3;
 
-use super::binary_tree::BinaryNode;
 use super::brick::Structure;
 use super::divide_by_sample::largest_part;
-use super::grid::{ListLayout, MAX_CELLS};
+use super::grid::MAX_CELLS;
 use super::grid_build::GridBudget;
 use super::outliers::Crowd;
 use super::statistics::SceneStatistics;
@@ -25,8 +24,6 @@ pub enum AccelChoice {
     Grid,
     /// A tree with eight children for each node.
     Tree,
-    /// A tree with two children for each node: slower, but simple.
-    BinaryTree,
     /// No structure: every sphere is tested. Slow; serves as the reference for the others.
     List,
     /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
@@ -49,9 +46,6 @@ const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
 /// The largest number of cells of the first level of a grid; the others are left to the second level.
 pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
-
-/// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
-const BINARY_BYTES_PER_SPHERE: usize = 32;
 
 /// The bytes of a box for ray queries.
 const BOX_BYTES: usize = size_of::<[f32; 6]>();
@@ -114,7 +108,7 @@ impl AccelPlan {
     pub fn of(spheres: &[[f32; 4]], structure: Structure, binding_bytes: u64) -> Self {
         let structure = match structure {
             _ if spheres.is_empty() => Structure::List,
-            Structure::NestedGrid(layout) => Structure::Grid(layout),
+            Structure::NestedGrid => Structure::Grid,
             structure => structure,
         };
         let (statistics, reason) = (SceneStatistics::of(spheres), "asked for".to_owned());
@@ -140,16 +134,8 @@ impl AccelPlan {
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
         let (buffers, box_margin) = (Vec::new(), 1.0);
-        let mut plan = Self {
-            statistics,
-            crowd,
-            structure,
-            reason,
-            brick_count,
-            budget,
-            box_margin,
-            buffers,
-        };
+        let mut plan =
+            Self { statistics, crowd, structure, reason, brick_count, budget, box_margin, buffers };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -222,11 +208,10 @@ impl AccelPlan {
             Structure::RayQuery => per_brick * 44,
             // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
             // some memory unused.
-            Structure::WideTree | Structure::BinaryTree => per_brick * 72,
+            Structure::WideTree => per_brick * 72,
             // Sorted spheres with their ids; lists of indices, twice, and of balls.
-            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
-                let bytes = if layout == ListLayout::Balls { 12 } else { 8 };
-                per_brick * 24 + bytes * self.budget.listed as u64
+            Structure::Grid | Structure::NestedGrid => {
+                per_brick * 24 + 12 * self.budget.listed as u64
             }
         }
     }
@@ -239,7 +224,7 @@ impl AccelPlan {
         let mut buffers = vec![("spheres", 16 * per_brick)];
         match self.structure {
             Structure::List => buffers.push(("ids", 4 * per_brick)),
-            Structure::WideTree | Structure::BinaryTree => {
+            Structure::WideTree => {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
             }
@@ -248,13 +233,7 @@ impl AccelPlan {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("boxes", BOX_BYTES as u64 * per_brick));
             }
-            Structure::Grid(ListLayout::Referenced)
-            | Structure::NestedGrid(ListLayout::Referenced) => {
-                buffers.push(("ids", 4 * per_brick));
-                buffers.push(("cells", 4 * cells));
-                buffers.push(("references", 4 * listed));
-            }
-            Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
+            Structure::Grid | Structure::NestedGrid => {
                 buffers.push(("ids, cells and references", 4 * (per_brick + cells + listed)));
                 buffers.push(("balls", 4 * listed));
             }
@@ -281,9 +260,8 @@ fn decide(
     match choice {
         _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
         AccelChoice::List => asked(Structure::List),
-        AccelChoice::Grid => asked(Structure::Grid(ListLayout::Balls)),
+        AccelChoice::Grid => asked(Structure::Grid),
         AccelChoice::Tree => asked(Structure::WideTree),
-        AccelChoice::BinaryTree => asked(Structure::BinaryTree),
         AccelChoice::RayQuery => asked(Structure::RayQuery),
         AccelChoice::Auto if count <= FEW => {
             (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
@@ -303,7 +281,7 @@ fn decide(
                      levels of cells"
                 ),
             ),
-            None => (Structure::Grid(ListLayout::Balls), format!("{count} spheres")),
+            None => (Structure::Grid, format!("{count} spheres")),
         },
     }
 }
@@ -315,8 +293,8 @@ impl Structure {
     pub const fn instead(self) -> Option<AccelChoice> {
         match self {
             Self::List => None,
-            Self::Grid(_) | Self::NestedGrid(_) => Some(AccelChoice::Tree),
-            Self::WideTree | Self::BinaryTree => Some(AccelChoice::List),
+            Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
+            Self::WideTree => Some(AccelChoice::List),
             Self::RayQuery => Some(AccelChoice::Tree),
         }
     }
@@ -328,7 +306,6 @@ impl fmt::Display for AccelChoice {
             Self::Auto => "auto",
             Self::Grid => "grid",
             Self::Tree => "tree",
-            Self::BinaryTree => "binary-tree",
             Self::List => "list",
             Self::RayQuery => "query",
         })
@@ -339,22 +316,13 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     // In u64, because these products exceed the 32 bits of a browser's addresses.
     let count = count as u64;
     // Small scenes may have more cells and list elements for each sphere, because the total is small.
-    let layout = match structure {
-        Structure::Grid(layout) => layout,
-        _ => return GridBudget { listed: 0, cells: 0 },
-    };
+    if structure != Structure::Grid {
+        return GridBudget { listed: 0, cells: 0 };
+    }
     let cells = count * 11 / 20 + (64 * count).min(1 << 16);
     // Larger cells are cheaper than a second brick.
-    let listed = match layout {
-        ListLayout::Referenced => {
-            let most = count * 18 / 5 + (64 * count).min(1 << 16);
-            most.min((binding_bytes / 4).max(count * 10 / 3))
-        }
-        ListLayout::Balls => {
-            let most = count * 13 / 2 + (128 * count).min(1 << 18);
-            most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4))
-        }
-    };
+    let most = count * 13 / 2 + (128 * count).min(1 << 18);
+    let listed = most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4));
     let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
     GridBudget { listed, cells }
 }
@@ -363,7 +331,6 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
 fn node_bytes(structure: Structure, count: u64) -> u64 {
     let (per_sphere, root) = match structure {
         Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
-        Structure::BinaryTree => (BINARY_BYTES_PER_SPHERE, size_of::<BinaryNode>()),
         Structure::RayQuery => (BOX_BYTES, 0),
         _ => (0, 0),
     };
@@ -385,8 +352,8 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
         let budget = grid_budget(structure, count, binding_bytes);
         let (listed, cells) = (budget.listed as u64, budget.cells as u64);
         let words = match structure {
-            Structure::Grid(ListLayout::Balls) => count as u64 + cells + listed,
-            _ => cells.max(listed),
+            Structure::Grid => count as u64 + cells + listed,
+            _ => 0,
         };
         let grid = (4 * words).max(16 * count as u64);
         let bytes = grid.max(node_bytes(structure, count as u64));
@@ -412,19 +379,10 @@ mod tests {
     /// However much a binding holds, bricks are only as large as suits the number of cells of a grid.
     #[test]
     fn the_largest_grids_have_as_many_cells_as_suit_them() {
-        for (mebibytes, least) in [(128, 8_300_000), (1024, 15_000_000), (2048, 15_000_000)] {
-            let binding_bytes = mebibytes << 20;
-            for layout in [ListLayout::Referenced, ListLayout::Balls] {
-                let structure = Structure::Grid(layout);
-                let most = most_per_brick(structure, binding_bytes);
-                let budget = grid_budget(structure, most, binding_bytes);
-                let unbound = grid_budget(structure, most, u64::MAX);
-                assert!(budget.cells <= MAX_FIRST_LEVEL, "{most} spheres, {budget:?}");
-                if layout == ListLayout::Referenced {
-                    assert!(most >= least, "{most} spheres in {mebibytes} MiB");
-                    assert_eq!(budget, unbound, "{mebibytes} MiB");
-                }
-            }
+        for mebibytes in [128, 1024, 2048] {
+            let most = most_per_brick(Structure::Grid, mebibytes << 20);
+            let budget = grid_budget(Structure::Grid, most, mebibytes << 20);
+            assert!(budget.cells <= MAX_FIRST_LEVEL, "{most} spheres, {budget:?}");
         }
     }
 

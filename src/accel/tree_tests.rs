@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
 use super::outliers::{Crowd, Margins};
 use super::query::{Nearest, RayF32};
 use super::sphere::intersect_sphere;
@@ -111,64 +110,12 @@ fn damage_to_a_wide_tree_is_found() {
     assert!(more.is_err());
 }
 
-fn found_in_binary(plant: impl Fn(&mut BinaryTree)) -> Result<(), TreeError> {
-    let spheres = spheres(2_000);
-    let mut tree = BinaryTree::build(&spheres, MARGIN);
-    assert_eq!(tree.validate(&spheres), Ok(()));
-    plant(&mut tree);
-    tree.validate(&spheres)
-}
-
-#[test]
-fn damage_to_a_binary_tree_is_found() {
-    let last = |tree: &BinaryTree| tree.nodes.len() - 1;
-    for axis in 0..3 {
-        for at_root in [true, false] {
-            let at = |tree: &BinaryTree| if at_root { 0 } else { last(tree) };
-            let low = found_in_binary(|tree| {
-                let n = at(tree);
-                tree.nodes[n].0[1].low[axis] += 1e-4;
-            });
-            assert!(matches!(low, Err(TreeError::Box { .. })), "{low:?}");
-            let high = found_in_binary(|tree| {
-                let n = at(tree);
-                tree.nodes[n].0[1].high[axis] -= 1e-4;
-            });
-            assert!(matches!(high, Err(TreeError::Box { .. })), "{high:?}");
-        }
-    }
-    let swapped = found_in_binary(|tree| {
-        let [left, right] = &mut tree.nodes[0].0;
-        std::mem::swap(&mut left.link, &mut right.link);
-    });
-    assert!(matches!(swapped, Err(TreeError::Box { .. })), "{swapped:?}");
-    let dropped = found_in_binary(|tree| {
-        let n = last(tree);
-        tree.nodes[n].0[1].count -= 1;
-    });
-    assert!(matches!(dropped, Err(TreeError::Sphere { .. })), "{dropped:?}");
-    let dropped = found_in_binary(|tree| tree.nodes[0].0[1].count = 0);
-    assert!(dropped.is_err());
-    for wrong in [0, 1, 1_000_000, u32::MAX] {
-        assert!(found_in_binary(|tree| tree.nodes[0].0[1].link = wrong).is_err(), "{wrong}");
-        let leaf = found_in_binary(|tree| {
-            let n = last(tree);
-            tree.nodes[n].0[1].link = wrong;
-        });
-        assert!(leaf.is_err(), "{wrong}");
-    }
-    let understated = found_in_binary(|tree| tree.levels -= 1);
-    assert!(matches!(understated, Err(TreeError::Levels { .. })), "{understated:?}");
-    assert_eq!(BINARY_INNER, u32::MAX);
-}
-
 /// The depths of trees are proven; this checks the arithmetic.
 #[test]
 fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert_eq!([1, 24, 25, 192, 193].map(levels_by_halves), [1, 1, 2, 2, 3]);
     assert!(levels_by_halves(u32::MAX as usize) <= 11);
     const { assert!(WIDE_LEVELS >= 11) };
-    assert!((u32::MAX as usize).div_ceil(1 << BINARY_LEVELS) <= 4);
 }
 
 /// Rays from afar graze spheres by more than the margin of the crowd; boxes that are not wider for them lose some.

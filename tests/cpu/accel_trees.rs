@@ -1,7 +1,7 @@
-//! Both trees against trying every sphere, in f32 and to the bit.
+//! The tree against trying every sphere, in f32 and to the bit.
 
 use fastrand::Rng;
-use pinhole::internals::{BinaryTree, NO_HIT, Nearest, WideTree};
+use pinhole::internals::{NO_HIT, Nearest, WideTree};
 
 use crate::rays::{assert_same, brute, corners, rays};
 use crate::support::spheres::{self, Spheres, random, scaled};
@@ -11,14 +11,11 @@ fn check(name: &str, spheres: &Spheres, count: usize) {
     // The rule of the host.
     let margin = (high - low).length() / 262_144.0;
     let wide = WideTree::build(spheres, margin);
-    let binary = BinaryTree::build(spheres, margin);
     wide.validate(spheres).unwrap_or_else(|error| panic!("{name}: {error}"));
-    binary.validate(spheres).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert_eq!(wide, WideTree::build(spheres, margin), "{name}");
-    assert_eq!(binary, BinaryTree::build(spheres, margin), "{name}");
 
     let ordered = |ids: &[u32]| -> Spheres { ids.iter().map(|id| spheres[*id as usize]).collect() };
-    let (in_wide, in_binary) = (ordered(wide.ids()), ordered(binary.ids()));
+    let in_wide = ordered(wide.ids());
     let mut rng = Rng::with_seed(spheres.len() as u64);
     let mut hits = 0;
     for ray in rays(&mut rng, spheres, count) {
@@ -26,13 +23,9 @@ fn check(name: &str, spheres: &Spheres, count: usize) {
         let mut found = Nearest::NONE;
         wide.find_nearest(&in_wide, wide.ids(), &ray, &mut found);
         assert_same(found, expected, name, &ray);
-        let mut found = Nearest::NONE;
-        binary.find_nearest(&in_binary, binary.ids(), &ray, &mut found);
-        assert_same(found, expected, name, &ray);
         // Strictly before, so not at the nearest distance itself.
         for (t_max, any) in [(NO_HIT, expected.t < NO_HIT), (expected.t, false)] {
             assert_eq!(wide.find_any(&in_wide, &ray, t_max), any, "{name}: {ray:?}");
-            assert_eq!(binary.find_any(&in_binary, &ray, t_max), any, "{name}: {ray:?}");
         }
         hits += u32::from(expected.t < NO_HIT);
     }

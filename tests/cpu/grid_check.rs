@@ -1,11 +1,9 @@
 //! Grids are what their check says, and the check finds what is planted.
 
-use pinhole::accel::{AccelPlan, ListLayout, SceneStatistics, Structure};
+use pinhole::accel::{AccelPlan, SceneStatistics, Structure};
 use pinhole::internals::{BuiltGrid, Grid, GridBudget, GridError, build_grid};
 
 use crate::support::spheres::{self, Spheres};
-
-const LAYOUTS: [ListLayout; 2] = [ListLayout::Referenced, ListLayout::Balls];
 
 // What the two highest bits of a word say; here again, so that a change is noticed.
 const KIND: u32 = 3 << 30;
@@ -14,19 +12,14 @@ const LIST: u32 = 1 << 30;
 const GRID: u32 = 2 << 30;
 
 /// What a plan allows in one brick.
-fn budget(layout: ListLayout, spheres: &Spheres) -> GridBudget {
-    let plan = AccelPlan::of(spheres, Structure::Grid(layout), 1 << 30);
-    assert_eq!((plan.structure, plan.brick_count), (Structure::Grid(layout), 1));
+fn budget(spheres: &Spheres) -> GridBudget {
+    let plan = AccelPlan::of(spheres, Structure::Grid, 1 << 30);
+    assert_eq!((plan.structure, plan.brick_count), (Structure::Grid, 1));
     let words = |name: &str| {
-        plan.buffers.iter().find(|buffer| buffer.name == name).map(|of| of.bytes as usize / 4)
+        plan.buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes as usize / 4
     };
-    match words("balls") {
-        Some(listed) => {
-            let cells = words("ids, cells and references").unwrap() - spheres.len() - listed;
-            GridBudget { listed, cells }
-        }
-        None => GridBudget { listed: words("references").unwrap(), cells: words("cells").unwrap() },
-    }
+    let listed = words("balls");
+    GridBudget { listed, cells: words("ids, cells and references") - spheres.len() - listed }
 }
 
 struct Built {
@@ -36,10 +29,10 @@ struct Built {
 }
 
 impl Built {
-    fn new(input: Spheres, layout: ListLayout) -> Self {
+    fn new(input: Spheres) -> Self {
         let ids: Vec<u32> = (0..input.len() as u32).collect();
         let margin = SceneStatistics::of(&input).margin();
-        let of = build_grid(&input, &ids, margin, layout, budget(layout, &input));
+        let of = build_grid(&input, &ids, margin, budget(&input));
         Self { input, margin, of }
     }
 
@@ -75,9 +68,7 @@ impl Built {
     fn mark(&mut self, at: usize, is_last: bool) {
         let mark = |word: &mut u32| *word = *word << 1 >> 1 | u32::from(is_last) << 31;
         mark(&mut self.of.grid.references[at]);
-        if let Some(balls) = &mut self.of.grid.balls {
-            mark(&mut balls[at]);
-        }
+        mark(&mut self.of.grid.balls[at]);
     }
 }
 
@@ -117,20 +108,18 @@ fn every_scene_has_a_grid_that_a_kernel_may_walk() {
     ];
     let mut nested = 0;
     for (name, input) in scenes {
-        for layout in LAYOUTS {
-            let built = Built::new(input.clone(), layout);
-            let Grid { cells, references, .. } = &built.of.grid;
-            built.check().unwrap_or_else(|error| panic!("{name}, {layout:?}: {error}"));
-            let budget = budget(layout, &input);
-            let listed = references.len();
-            assert!(cells.len() <= budget.cells, "{name}, {layout:?}: {} cells", cells.len());
-            assert!(listed <= budget.listed, "{name}, {layout:?}: {listed} listed");
-            if name == "coincident" {
-                let longest = built.of.grid.statistics().longest_list;
-                assert!(longest <= 32, "{layout:?}: {longest} of the same in one list");
-            }
-            nested += built.of.grid.statistics().grids;
+        let built = Built::new(input.clone());
+        let Grid { cells, references, .. } = &built.of.grid;
+        built.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+        let budget = budget(&input);
+        let listed = references.len();
+        assert!(cells.len() <= budget.cells, "{name}: {} cells", cells.len());
+        assert!(listed <= budget.listed, "{name}: {listed} listed");
+        if name == "coincident" {
+            let longest = built.of.grid.statistics().longest_list;
+            assert!(longest <= 32, "{longest} of the same in one list");
         }
+        nested += built.of.grid.statistics().grids;
     }
     assert!(nested > 0, "no scene has grids inside cells");
 }
@@ -325,15 +314,13 @@ const DAMAGES: &[Damage] = &[
 
 #[test]
 fn planted_damage_is_found() {
-    for layout in LAYOUTS {
-        for (name, damage, is_right) in DAMAGES {
-            let mut built = Built::new(mixed(), layout);
-            built.check().unwrap();
-            damage(&mut built);
-            match built.check() {
-                Err(error) => assert!(is_right(error), "{name}, {layout:?}: {error:?}"),
-                Ok(()) => panic!("{name}, {layout:?}: not found"),
-            }
+    for (name, damage, is_right) in DAMAGES {
+        let mut built = Built::new(mixed());
+        built.check().unwrap();
+        damage(&mut built);
+        match built.check() {
+            Err(error) => assert!(is_right(error), "{name}: {error:?}"),
+            Ok(()) => panic!("{name}: not found"),
         }
     }
 }
@@ -368,7 +355,7 @@ const BALL_DAMAGES: &[BallDamage] = &[
 #[test]
 fn planted_damage_of_balls_is_found() {
     for (name, damage, is_right) in BALL_DAMAGES {
-        let mut built = Built::new(mixed(), ListLayout::Balls);
+        let mut built = Built::new(mixed());
         let cell = (0..built.of.grid.first_level_len())
             .find(|cell| {
                 let word = built.of.grid.cells[*cell];
@@ -378,41 +365,15 @@ fn planted_damage_of_balls_is_found() {
             })
             .unwrap();
         let list = built.list(cell);
-        damage(&mut built.of.grid.balls.as_mut().unwrap()[list]);
+        damage(&mut built.of.grid.balls[list]);
         match built.check() {
             Err(error) => assert!(is_right(error), "{name}: {error:?}"),
             Ok(()) => panic!("{name}: not found"),
         }
     }
-    let mut built = Built::new(mixed(), ListLayout::Balls);
-    built.of.grid.balls.as_mut().unwrap().pop();
+    let mut built = Built::new(mixed());
+    built.of.grid.balls.pop();
     assert_eq!(built.check(), Err(GridError::Shape));
-}
-
-/// What no array is too short for: a sphere too many in a list.
-#[test]
-fn a_sphere_that_is_elsewhere_is_found() {
-    let mut built = Built::new(mixed(), ListLayout::Referenced);
-    let cell = built.cell_with(2);
-    let list = built.list(cell);
-    let listed: Vec<u32> = built.of.grid.references[list.clone()].to_vec();
-    // The greatest id of all is in no other cell than its own, and keeps the list in order.
-    let greatest = built.of.ids.iter().position(|id| *id as usize + 1 == built.input.len());
-    let greatest = greatest.unwrap() as u32;
-    assert!(listed.iter().all(|reference| reference << 1 >> 1 != greatest));
-    built.of.grid.references[list.end - 1] = greatest | 1 << 31;
-    // The one that was there is missing; with it back, the other is what is wrong.
-    assert!(matches!(built.check(), Err(GridError::Missing { .. })));
-    let references = &mut built.of.grid.references;
-    let start = references.len() as u32;
-    references.extend(listed.iter().map(|reference| reference << 1 >> 1));
-    references.push(greatest | 1 << 31);
-    // So that what the old list took is not without an end.
-    built.of.grid.cells[cell] = LIST | start;
-    assert_eq!(
-        built.check(),
-        Err(GridError::Far { cell: cell as u32, id: built.input.len() as u32 - 1 })
-    );
 }
 
 /// A budget is kept however little it leaves for grids inside cells, or for spheres in step with the cells.
@@ -425,14 +386,11 @@ fn a_tight_budget_is_kept() {
         for (listed, cells) in [(1, 2), (2, 2), (3, 2), (4, 2), (4, 4), (8, 1), (16, 8)] {
             let count = input.len();
             let budget = GridBudget { listed: count * listed, cells: count * cells / 2 };
-            for layout in LAYOUTS {
-                let BuiltGrid { grid, spheres, ids } =
-                    build_grid(&input, &ids, margin, layout, budget);
-                grid.validate(&spheres, &ids, &input, margin).unwrap();
-                let found = grid.references.len();
-                assert!(found <= budget.listed, "{found} listed, {layout:?}, {budget:?}");
-                assert!(grid.cells.len() <= budget.cells, "{} cells, {budget:?}", grid.cells.len());
-            }
+            let BuiltGrid { grid, spheres, ids } = build_grid(&input, &ids, margin, budget);
+            grid.validate(&spheres, &ids, &input, margin).unwrap();
+            let found = grid.references.len();
+            assert!(found <= budget.listed, "{found} listed, {budget:?}");
+            assert!(grid.cells.len() <= budget.cells, "{} cells, {budget:?}", grid.cells.len());
         }
     }
 }
@@ -446,13 +404,11 @@ fn a_budget_is_kept_for_spheres_in_step_with_the_cells() {
     let ids: Vec<u32> = (0..count as u32).collect();
     // 16 cells along an axis are the most that fit, with the tenth that the builder keeps back.
     let budget = GridBudget { listed: 3 * count, cells: 16 * 16 * 16 * 10 / 9 + 16 };
-    for layout in LAYOUTS {
-        let BuiltGrid { grid, spheres, ids } = build_grid(&input, &ids, margin, layout, budget);
-        grid.validate(&spheres, &ids, &input, margin).unwrap();
-        let listed = grid.references.len();
-        assert!(listed <= budget.listed, "{listed} listed, {layout:?}");
-        assert!(grid.cells.len() <= budget.cells, "{} cells, {layout:?}", grid.cells.len());
-    }
+    let BuiltGrid { grid, spheres, ids } = build_grid(&input, &ids, margin, budget);
+    grid.validate(&spheres, &ids, &input, margin).unwrap();
+    let listed = grid.references.len();
+    assert!(listed <= budget.listed, "{listed} listed");
+    assert!(grid.cells.len() <= budget.cells, "{} cells", grid.cells.len());
 }
 
 /// What `SceneStatistics::margin` derives: 2⁻¹⁷ of the diagonal, and two neighbours in f32 of the farthest
@@ -475,10 +431,8 @@ fn the_least_grid_is_built_whatever_the_budget() {
     let none = GridBudget { listed: 0, cells: 0 };
     let spheres: Vec<[f32; 4]> = (0..100).map(|i| [i as f32, 0.0, 0.0, 0.6]).collect();
     for ids in [&[][..], &[7], &[1, 5, 99]] {
-        for layout in LAYOUTS {
-            let built = build_grid(&spheres, ids, 0.01, layout, none);
-            assert_eq!(built.grid.cell_counts, [1; 3]);
-            assert_eq!(built.ids.len(), ids.len());
-        }
+        let built = build_grid(&spheres, ids, 0.01, none);
+        assert_eq!(built.grid.cell_counts, [1; 3]);
+        assert_eq!(built.ids.len(), ids.len());
     }
 }

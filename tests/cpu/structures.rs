@@ -2,7 +2,7 @@
 //! takes more memory than was planned.
 
 use fastrand::Rng;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, ListLayout, Structure};
+use pinhole::accel::{Accel, AccelPlan, Brick, Index, Structure};
 use pinhole::glam::Vec3;
 use pinhole::internals::{NO_HIT, RayF32, intersect_sphere};
 
@@ -18,17 +18,12 @@ const TINY: u64 = 4096;
 /// What a grid with balls may take beside its lists, and 68 bytes for each of 300 spheres.
 const TINY_FOR_BALLS: u64 = (1 << 20) + 300 * 68;
 
-/// 68 elements of lists for each of 300 spheres: what a small scene may have.
-const TINY_FOR_REFERENCES: u64 = 300 * 68 * 4;
-
 /// Every structure of the spheres, with its plan.
 fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
     let kinds = [
         (Structure::List, TINY),
-        (Structure::Grid(ListLayout::Balls), TINY_FOR_BALLS),
-        (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
+        (Structure::Grid, TINY_FOR_BALLS),
         (Structure::WideTree, TINY),
-        (Structure::BinaryTree, TINY),
         (Structure::RayQuery, TINY),
     ];
     let mut all = Vec::new();
@@ -58,23 +53,16 @@ fn check_bindings(plan: &AccelPlan, binding_bytes: u64) {
 fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     let ids = size_of_val(&brick.ids[..]) as u64;
     let mut buffers = vec![("spheres", size_of_val(&brick.spheres[..]) as u64)];
-    if let Index::Grid(grid) = &brick.index
-        && let Some(balls) = &grid.balls
-    {
+    if let Index::Grid(grid) = &brick.index {
         let words = size_of_val(&grid.cells[..]) + size_of_val(&grid.references[..]);
         buffers.push(("ids, cells and references", ids + words as u64));
-        buffers.push(("balls", size_of_val(&balls[..]) as u64));
+        buffers.push(("balls", size_of_val(&grid.balls[..]) as u64));
         return buffers;
     }
     buffers.push(("ids", ids));
     match &brick.index {
-        Index::List => {}
-        Index::Grid(grid) => {
-            buffers.push(("cells", size_of_val(&grid.cells[..]) as u64));
-            buffers.push(("references", size_of_val(&grid.references[..]) as u64));
-        }
+        Index::List | Index::Grid(_) => {}
         Index::WideTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
-        Index::BinaryTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
         Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(boxes.boxes()) as u64)),
     }
     buffers
@@ -285,17 +273,15 @@ fn far_and_very_long_and_very_short() {
 #[test]
 fn many_small_bricks() {
     let spheres = spheres::random(60, 22, |_| 0.1);
-    for layout in [ListLayout::Balls, ListLayout::Referenced] {
-        let binding_bytes = TINY / 4;
-        let plan = AccelPlan::of(&spheres, Structure::Grid(layout), binding_bytes);
-        check_bindings(&plan, binding_bytes);
-        let accel = plan.build(&spheres);
-        assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
-        check_memory("many bricks", &plan, &accel);
-        let mut rng = Rng::with_seed(22);
-        for ray in rays(&mut rng, &spheres, 800) {
-            assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
-        }
+    let binding_bytes = TINY / 4;
+    let plan = AccelPlan::of(&spheres, Structure::Grid, binding_bytes);
+    check_bindings(&plan, binding_bytes);
+    let accel = plan.build(&spheres);
+    assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
+    check_memory("many bricks", &plan, &accel);
+    let mut rng = Rng::with_seed(22);
+    for ray in rays(&mut rng, &spheres, 800) {
+        assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
     }
 }
 
@@ -308,19 +294,14 @@ fn every_structure_is_met() {
         .collect();
     met.sort_by_key(|structure| structure.name());
     met.dedup();
-    assert_eq!(met.len(), 8, "{met:?}");
+    assert_eq!(met.len(), 5, "{met:?}");
 }
 
 /// All in one place: lists keep the one that counts, and trees end.
 fn coincident(count: usize) {
     let spheres = spheres::coincident(count);
     let few = spheres::coincident(1);
-    for structure in [
-        Structure::Grid(ListLayout::Balls),
-        Structure::Grid(ListLayout::Referenced),
-        Structure::WideTree,
-        Structure::BinaryTree,
-    ] {
+    for structure in [Structure::Grid, Structure::WideTree] {
         let plan = AccelPlan::of(&spheres, structure, ROOMY);
         let accel = plan.build(&spheres);
         let name = format!("{count} coincident, {}", accel.structure().name());

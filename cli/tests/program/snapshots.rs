@@ -106,6 +106,8 @@ macro_rules! areas {
 
 areas!(
     cases::arguments
+    #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
+    cases::removed
     cases::files
     cases::arrays
     certify::certify

@@ -5,9 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Expression, Handle, Literal, Module};
 
 use super::all_kernels;
-use crate::accel::binary_tree::BinaryChild;
-use crate::accel::binary_tree::BinaryNode;
-use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_ROOT, word};
+use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, PACKED_ROOT, word};
 use crate::accel::wide_node::WideNode;
 use crate::accel::{self};
 use crate::gpu::passes::{emitter_table, lit, tiles};
@@ -45,10 +43,6 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
         ("WIDE_LEVELS", accel::wide_tree::WIDE_LEVELS),
         ("WIDE_NODE_VECTORS", vectors(size_of::<WideNode>())),
-        ("BINARY_LEVELS", accel::binary_tree::BINARY_LEVELS),
-        ("BINARY_INNER", accel::binary_tree::BINARY_INNER),
-        ("BINARY_NODE_VECTORS", vectors(size_of::<BinaryNode>())),
-        ("BINARY_CHILD_VECTORS", vectors(size_of::<BinaryChild>())),
         ("LIGHTING_TRANSPARENT", codes::lighting::TRANSPARENT),
         ("LIGHTING_SKY_SEEN", codes::lighting::SKY_SEEN),
         ("LIGHTING_SHADOWS", codes::lighting::SHADOWS),
@@ -84,7 +78,6 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         // Two modules of the host define this constant.
         ("NO_HIT", records::NO_HIT),
         ("NO_HIT", accel::query::NO_HIT),
-        ("NO_ENTRY", NO_ENTRY),
         ("SMALLEST_COMPONENT", accel::slab::SMALLEST_COMPONENT),
         ("PI", std::f32::consts::PI),
         ("QUANTA", accel::ball::QUANTA),

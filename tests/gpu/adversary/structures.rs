@@ -59,7 +59,7 @@ pub(super) fn agree() -> Result<(), Failed> {
         if expected.len() - misses < 40 {
             return Err(format!("{name}: few hits").into());
         }
-        for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
+        for choice in [AccelChoice::Grid, AccelChoice::Tree] {
             let found = seen(&scene, |view| hits(headless, &scene, view, choice, 1.0))?;
             let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
             if different > 0 {

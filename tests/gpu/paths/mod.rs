@@ -24,16 +24,14 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("paths::legal::{name}"), move || legal(&view())));
     }
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::in_a_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
     }
     trials.push(Trial::test("paths::legal::in_bricks", || {
         legal_in(AccelChoice::List, SMALL_BINDING)
     }));
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || {
             let view = scenes::thrice();

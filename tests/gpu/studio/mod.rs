@@ -30,8 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::ALL {
         trials.push(Trial::test(format!("studio::legal::{name}"), move || legal(&view())));
     }
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("studio::legal::in_a_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
     }

@@ -143,6 +143,16 @@ pub(super) fn arguments() -> Vec<Case> {
     )
 }
 
+/// Flags and commands that earlier versions had.
+pub(super) fn removed() -> Vec<Case> {
+    lines(
+        "render scene.toml -o out.png --accel binary-tree
+         bench --calibrate
+         bench scene.toml --counts
+         bench scene.toml --pictures 1",
+    )
+}
+
 /// Files that are missing, of another kind, or in a place that cannot be written.
 pub(super) fn files() -> Vec<Case> {
     lines(
