@@ -210,8 +210,6 @@ pub(super) enum Structure {
     Grid,
     /// A tree with eight children per node (BVH8)
     Tree,
-    /// A tree with two children per node (BVH2): slower, for comparison
-    BinaryTree,
     /// No structure, every ray tests every sphere: slow, for comparison
     List,
     /// Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`
@@ -224,7 +222,6 @@ impl From<Structure> for AccelChoice {
             Structure::Auto => Self::Auto,
             Structure::Grid => Self::Grid,
             Structure::Tree => Self::Tree,
-            Structure::BinaryTree => Self::BinaryTree,
             Structure::List => Self::List,
             Structure::Query => Self::RayQuery,
         }
@@ -277,7 +274,7 @@ pub(super) struct VerifyArgs {
     after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
     and the error is that of `render`; 2 wrong usage.\n\n\
     JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
-    reason, bricks), `prices` (where they come from), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), \
+    reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), \
     `buffers` (name, bytes, bytes_per_binding, bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, \
     `host_peak`, `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
     `problem`. New versions may add keys, but do not change these."
@@ -303,17 +300,15 @@ pub(super) struct PlanArgs {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Each scene is measured with the structure that --accel auto chooses for many pictures, and with the \
+    after_help = "Each scene is measured with the structure that --accel auto chooses, and with the \
     other of grid and tree. Rays go through the centers of all pixels; `any` asks only whether there is a hit. \
     Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of \
     `render`.\n\n\
-    JSON: `version`, `adapter`, `prices` (where they come from), `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
+    JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
     trace_device, any_wall, any_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
     any_rays_per_second, submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
-    peak_memory_bytes, and with --counts counts (share_in_box; counted and expected, each steps, elements, spheres for \
-    each ray; expected_nanoseconds). With --calibrate: `version`, `adapter`, `measured_on`, `seconds`, `structures` \
-    (structure, tracing, building), `upload_byte_nanoseconds`, `file`. New versions may add keys, but do not change these."
+    peak_memory_bytes. New versions may add keys, but do not change these."
 )]
 pub(super) struct BenchArgs {
     /// Scenes to measure: R1M, R10M, L1M, C200k, or scene or data files; R10M needs almost 1 GiB of memory
@@ -335,16 +330,6 @@ pub(super) struct BenchArgs {
     /// Number of measurements of each structure
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) reps: u32,
-    /// Choose the structure for this many pictures of the size [default: very many]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
-    pub(super) pictures: Option<u64>,
-    /// Also count on the CPU what up to 4096 of the rays do in each structure, beside what was expected of them
-    #[arg(long)]
-    pub(super) counts: bool,
-    /// Measure the prices of this adapter on small generated scenes, and keep them: `render`, `plan` and `bench` then
-    /// choose structures by them. They are kept in the user's folder for caches, for each adapter and driver
-    #[arg(long, conflicts_with_all = ["scenes", "size", "format", "radius", "accel", "reps", "pictures", "counts"])]
-    pub(super) calibrate: bool,
     #[command(flatten)]
     pub(super) adapter: AdapterArgs,
     /// Print the results as JSON

@@ -6,7 +6,6 @@ use anyhow::Context;
 
 use super::adapter::AdapterReport;
 use super::args::BenchArgs;
-use super::bench_counts::CountsReport;
 use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
@@ -14,7 +13,7 @@ use super::failure::Failure;
 use super::input::parse_size;
 use super::speak::{answer, tell};
 use super::with_scene::watch_upload;
-use super::{calibrate, interrupt, memory, prices, process, progress, threads};
+use super::{interrupt, memory, process, progress, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::gpu::{
@@ -34,16 +33,10 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     };
     let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.iter().copied());
     threads::start()?;
-    let mut headless = adapter.open_any()?;
-    if args.calibrate {
-        return calibrate::run(&headless, args.json);
-    }
-    let (source, note) = prices::use_measured(&mut headless);
-    note.iter().for_each(|note| tell(format_args!("note: {note}")));
+    let headless = adapter.open_any()?;
     let mut report = BenchReport {
         version: env!("CARGO_PKG_VERSION"),
         adapter: AdapterReport::of(&headless),
-        prices: source.words(),
         reps: args.reps,
         scenes: Vec::new(),
     };
@@ -112,9 +105,7 @@ fn measure(
         layers: LayerSet::COLOR,
         host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
     };
-    // Without the flag, the structure is chosen as for many pictures, not for this one alone.
-    let rays = args.pictures.map_or(u64::MAX, |count| count.saturating_mul(film.pixel_count()));
-    let accel = headless.plan_for_rays(spheres, choice, rays);
+    let accel = headless.plan_accel(spheres, choice);
     let reps = args.reps;
     let structures = StructurePlans { accel, occluders: None };
     let plan = RenderPlan::new(&request, structures, &headless.device_limits());
@@ -136,11 +127,6 @@ fn measure(
     times.begin(None);
     let buffers = uploaded.map_err(failed)?;
     let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
-    let counts = args.counts.then(|| {
-        let mut candidates = plan.accel.candidates.iter();
-        let planned = candidates.find(|candidate| candidate.structure == plan.accel.structure);
-        CountsReport::of(scene, &plan.accel.build(spheres.spheres()), planned)
-    });
 
     progress::stage(format!("{name}: first render, {}", structure.name()));
     let started = Instant::now();
@@ -190,7 +176,6 @@ fn measure(
         device_bytes_per_sphere: (!spheres.is_empty())
             .then(|| device_bytes as f64 / spheres.len() as f64),
         peak_memory_bytes: process::peak_bytes(),
-        counts,
     })
 }
 

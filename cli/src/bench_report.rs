@@ -5,7 +5,6 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
-use super::bench_counts::CountsReport;
 use super::bench_scene::BenchScene;
 use super::memory::readable;
 use super::table::table;
@@ -21,8 +20,6 @@ pub(super) const HOST_CLOCK: &str = "host";
 pub(super) struct BenchReport {
     pub(super) version: &'static str,
     pub(super) adapter: AdapterReport,
-    /// Where the prices come from, by which structures are chosen.
-    pub(super) prices: String,
     pub(super) reps: u32,
     pub(super) scenes: Vec<SceneReport>,
 }
@@ -70,9 +67,6 @@ pub(super) struct RunReport {
     pub(super) device_bytes_per_sphere: Option<f64>,
     /// Largest memory use of the process so far.
     pub(super) peak_memory_bytes: Option<u64>,
-    /// What rays do in the structure, if it was to be counted.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) counts: Option<CountsReport>,
 }
 
 /// Times of repeated measurements.
@@ -97,7 +91,7 @@ impl Spread {
 
 impl BenchReport {
     pub(super) fn heading(&self) -> String {
-        let Self { version, adapter, prices, reps, .. } = self;
+        let Self { version, adapter, reps, .. } = self;
         let clock = adapter.clock();
         let why = if clock == DEVICE_CLOCK {
             ""
@@ -105,7 +99,7 @@ impl BenchReport {
             "; no device times, because the clock of a software device measures when work was queued, not when it ran"
         };
         format!(
-            "pinhole {version}\n{}\nprices: {prices}\nreps: {reps}; rates by the clock of the {clock}{why}\n",
+            "pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {clock}{why}\n",
             adapter.line(),
         )
     }
@@ -150,44 +144,10 @@ impl SceneReport {
             ],
             &rows,
         );
-        text += &self.counts();
         if let Some(note) = &self.note {
             text += &format!("  {note}\n");
         }
         text
-    }
-}
-
-impl SceneReport {
-    /// The table of counts for each ray, if there are any.
-    fn counts(&self) -> String {
-        let counted = |run: &RunReport| Some((run.structure, run.counts?.row(), run.trace_wall));
-        let rows: Vec<_> = self.runs.iter().filter_map(counted).collect();
-        if rows.is_empty() {
-            return String::new();
-        }
-        let pixels = f64::from(self.width) * f64::from(self.height);
-        let rows: Vec<[String; 9]> = rows
-            .into_iter()
-            .map(|(structure, [a, b, c, d, e, f, ns], wall)| {
-                let wall = wall.map_or("-".to_owned(), |wall| {
-                    format!("{:.1}", wall.median_seconds / pixels * 1e9)
-                });
-                [structure.to_owned(), a, b, c, d, e, f, wall, ns]
-            })
-            .collect();
-        let heads = [
-            "for each ray",
-            "steps",
-            "expected",
-            "elements",
-            "expected",
-            "spheres",
-            "expected",
-            "wall ns",
-            "expected",
-        ];
-        format!("\n{}", table(heads, &rows))
     }
 }
 

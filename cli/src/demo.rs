@@ -30,7 +30,6 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     threads::start()?;
     let input = source.scene_from_text(SCENE)?;
     let opened = device.open()?;
-    opened.note().iter().for_each(|note| tell(format_args!("note: {note}")));
     let image = render(&input, LayerSet::COLOR, &opened)?;
     outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(

@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::{deadline, interrupt, prices, profile, self_test};
+use super::{deadline, interrupt, profile, self_test};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -81,8 +81,6 @@ pub(super) enum Opened {
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
         warning: Option<String>,
-        /// A note if measured prices are of no use.
-        note: Option<String>,
     },
 }
 
@@ -92,17 +90,6 @@ impl Opened {
         match self {
             #[cfg(feature = "gpu")]
             Self::Device { headless, .. } => Some(&headless.adapter_info().name),
-            #[cfg(feature = "gpu")]
-            Self::CpuInstead => None,
-            Self::Cpu => None,
-        }
-    }
-
-    /// Returns a note on what was opened, if there is one.
-    pub(super) fn note(&self) -> Option<&str> {
-        match self {
-            #[cfg(feature = "gpu")]
-            Self::Device { note, .. } => note.as_deref(),
             #[cfg(feature = "gpu")]
             Self::CpuInstead => None,
             Self::Cpu => None,
@@ -118,10 +105,9 @@ impl Device {
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => {
                 match deadline::opening(|| wanted.tested())? {
-                    Ok((mut headless, warning)) => {
-                        let (_, note) = prices::use_measured(&mut headless);
+                    Ok((headless, warning)) => {
                         let (headless, choice) = (Box::new(headless), *choice);
-                        Ok(Opened::Device { headless, choice, warning, note })
+                        Ok(Opened::Device { headless, choice, warning })
                     }
                     Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                     Err(error) => Err(Failure::Job(error.into())),

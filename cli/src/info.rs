@@ -18,7 +18,7 @@ use super::speak::answer;
 pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
     bounds of `verify` rely on. Exit codes: 0 done; 1 the file cannot be read, or there is no adapter, or it cannot \
     compute; 2 wrong usage; 3 it computes, but a property fails.\n\n\
-    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, prices, limits, features), \
+    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
     `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
     outcome (ok, note, FAILED), words, figures.\n\n\
     JSON of a file: `version`, `file`, `bytes`, `kind` (data, scene or bricks), `spheres`, `min`, `max`, `radius_min`, \
@@ -50,8 +50,6 @@ struct AdapterReport {
     driver: String,
     driver_info: String,
     chosen: bool,
-    /// Where the prices come from, by which structures are chosen.
-    prices: String,
     limits: Limits,
     features: Features,
 }
@@ -145,7 +143,6 @@ fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport 
     use pinhole::gpu::wgpu;
 
     let info = adapter.get_info();
-    let prices = super::prices::source(&info).words();
     let limits = adapter.limits();
     let features = adapter.features();
     let has = |feature| features.contains(feature);
@@ -156,7 +153,6 @@ fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport 
         driver: info.driver,
         driver_info: info.driver_info,
         chosen,
-        prices,
         limits: Limits {
             max_texture_dimension_2d: limits.max_texture_dimension_2d.into(),
             max_buffer_size: limits.max_buffer_size,
@@ -198,13 +194,8 @@ fn readable(info: &Info) -> String {
     for adapter in &info.adapters {
         let mark = if adapter.chosen { ", used by `render`" } else { "" };
         text += &format!(
-            "\n{} ({}, {}{mark})\n  driver: {} {}\n  prices: {}\n",
-            adapter.name,
-            adapter.backend,
-            adapter.device_type,
-            adapter.driver,
-            adapter.driver_info,
-            adapter.prices
+            "\n{} ({}, {}{mark})\n  driver: {} {}\n",
+            adapter.name, adapter.backend, adapter.device_type, adapter.driver, adapter.driver_info
         );
         for (group, values) in [
             ("limits", serde_json::to_value(&adapter.limits)),

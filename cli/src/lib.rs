@@ -19,14 +19,10 @@ mod args;
 #[cfg(feature = "gpu")]
 mod bench;
 #[cfg(feature = "gpu")]
-mod bench_counts;
-#[cfg(feature = "gpu")]
 mod bench_report;
 #[cfg(feature = "gpu")]
 mod bench_scene;
 mod bricks;
-#[cfg(feature = "gpu")]
-mod calibrate;
 mod camera;
 mod certified;
 mod certify;
@@ -57,8 +53,6 @@ mod output;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
-#[cfg(feature = "gpu")]
-mod prices;
 mod print_scene;
 mod process;
 #[cfg(not(feature = "gpu"))]

@@ -12,7 +12,6 @@ use super::failure::Failure;
 use super::input::{Input, Source};
 use super::light::LightFlags;
 use super::memory;
-use super::prices;
 use super::progress;
 use super::render;
 use super::speak::{answer, tell};
@@ -29,8 +28,6 @@ struct Report {
     version: &'static str,
     scene: SceneReport,
     structure: StructureReport,
-    /// Where the prices come from, by which the structure was chosen.
-    prices: String,
     picture: PictureReport,
     buffers: Vec<BufferReport>,
     device_bytes: u64,
@@ -112,9 +109,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     // `render` adds this layer too.
     let alpha = input.encoding.transparent().then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
-    let mut headless = adapter.open_any()?;
-    let (source, note) = prices::use_measured(&mut headless);
-    note.iter().for_each(|note| tell(format_args!("note: {note}")));
+    let headless = adapter.open_any()?;
     progress::stage("planning");
     let choice = choice(args.accel.accel);
     let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
@@ -123,7 +118,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         .check(&headless.device().limits(), available)
         .map_err(|error| explained(&headless, &error));
     let problem = verdict.as_ref().err().map(Failure::message);
-    let report = Report::new(&input, plan, (&headless, source.words()), available, problem);
+    let report = Report::new(&input, plan, &headless, available, problem);
     let text = if args.json {
         serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
             + "\n"
@@ -139,7 +134,7 @@ impl Report {
     fn new(
         input: &Input,
         plan: RenderPlan,
-        (headless, prices): (&Headless, String),
+        headless: &Headless,
         host_bytes_available: Option<u64>,
         problem: Option<String>,
     ) -> Self {
@@ -182,7 +177,6 @@ impl Report {
                 reason: plan.accel.reason,
                 bricks: plan.accel.brick_count,
             },
-            prices,
             fits: problem.is_none(),
             problem,
         }
@@ -198,7 +192,6 @@ impl Report {
         }
         let StructureReport { name, reason, bricks } = structure;
         text += &format!("structure: {name} ({reason}); bricks: {bricks}\n");
-        text += &format!("prices: {}\n", self.prices);
         let PictureReport { width, height, tile_width, tile_height, tiles, .. } = picture;
         text += &format!(
             "picture: {width}x{height}; tiles: {tiles} of at most {tile_width}x{tile_height}\n\

@@ -152,7 +152,6 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
-    opened.note().iter().for_each(|text| note(text));
     let (encoding, annotations) = job.finish(&mut input, note)?;
     let outputs = job.outputs.with_annotations(annotations);
     let layers = outputs.layers(&encoding);

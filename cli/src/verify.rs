@@ -150,7 +150,7 @@ mod recorded {
     use crate::verify_report::command_line;
     use crate::with_scene::{upload, with_structures};
     use crate::{
-        interrupt, memory, prices, progress, self_test, verify_denoiser, verify_light, verify_lit,
+        interrupt, memory, progress, self_test, verify_denoiser, verify_light, verify_lit,
     };
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
@@ -190,10 +190,8 @@ mod recorded {
                 "a run file has room for {most} samples of each pixel; choose --paths {most} or less"
             )));
         }
-        let mut headless = wanted.open_any()?;
+        let headless = wanted.open_any()?;
         self_test::check(&headless)?;
-        let (_, note) = prices::use_measured(&mut headless);
-        note.iter().for_each(|note| tell(format_args!("note: {note}")));
         let (scene, view) = (&input.scene, &input.view());
         let settings = &input.settings.by_primary_rays();
         let choice = choice(args.accel.accel);

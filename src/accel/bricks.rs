@@ -5,15 +5,14 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::binary_tree::BinaryTree;
-use super::brick::{Accel, Brick, Index, Structure};
+use super::brick::{Accel, Brick, Index, QueryBoxes};
 #[cfg(feature = "gpu")]
 use super::brick_bounds::BrickBounds;
 use super::divide::divide;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::outliers::Margins;
 use super::plan::AccelPlan;
-use super::query_boxes::QueryBoxes;
+use super::structure::Structure;
 use super::wide_tree::WideTree;
 
 /// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are
@@ -106,20 +105,21 @@ impl Bricks<'_> {
                 let spheres = ids.iter().map(|id| spheres[*id as usize]).collect();
                 Brick { index: Index::List, spheres, ids }
             }
-            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
+            Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } =
-                    build_grid(spheres, &ids, margin, layout, plan.budget);
+                    build_grid(spheres, &ids, margin, plan.budget);
                 Brick { index: Index::Grid(grid), spheres, ids }
             }
-            Structure::WideTree => build_tree(spheres, &ids, |spheres| {
-                let tree =
-                    WideTree::build_with(spheres, Margins { all: margin, crowd: plan.crowd });
-                (tree.ids().to_vec(), Index::WideTree(tree))
-            }),
-            Structure::BinaryTree => build_tree(spheres, &ids, |spheres| {
-                let tree = BinaryTree::build(spheres, margin);
-                (tree.ids().to_vec(), Index::BinaryTree(tree))
-            }),
+            Structure::WideTree => {
+                let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+                let margins = Margins { all: margin, crowd: plan.crowd };
+                let tree = WideTree::build_with(&own, margins);
+                Brick {
+                    spheres: tree.ids().iter().map(|index| own[*index as usize]).collect(),
+                    ids: tree.ids().iter().map(|index| ids[*index as usize]).collect(),
+                    index: Index::WideTree(tree),
+                }
+            }
             Structure::RayQuery => {
                 let spheres: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
                 let boxes = QueryBoxes::of(&spheres, plan.box_margin * margin);
@@ -168,21 +168,6 @@ impl Iterator for Bricks<'_> {
 
 impl ExactSizeIterator for Bricks<'_> {}
 
-/// Builds a tree of some spheres. `build` returns the order of the given spheres in the tree, and the tree.
-fn build_tree(
-    spheres: &[[f32; 4]],
-    ids: &[u32],
-    build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
-) -> Brick {
-    let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-    let (order, index) = build(&own);
-    Brick {
-        index,
-        spheres: order.iter().map(|shape_index| own[*shape_index as usize]).collect(),
-        ids: order.iter().map(|shape_index| ids[*shape_index as usize]).collect(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,7 +181,7 @@ mod tests {
         for (choice, bytes) in
             [(AccelChoice::List, 4096), (AccelChoice::Tree, 4096), (AccelChoice::Grid, 1 << 17)]
         {
-            let plan = AccelPlan::for_rays(&spheres, choice, bytes, 1);
+            let plan = AccelPlan::new(&spheres, choice, bytes);
             let (all, one_by_one) = (plan.build(&spheres), plan.bricks(&spheres));
             let count = one_by_one.len();
             assert!(count > 1 && count == all.bricks().len(), "{choice}");

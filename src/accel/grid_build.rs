@@ -4,31 +4,16 @@ use glam::Vec3;
 
 use super::ball::BallFrame;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{Grid, ListLayout, MAX_CELLS, word};
+use super::grid::{Grid, GridBudget, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
-use super::grid_flat::Flat;
-use super::grid_lists::BuiltLists;
+use super::grid_lists::{BuiltLists, Flat};
 use super::grid_slabs::{Counted, Lists};
 use super::grid_sort::{CHUNK, sort_by_cell};
-use super::plan::MAX_FIRST_LEVEL;
 use crate::parallel::{for_each, map_parts, ranges};
 
-/// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
-/// the time hardly changes between eight and sixteen.
-pub(super) const STEP_COST: f32 = 12.0;
-
 /// The largest number of spheres whose radii the choice of the cell size looks at.
-pub(super) const RADII: usize = 4096;
-
-/// Limits for the size of a grid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridBudget {
-    /// The largest total number of elements of all lists.
-    pub listed: usize,
-    /// The largest number of cells, of both levels together.
-    pub cells: usize,
-}
+const RADII: usize = 4096;
 
 /// A grid, with its spheres in the order that the grid refers to, and their ids.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,15 +31,9 @@ pub struct BuiltGrid {
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
 #[must_use]
-pub fn build_grid(
-    spheres: &[[f32; 4]],
-    ids: &[u32],
-    margin: f32,
-    layout: ListLayout,
-    budget: GridBudget,
-) -> BuiltGrid {
+pub fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget: GridBudget) -> BuiltGrid {
     let (own, (min, max)) = gather(spheres, ids, margin);
-    let mut cells = first_level(&own, (min, max), layout, budget);
+    let mut cells = first_level(&own, (min, max), budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.
     while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
@@ -63,12 +42,12 @@ pub fn build_grid(
     let mut counted = Counted::new(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
     // cells.
-    while counted.total(layout) > budget.listed as u64 && cells.len() > 1 {
+    while counted.total() > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
         counted = Counted::new(&sorted, &cells, margin);
     }
     let lists = counted.fill(&sorted_ids);
-    let mut grid = assemble(&cells, margin, layout, budget, &sorted, lists);
+    let mut grid = assemble(&cells, margin, budget, &sorted, &lists);
     mark_empty_surroundings(&mut grid.cells, cells.counts);
     BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
 }
@@ -95,26 +74,15 @@ fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Ve
 }
 
 /// Chooses the first level of cells for all these spheres.
-fn first_level(
-    spheres: &[[f32; 4]],
-    (min, max): (Vec3, Vec3),
-    layout: ListLayout,
-    budget: GridBudget,
-) -> Cells {
+fn first_level(spheres: &[[f32; 4]], (min, max): (Vec3, Vec3), budget: GridBudget) -> Cells {
     let stride = spheres.len().div_ceil(RADII).max(1);
     let radii: Vec<f32> = spheres.iter().step_by(stride).map(|sphere| sphere[3]).collect();
-    cells_of_size(min, max, first_level_size(&radii, spheres.len(), max - min, layout, budget))
+    cells_of_size(min, max, first_level_size(&radii, spheres.len(), max - min, budget))
 }
 
 /// Chooses the cell size with the smallest expected cost of a ray, for a number of spheres of which a sample has the
 /// given radii: a ray of length L takes about L/size steps, each with the elements of one cell's list.
-pub(super) fn first_level_size(
-    radii: &[f32],
-    count: usize,
-    extent: Vec3,
-    layout: ListLayout,
-    budget: GridBudget,
-) -> f32 {
+fn first_level_size(radii: &[f32], count: usize, extent: Vec3, budget: GridBudget) -> f32 {
     let longest = extent.max_element();
     // Prevents a volume of zero for flat scenes.
     let sides = extent.max(Vec3::splat(longest * 1e-3));
@@ -127,7 +95,7 @@ pub(super) fn first_level_size(
         let overlaps: f32 = radii.iter().map(|r| mean_overlapped_cells(size, *r)).sum();
         let overlaps = f64::from(overlaps) / radii.len() as f64 * count as f64;
         let cells = volume / f64::from(size).powi(3);
-        let listed = expected_elements(layout, overlaps, cells);
+        let listed = expected_elements(overlaps, cells);
         let fits = listed <= budget.listed as f64 * 0.97 && cells <= most_cells * 0.9;
         let cost = (f64::from(STEP_COST) + listed / cells.max(1.0)) / f64::from(size);
         if (fits || step == 0) && best.is_none_or(|(least, _)| cost < least) {
@@ -138,12 +106,9 @@ pub(super) fn first_level_size(
 }
 
 /// The expected number of elements of the lists of cells that spheres overlap so many times.
-fn expected_elements(layout: ListLayout, overlaps: f64, cells: f64) -> f64 {
-    match layout {
-        ListLayout::Referenced => overlaps,
-        // Lists that are filled up have one and a half more on average.
-        ListLayout::Balls => overlaps + 1.5 * cells.min(overlaps),
-    }
+fn expected_elements(overlaps: f64, cells: f64) -> f64 {
+    // Lists that are filled up have one and a half more on average.
+    overlaps + 1.5 * cells.min(overlaps)
 }
 
 fn cells_of_size(min: Vec3, max: Vec3, size: f32) -> Cells {
@@ -168,45 +133,33 @@ struct BuiltCells {
 fn assemble(
     cells: &Cells,
     margin: f32,
-    layout: ListLayout,
     budget: GridBudget,
     sorted: &[[f32; 4]],
-    lists: Lists,
+    lists: &Lists,
 ) -> Grid {
-    let dense = DenseCells::of(
-        cells,
-        sorted,
-        margin,
-        (&lists.shape_indices, &lists.starts),
-        layout,
-        budget,
-    );
+    let dense =
+        DenseCells::of(cells, sorted, margin, (&lists.shape_indices, &lists.starts), budget);
     let mut grid = Grid {
         min: cells.min,
         cell_size: cells.size,
         cell_counts: cells.counts,
         cells: Vec::new(),
         references: Vec::new(),
-        balls: None,
+        balls: Vec::new(),
     };
     let is_long = |list: &[u32]| (list[1] - list[0]) as usize > LONG;
     if dense.is_none() && !lists.starts.windows(2).any(is_long) {
-        let Flat { words, references, balls } = match layout {
-            ListLayout::Referenced => Flat::referenced(cells, lists),
-            ListLayout::Balls => Flat::with_balls(cells, &lists, sorted, margin),
-        };
+        let Flat { words, references, balls } = Flat::of(cells, lists, sorted, margin);
         return Grid { cells: words, references, balls, ..grid };
     }
-    let frame = |cells: &Cells, cell: usize| {
-        let corner = corner(cells, cell);
-        (layout == ListLayout::Balls).then(|| BallFrame::new(corner, cells.size, margin))
-    };
+    let frame =
+        |cells: &Cells, cell: usize| BallFrame::new(corner(cells, cell), cells.size, margin);
     let parts = map_parts(ranges(cells.len(), CHUNK), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
         let mut part = BuiltCells {
             words: Vec::with_capacity(range.len()),
             inner: Vec::new(),
-            lists: BuiltLists::with_capacity(listed, layout),
+            lists: BuiltLists::with_capacity(listed),
         };
         let mut list = Vec::new();
         for cell in range {
@@ -215,7 +168,7 @@ fn assemble(
             list.extend_from_slice(&lists.shape_indices[start..end]);
             keep_one_of_the_same(&mut list, sorted);
             let inner = dense.level(cell).and_then(|level| {
-                Some((level, inner_lists(cells, cell, &list, sorted, margin, level, layout)?))
+                Some((level, inner_lists(cells, cell, &list, sorted, margin, level)?))
             });
             let word = match inner {
                 Some((level, inner)) => {
@@ -232,7 +185,7 @@ fn assemble(
         }
         part
     });
-    join(&mut grid, word::in_whole_units(cells.len()), layout, &parts);
+    join(&mut grid, word::in_whole_units(cells.len()), &parts);
     grid
 }
 
@@ -248,14 +201,14 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
 }
 
 /// Joins the words and the lists of all parts.
-fn join(grid: &mut Grid, first_level_len: usize, layout: ListLayout, parts: &[BuiltCells]) {
+fn join(grid: &mut Grid, first_level_len: usize, parts: &[BuiltCells]) {
     let listed = parts.iter().map(|part| part.lists.references.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
     grid.cells = vec![word::EMPTY; first_level_len + inner_len];
     grid.references = vec![0; listed];
-    let mut balls = vec![0; parts.iter().map(|part| part.lists.balls.len()).sum()];
+    grid.balls = vec![0; listed];
     let (mut words, mut inner) = grid.cells.split_at_mut(first_level_len);
-    let (mut references, mut all_balls) = (&mut grid.references[..], &mut balls[..]);
+    let (mut references, mut all_balls) = (&mut grid.references[..], &mut grid.balls[..]);
     let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
     let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
@@ -284,7 +237,6 @@ fn join(grid: &mut Grid, first_level_len: usize, layout: ListLayout, parts: &[Bu
         references.copy_from_slice(&part.lists.references);
         balls.copy_from_slice(&part.lists.balls);
     });
-    grid.balls = (layout == ListLayout::Balls).then_some(balls);
 }
 
 /// Splits the first elements off a slice.

@@ -4,25 +4,24 @@ use glam::Vec3;
 
 use super::ball::BALLS_PER_VECTOR;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{ListLayout, word};
-use super::grid_build::{GridBudget, STEP_COST};
+use super::grid::{GridBudget, STEP_COST, elements, word};
 use crate::parallel::{map_parts, ranges};
 
 /// The length of a list from which a grid may be worthwhile: even the coarsest grid costs two steps.
-pub(super) const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
+const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
 
 /// The finest level of a grid inside a cell: 2⁵ cells along an axis.
-pub(super) const MAX_LEVEL: u8 = 5;
+const MAX_LEVEL: u8 = 5;
 
 /// The largest number of inner cells, and of inner list elements, for each element of the list that they replace.
 const MOST_GROWTH: usize = 64;
 
 /// A grid is worth its memory if its cost for a ray is less than this fraction of the cost of the list.
-pub(super) const GAIN: f32 = 0.9;
+const GAIN: f32 = 0.9;
 
 /// Two levels are worthwhile if they save this fraction of the cost of all cells: a kernel that supports two levels is
 /// slower in all of them, by a tenth.
-pub(super) const WORTH_IT: f32 = 0.1;
+const WORTH_IT: f32 = 0.1;
 
 /// A grid inside a cell that would reduce the cost of rays.
 #[derive(Clone, Copy)]
@@ -50,7 +49,6 @@ impl DenseCells {
         spheres: &[[f32; 4]],
         margin: f32,
         (shape_indices, starts): (&[u32], &[u32]),
-        layout: ListLayout,
         budget: GridBudget,
     ) -> Self {
         let candidates = map_parts(ranges(cells.len(), 1 << 12), |range| {
@@ -75,11 +73,11 @@ impl DenseCells {
             .sort_unstable_by_key(|candidate| (std::cmp::Reverse(candidate.len), candidate.cell));
         let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
         let listed: usize =
-            starts.windows(2).map(|ends| layout.elements((ends[1] - ends[0]) as usize)).sum();
+            starts.windows(2).map(|ends| elements((ends[1] - ends[0]) as usize)).sum();
         let mut listed_left = budget.listed.saturating_sub(listed);
         for Candidate { cell, len, level, listed, .. } in candidates {
             let inner = 1_usize << (3 * level);
-            let needed = (inner, max_listed(listed, inner, layout).saturating_sub(len as usize));
+            let needed = (inner, max_listed(listed, inner).saturating_sub(len as usize));
             if needed.0 <= cells_left && needed.1 <= listed_left {
                 cells_left -= needed.0;
                 listed_left -= needed.1;
@@ -102,12 +100,9 @@ impl DenseCells {
 
 /// The largest allowed number of list elements inside a cell, for the number that is expected if spheres are spread
 /// evenly.
-fn max_listed(expected: f32, cells: usize, layout: ListLayout) -> usize {
+fn max_listed(expected: f32, cells: usize) -> usize {
     let most = (expected * 2.0) as usize + 64;
-    match layout {
-        ListLayout::Referenced => most,
-        ListLayout::Balls => most + (BALLS_PER_VECTOR - 1) * cells.min(most),
-    }
+    most + (BALLS_PER_VECTOR - 1) * cells.min(most)
 }
 
 /// The lists of the grid inside a cell: indices of spheres, in the order of the list from which they are made, which is
@@ -119,18 +114,17 @@ pub(super) fn inner_lists(
     spheres: &[[f32; 4]],
     margin: f32,
     level: u8,
-    layout: ListLayout,
 ) -> Option<Vec<Vec<u32>>> {
     let inner = inner_cells(cells, cell, level);
     let expected = expected_listed(cells.size, inner.size, list, spheres);
-    let most = max_listed(expected, inner.len(), layout);
+    let most = max_listed(expected, inner.len());
     let mut lists = vec![Vec::new(); inner.len()];
     for &shape_index in list {
         inner.for_each_near_clipped(&spheres[shape_index as usize], margin, |cell| {
             lists[cell].push(shape_index);
         });
     }
-    let listed: usize = lists.iter().map(|list| layout.elements(list.len())).sum();
+    let listed: usize = lists.iter().map(|list| elements(list.len())).sum();
     (listed <= most).then_some(lists)
 }
 

@@ -7,7 +7,7 @@ use crate::parallel::map;
 pub(super) const MAX_AHEAD: u8 = word::REACH as u8;
 
 /// The fraction of empty cells below which skipping is not worthwhile.
-pub(super) const WORTH_IT: f32 = 0.25;
+const WORTH_IT: f32 = 0.25;
 
 /// Writes into every empty word of the first level, for each of the eight octants of ray directions, how many cells
 /// ahead along all three axes are empty as well, in three bits each.

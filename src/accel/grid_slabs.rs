@@ -5,10 +5,8 @@
 
 use std::ops::Range;
 
-use super::cell_octet::{Octet, Strides};
-use super::cell_vectors::CellVectors;
-use super::cells::Cells;
-use super::grid::ListLayout;
+use super::cells::{CellVectors, Cells, Octet, Strides};
+use super::grid::elements;
 use crate::parallel::{for_each, map_parts, ranges, split_mut};
 
 /// The number of slabs: several for each core of most machines. In more, more spheres would overlap two of them.
@@ -56,9 +54,8 @@ impl<'a> Counted<'a> {
     }
 
     /// The number of elements of lists with so many spheres each.
-    pub(super) fn total(&self, layout: ListLayout) -> u64 {
-        let elements = |count: &u32| layout.elements(*count as usize) as u64;
-        self.counts.iter().map(elements).sum()
+    pub(super) fn total(&self) -> u64 {
+        self.counts.iter().map(|count| elements(*count as usize) as u64).sum()
     }
 
     /// Fills the lists of all cells.

@@ -164,7 +164,7 @@ impl Grid {
         PartInCell::new(from.as_vec3(), ray.direction, (length * ray.per_cell * side) as f32)
     }
 
-    /// Offers the spheres of a list, or, if the list has balls, those whose balls are met.
+    /// Offers the spheres of a list whose balls are met.
     #[inline]
     fn offer_list(
         &self,
@@ -173,17 +173,8 @@ impl Grid {
         mut limit: f64,
         offer: &mut impl FnMut(usize) -> f64,
     ) -> f64 {
-        let Some(balls) = &self.balls else {
-            for at in self.list(start) {
-                limit = offer((self.references[at] & !LAST) as usize);
-                if limit < 0.0 {
-                    break;
-                }
-            }
-            return limit;
-        };
         let start = start as usize;
-        let vectors = balls[start..].as_chunks::<BALLS_PER_VECTOR>().0;
+        let vectors = self.balls[start..].as_chunks::<BALLS_PER_VECTOR>().0;
         let references = self.references[start..].as_chunks::<BALLS_PER_VECTOR>().0;
         for (four, references) in vectors.iter().zip(references) {
             let mut met = part.meets_four(four);

@@ -1,40 +1,20 @@
 //! Plans: which structure is built, why, and how large it may become. Plans are made before anything is allocated.
 
-use std::fmt;
-
 use glam::Vec3;
 
-use super::binary_tree::BinaryNode;
-use super::brick::Structure;
-use super::decide::{candidates, decide};
 use super::divide_by_sample::largest_part;
-use super::grid::{ListLayout, MAX_CELLS};
-use super::grid_build::GridBudget;
+use super::grid::{GridBudget, MAX_FIRST_LEVEL};
 use super::outliers::Crowd;
-use super::prices::{Candidate, Prices};
 use super::statistics::SceneStatistics;
+use super::structure::{AccelChoice, Structure};
 use super::wide_node::WideNode;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
 
-/// The structure that a user chooses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum AccelChoice {
-    /// The structure that suits the scene.
-    #[default]
-    Auto,
-    /// A grid with one or two levels of cells.
-    Grid,
-    /// A tree with eight children for each node.
-    Tree,
-    /// A tree with two children for each node: slower, but simple.
-    BinaryTree,
-    /// No structure: every sphere is tested. Slow; serves as the reference for the others.
-    List,
-    /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
-    /// have them and are opened for it.
-    RayQuery,
-}
+/// The number of spheres up to which no structure is worth its cost.
+const FEW: usize = 32;
+
+/// The number of spheres, in a cube of about the smallest cell of a nested grid, above which a tree is better.
+const MAX_IN_A_CUBE: f32 = 256.0;
 
 /// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
 /// in Mesa 22.3 silently leaves a loop.
@@ -42,12 +22,6 @@ pub(crate) const LIST_LEN: usize = 3 << 14;
 
 /// The largest binding on most devices; larger lists could not be indexed with 30 bits.
 const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
-
-/// The largest number of cells of the first level of a grid; the others are left to the second level.
-pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
-
-/// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
-const BINARY_BYTES_PER_SPHERE: usize = 32;
 
 /// The bytes of a box for ray queries.
 const BOX_BYTES: usize = size_of::<[f32; 6]>();
@@ -90,51 +64,18 @@ pub struct AccelPlan {
     pub(super) box_margin: f32,
     /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
-    /// The structures that were compared, with what they are expected to cost; none for very few spheres, or if a
-    /// structure was asked for that never competes.
-    pub candidates: Vec<Candidate>,
 }
 
 impl AccelPlan {
     /// Makes a plan for the spheres of a scene, in the scene's frame, and a device whose bindings hold up to
-    /// `binding_bytes`. Assumes that many pictures will be rendered.
+    /// `binding_bytes`.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
-        Self::for_rays(spheres, choice, binding_bytes, u64::MAX)
-    }
-
-    /// Makes a plan like [`AccelPlan::new`], for a known number of rays in all pictures together: if there are few, a
-    /// structure that is slower to trace but faster to build may be better. The prices are [`Prices::SOFTWARE`].
-    #[must_use]
-    pub fn for_rays(
-        spheres: &[[f32; 4]],
-        choice: AccelChoice,
-        binding_bytes: u64,
-        rays: u64,
-    ) -> Self {
-        Self::with_prices(spheres, choice, binding_bytes, rays, &Prices::SOFTWARE)
-    }
-
-    /// Makes a plan like [`AccelPlan::for_rays`] for a device with these prices: of the structures that the choice
-    /// allows, the one in which building, copying and tracing take the least time. [`u64::MAX`] rays stand for many
-    /// pictures, for which only the time of a ray counts.
-    #[must_use]
-    pub fn with_prices(
-        spheres: &[[f32; 4]],
-        choice: AccelChoice,
-        binding_bytes: u64,
-        rays: u64,
-        prices: &Prices,
-    ) -> Self {
         let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
         let crowd = Crowd::find(spheres, &statistics);
-        let candidates = candidates(spheres, &statistics, choice, binding_bytes, prices);
-        let (structure, reason) = crowd
-            .and_then(|crowd| crowd.decide(&statistics, choice))
-            .unwrap_or_else(|| decide(&statistics, choice, &candidates, rays));
-        let plan = Self::of_structure(statistics, structure, reason, binding_bytes);
-        Self { crowd, candidates, ..plan }
+        let (structure, reason) = decide(&statistics, crowd.as_ref(), choice);
+        Self { crowd, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
     }
 
     /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels, and
@@ -143,7 +84,7 @@ impl AccelPlan {
     pub fn of(spheres: &[[f32; 4]], structure: Structure, binding_bytes: u64) -> Self {
         let structure = match structure {
             _ if spheres.is_empty() => Structure::List,
-            Structure::NestedGrid(layout) => Structure::Grid(layout),
+            Structure::NestedGrid => Structure::Grid,
             structure => structure,
         };
         let (statistics, reason) = (SceneStatistics::of(spheres), "asked for".to_owned());
@@ -159,7 +100,7 @@ impl AccelPlan {
         reason: String,
         binding_bytes: u64,
     ) -> Self {
-        let (count, crowd, candidates) = (statistics.count, None, Vec::new());
+        let (count, crowd) = (statistics.count, None);
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
         // Where bricks are not all of the same size, this takes one more brick at most.
@@ -169,17 +110,8 @@ impl AccelPlan {
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
         let (buffers, box_margin) = (Vec::new(), 1.0);
-        let mut plan = Self {
-            statistics,
-            crowd,
-            structure,
-            reason,
-            brick_count,
-            budget,
-            box_margin,
-            buffers,
-            candidates,
-        };
+        let mut plan =
+            Self { statistics, crowd, structure, reason, brick_count, budget, box_margin, buffers };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -252,11 +184,10 @@ impl AccelPlan {
             Structure::RayQuery => per_brick * 44,
             // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
             // some memory unused.
-            Structure::WideTree | Structure::BinaryTree => per_brick * 72,
+            Structure::WideTree => per_brick * 72,
             // Sorted spheres with their ids; lists of indices, twice, and of balls.
-            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
-                let bytes = if layout == ListLayout::Balls { 12 } else { 8 };
-                per_brick * 24 + bytes * self.budget.listed as u64
+            Structure::Grid | Structure::NestedGrid => {
+                per_brick * 24 + 12 * self.budget.listed as u64
             }
         }
     }
@@ -269,7 +200,7 @@ impl AccelPlan {
         let mut buffers = vec![("spheres", 16 * per_brick)];
         match self.structure {
             Structure::List => buffers.push(("ids", 4 * per_brick)),
-            Structure::WideTree | Structure::BinaryTree => {
+            Structure::WideTree => {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
             }
@@ -278,13 +209,7 @@ impl AccelPlan {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("boxes", BOX_BYTES as u64 * per_brick));
             }
-            Structure::Grid(ListLayout::Referenced)
-            | Structure::NestedGrid(ListLayout::Referenced) => {
-                buffers.push(("ids", 4 * per_brick));
-                buffers.push(("cells", 4 * cells));
-                buffers.push(("references", 4 * listed));
-            }
-            Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
+            Structure::Grid | Structure::NestedGrid => {
                 buffers.push(("ids, cells and references", 4 * (per_brick + cells + listed)));
                 buffers.push(("balls", 4 * listed));
             }
@@ -300,30 +225,40 @@ impl AccelPlan {
     }
 }
 
-impl Structure {
-    /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
-    /// spheres; `None` for the list, which always terminates.
-    #[must_use]
-    pub const fn instead(self) -> Option<AccelChoice> {
-        match self {
-            Self::List => None,
-            Self::Grid(_) | Self::NestedGrid(_) => Some(AccelChoice::Tree),
-            Self::WideTree | Self::BinaryTree => Some(AccelChoice::List),
-            Self::RayQuery => Some(AccelChoice::Tree),
+/// The structure for a choice, and why.
+fn decide(
+    statistics: &SceneStatistics,
+    crowd: Option<&Crowd>,
+    choice: AccelChoice,
+) -> (Structure, String) {
+    let SceneStatistics { count, densest, .. } = *statistics;
+    let asked = |structure| (structure, "asked for".to_owned());
+    match choice {
+        _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
+        AccelChoice::List => asked(Structure::List),
+        AccelChoice::Grid => asked(Structure::Grid),
+        AccelChoice::Tree => asked(Structure::WideTree),
+        AccelChoice::RayQuery => asked(Structure::RayQuery),
+        AccelChoice::Auto if count <= FEW => {
+            (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
         }
-    }
-}
-
-impl fmt::Display for AccelChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Auto => "auto",
-            Self::Grid => "grid",
-            Self::Tree => "tree",
-            Self::BinaryTree => "binary-tree",
-            Self::List => "list",
-            Self::RayQuery => "query",
-        })
+        AccelChoice::Auto => match crowd.filter(|crowd| crowd.is_lost_in_margin(statistics)) {
+            Some(Crowd { outliers, .. }) => (
+                Structure::WideTree,
+                format!(
+                    "{outliers} of {count} spheres lie far away from the others, which have a margin of their own in a \
+                     tree"
+                ),
+            ),
+            None if densest > MAX_IN_A_CUBE => (
+                Structure::WideTree,
+                format!(
+                    "about {densest:.0} spheres lie in a cube of 1/4096 of the scene's side, too close together for two \
+                     levels of cells"
+                ),
+            ),
+            None => (Structure::Grid, format!("{count} spheres")),
+        },
     }
 }
 
@@ -331,22 +266,13 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     // In u64, because these products exceed the 32 bits of a browser's addresses.
     let count = count as u64;
     // Small scenes may have more cells and list elements for each sphere, because the total is small.
-    let layout = match structure {
-        Structure::Grid(layout) => layout,
-        _ => return GridBudget { listed: 0, cells: 0 },
-    };
+    if structure != Structure::Grid {
+        return GridBudget { listed: 0, cells: 0 };
+    }
     let cells = count * 11 / 20 + (64 * count).min(1 << 16);
     // Larger cells are cheaper than a second brick.
-    let listed = match layout {
-        ListLayout::Referenced => {
-            let most = count * 18 / 5 + (64 * count).min(1 << 16);
-            most.min((binding_bytes / 4).max(count * 10 / 3))
-        }
-        ListLayout::Balls => {
-            let most = count * 13 / 2 + (128 * count).min(1 << 18);
-            most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4))
-        }
-    };
+    let most = count * 13 / 2 + (128 * count).min(1 << 18);
+    let listed = most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4));
     let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
     GridBudget { listed, cells }
 }
@@ -355,7 +281,6 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
 fn node_bytes(structure: Structure, count: u64) -> u64 {
     let (per_sphere, root) = match structure {
         Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
-        Structure::BinaryTree => (BINARY_BYTES_PER_SPHERE, size_of::<BinaryNode>()),
         Structure::RayQuery => (BOX_BYTES, 0),
         _ => (0, 0),
     };
@@ -377,8 +302,8 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
         let budget = grid_budget(structure, count, binding_bytes);
         let (listed, cells) = (budget.listed as u64, budget.cells as u64);
         let words = match structure {
-            Structure::Grid(ListLayout::Balls) => count as u64 + cells + listed,
-            _ => cells.max(listed),
+            Structure::Grid => count as u64 + cells + listed,
+            _ => 0,
         };
         let grid = (4 * words).max(16 * count as u64);
         let bytes = grid.max(node_bytes(structure, count as u64));
@@ -404,19 +329,10 @@ mod tests {
     /// However much a binding holds, bricks are only as large as suits the number of cells of a grid.
     #[test]
     fn the_largest_grids_have_as_many_cells_as_suit_them() {
-        for (mebibytes, least) in [(128, 8_300_000), (1024, 15_000_000), (2048, 15_000_000)] {
-            let binding_bytes = mebibytes << 20;
-            for layout in [ListLayout::Referenced, ListLayout::Balls] {
-                let structure = Structure::Grid(layout);
-                let most = most_per_brick(structure, binding_bytes);
-                let budget = grid_budget(structure, most, binding_bytes);
-                let unbound = grid_budget(structure, most, u64::MAX);
-                assert!(budget.cells <= MAX_FIRST_LEVEL, "{most} spheres, {budget:?}");
-                if layout == ListLayout::Referenced {
-                    assert!(most >= least, "{most} spheres in {mebibytes} MiB");
-                    assert_eq!(budget, unbound, "{mebibytes} MiB");
-                }
-            }
+        for mebibytes in [128, 1024, 2048] {
+            let most = most_per_brick(Structure::Grid, mebibytes << 20);
+            let budget = grid_budget(Structure::Grid, most, mebibytes << 20);
+            assert!(budget.cells <= MAX_FIRST_LEVEL, "{most} spheres, {budget:?}");
         }
     }
 

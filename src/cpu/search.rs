@@ -5,7 +5,7 @@
 //! `accel/grid_visit.rs`.
 
 use super::search_index::{GridIndex, TreeIndex};
-use crate::accel::{AccelChoice, AccelPlan, ListLayout, Structure};
+use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::geometry::ray::Ray;
 use crate::scene::{Scene, SceneError};
 
@@ -37,7 +37,7 @@ impl<'a> From<&'a SearchStructure<'a>> for Search<'a> {
 const FEW: usize = 16;
 
 /// A structure over the spheres of a scene, which makes the CPU reference fast and changes none of its pictures: a grid
-/// with balls where all spheres are opaque and a plan for many pictures chooses a grid, and otherwise an 8-wide tree.
+/// where all spheres are opaque and a plan chooses a grid, and otherwise an 8-wide tree.
 #[derive(Debug)]
 pub struct SearchStructure<'a> {
     scene: &'a Scene,
@@ -71,15 +71,8 @@ impl<'a> SearchPlan<'a> {
         // Of equal spheres, a long list of a grid has only the first, but another may be the one that hides a light.
         let grid = (spheres.len() > FEW && scene.is_opaque())
             .then(|| AccelPlan::new(spheres, AccelChoice::Auto, u64::MAX))
-            .and_then(|plan| match plan.structure {
-                Structure::Grid(ListLayout::Balls) => Some(plan),
-                Structure::Grid(_) => {
-                    Some(AccelPlan::of(spheres, Structure::Grid(ListLayout::Balls), u64::MAX))
-                }
-                _ => None,
-            })
             // A walk is in one grid.
-            .filter(|plan| plan.brick_count == 1);
+            .filter(|plan| plan.structure == Structure::Grid && plan.brick_count == 1);
         Self { scene, grid }
     }
 
@@ -125,11 +118,11 @@ impl<'a> SearchStructure<'a> {
 
     /// A structure of this kind, whatever suits the scene.
     #[cfg(test)]
-    pub(super) fn of(scene: &'a Scene, layout: Option<ListLayout>) -> Self {
-        let kind = match layout {
-            None => Kind::Tree(TreeIndex::new(scene).unwrap()),
-            Some(layout) => {
-                let plan = AccelPlan::of(scene.spheres(), Structure::Grid(layout), u64::MAX);
+    pub(super) fn of(scene: &'a Scene, structure: Structure) -> Self {
+        let kind = match structure {
+            Structure::WideTree => Kind::Tree(TreeIndex::new(scene).unwrap()),
+            structure => {
+                let plan = AccelPlan::of(scene.spheres(), structure, u64::MAX);
                 Kind::Grid(GridIndex::new(&plan, scene).unwrap())
             }
         };

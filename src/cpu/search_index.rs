@@ -56,7 +56,7 @@ impl TreeIndex {
     }
 }
 
-/// A grid with balls.
+/// A grid.
 #[derive(Debug)]
 pub(super) struct GridIndex {
     grid: Grid,

@@ -2,8 +2,6 @@
 
 use wgpu::DeviceType;
 
-use crate::accel::Prices;
-
 /// The order and the amounts of work that suit a type of device.
 ///
 /// Those of software devices were measured with Mesa's lavapipe. Those of GPUs follow from how GPUs work: no GPU has
@@ -30,8 +28,6 @@ pub(in crate::gpu) struct DeviceShape {
     /// take a software device less than half a second, and a small GPU, at ten thousand million tests per second, a
     /// tenth of a second.
     pub(in crate::gpu) max_tests: u64,
-    /// The prices by which structures are chosen.
-    pub(in crate::gpu) prices: Prices,
 }
 
 /// Maximum number of paths where memory is scarce.
@@ -48,7 +44,6 @@ impl DeviceShape {
                 max_paths: FEW_PATHS,
                 first_groups: 2048,
                 max_tests: 1 << 27,
-                prices: Prices::SOFTWARE,
             },
             DeviceType::DiscreteGpu | DeviceType::VirtualGpu => {
                 Self { max_tile_pixels: 1 << 22, max_paths: 1 << 21, ..Self::of_small_gpu() }
@@ -71,7 +66,6 @@ impl DeviceShape {
             max_paths: FEW_PATHS,
             first_groups: 1 << 14,
             max_tests: 1 << 30,
-            prices: Prices::GPU,
         }
     }
 }

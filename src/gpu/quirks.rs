@@ -17,7 +17,7 @@ pub(super) fn plan(
     plan: impl Fn(AccelChoice) -> AccelPlan,
 ) -> AccelPlan {
     let planned = plan(choice);
-    let is_grid = matches!(planned.structure, Structure::Grid(_) | Structure::NestedGrid(_));
+    let is_grid = matches!(planned.structure, Structure::Grid | Structure::NestedGrid);
     if choice == AccelChoice::Auto && is_grid && info.name.starts_with("SwiftShader") {
         let mut tree = plan(AccelChoice::Tree);
         tree.reason = format!("{} spheres, and this driver computes grids wrongly", scene.len());

@@ -146,7 +146,7 @@ fn planned(
         layers: LayerSet::ALL,
         host_bytes_per_pixel: 0,
     };
-    let accel = AccelPlan::for_rays(scene.spheres(), choice, bytes, 1);
+    let accel = AccelPlan::new(scene.spheres(), choice, bytes);
     let structures = StructurePlans { accel, occluders: None };
     RenderPlan::new(&request, structures, &headless.device_limits())
 }

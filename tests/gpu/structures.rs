@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use libtest_mimic::Trial;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, ListLayout, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
@@ -30,7 +30,6 @@ use crate::trial;
 const ROOMY: u64 = 1 << 27;
 const TINY: u64 = 16 * 600;
 const TINY_FOR_BALLS: u64 = (1 << 20) + 68 * 600;
-const TINY_FOR_REFERENCES: u64 = 4 * 68 * 600;
 
 /// Opens a device with the limits of WebGPU.
 static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
@@ -92,13 +91,8 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 /// All structures, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
-    let kinds = [
-        (Structure::Grid(ListLayout::Balls), TINY_FOR_BALLS),
-        (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
-        (Structure::WideTree, TINY),
-        (Structure::BinaryTree, TINY),
-        (Structure::List, TINY),
-    ];
+    let kinds =
+        [(Structure::Grid, TINY_FOR_BALLS), (Structure::WideTree, TINY), (Structure::List, TINY)];
     let build = |(structure, tiny)| {
         [ROOMY, tiny].map(|bytes| AccelPlan::of(spheres, structure, bytes).build(spheres))
     };

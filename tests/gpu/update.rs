@@ -101,8 +101,7 @@ fn in_bricks(headless: &'static Headless) {
     let [_, _, rgba8] = [0, 4, 8].map(|kind| kinds().swap_remove(kind));
     let mut scene = rgba8.scene;
     let mut random = Rng::with_seed(43);
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let plan = AccelPlan::new(scene.spheres(), choice, 16 * 40);
         let built = plan.build(scene.spheres());
         assert!(built.bricks().len() > 1);

@@ -91,7 +91,7 @@ fn certified(view: &View) -> Result<(), Failed> {
 
 fn build(scene: &Scene, how: How) -> Accel {
     let spheres = scene.spheres();
-    AccelPlan::for_rays(spheres, how.choice, how.binding_bytes, how.rays).build(spheres)
+    AccelPlan::new(spheres, how.choice, how.binding_bytes).build(spheres)
 }
 
 fn record(headless: &Headless, view: &View, how: How) -> Result<Recording, Failed> {

@@ -79,7 +79,6 @@ fn readers_and_writers_touch_no_files() {
         "interrupt.rs",
         "job/files.rs",
         "memory/control_group.rs",
-        "prices.rs",
         "process.rs",
     ];
     assert_absent("cli/src", &["std::fs"], &program);

@@ -29,13 +29,11 @@ fn primary_rays_of_every_camera_structure_and_target() {
         };
         let renderer = Renderer::new(&host.device, &options).unwrap();
         let mut frame = host.frame(&renderer, &options, SIZE);
-        use AccelChoice::{BinaryTree, Grid, List, Tree};
+        use AccelChoice::{Grid, List, Tree};
         // Bindings of 2048 bytes divide the scene into bricks.
         let bricks = AccelPlan::new(scene.spheres(), List, 2048).build(scene.spheres());
         assert!(bricks.bricks().len() > 1);
-        for (choice, binding) in
-            [(Grid, 1 << 27), (Tree, 1 << 27), (BinaryTree, 1 << 27), (List, 1 << 27), (List, 2048)]
-        {
+        for (choice, binding) in [(Grid, 1 << 27), (Tree, 1 << 27), (List, 1 << 27), (List, 2048)] {
             let buffers = host.scene(&renderer, &scene, choice, binding);
             for camera in &cameras {
                 let view = View::new(camera.as_ref(), film());

@@ -97,7 +97,6 @@ pub(crate) fn ready(
         outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
     }
     input.notes.drain(..).for_each(|note| notes.tell(note));
-    opened.note().iter().for_each(|note| notes.tell((*note).to_owned()));
     let encoding = annotation.apply_to(encoding.apply_to(input.encoding));
     let encoding = encoding.with_background(input.settings.visible_background());
     input.settings.is_transparent = encoding.transparent();

@@ -10,7 +10,6 @@ mod harness;
 mod job;
 mod light;
 mod plan;
-mod prices;
 mod profile;
 mod program;
 mod render;
@@ -43,7 +42,6 @@ fn main() {
             job::trials(),
             light::trials(),
             plan::trials(),
-            prices::trials(),
             profile::trials(),
             render::trials(),
             verify::trials(),

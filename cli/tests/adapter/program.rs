@@ -8,8 +8,6 @@ use pinhole::gpu::Headless;
 /// A command that runs `pinhole` in a folder, with arguments that are separated by spaces.
 pub(crate) fn command(folder: impl AsRef<Path>, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    // The prices that the user measured are not those of the tests.
-    command.env("XDG_CACHE_HOME", concat!(env!("CARGO_TARGET_TMPDIR"), "/caches"));
     command.current_dir(folder).args(arguments.split(' '));
     command
 }

@@ -293,7 +293,7 @@ fn usage() {
             &[flag.split(' ').next().unwrap(), "--backend cpu", "remove one"],
         );
     }
-    refused(&[], "render scene.toml -o out.png --accel bvh", 2, &["bvh", "grid", "binary-tree"]);
+    refused(&[], "render scene.toml -o out.png --accel bvh", 2, &["bvh", "grid", "tree"]);
     refused(&[], "render scene.toml -o out.png --limits none", 2, &["none", "adapter", "webgpu"]);
     refused(&[], "rendr scene.toml", 2, &["rendr", "render"]);
 }

@@ -105,6 +105,7 @@ macro_rules! areas {
 
 areas!(
     cases::arguments
+    #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
     cases::removed
     cases::files
     cases::arrays

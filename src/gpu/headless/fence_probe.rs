@@ -39,7 +39,7 @@ impl Headless {
             .map_err(|error| invalid(&error))?;
         let view = View::new(&camera, film);
         let limit = self.device().limits().max_storage_buffer_binding_size;
-        let plan = AccelPlan::for_rays(scene.spheres(), AccelChoice::Grid, limit, u64::MAX);
+        let plan = AccelPlan::new(scene.spheres(), AccelChoice::Grid, limit);
         let buffers = self.upload_async(&scene, &plan.build(scene.spheres()).into()).await?;
         let primary = buffers.primary_settings(&RenderSettings::default())?;
         let key = RendererKey {

@@ -41,7 +41,7 @@ use std::time::Duration;
 
 use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 
-use crate::accel::{AccelChoice, Prices};
+use crate::accel::AccelChoice;
 use crate::camera::View;
 use crate::gpu::adapter;
 use crate::gpu::device_shape::DeviceShape;
@@ -76,7 +76,6 @@ pub struct Headless {
     is_one_pass: bool,
     faults: Arc<Faults>,
     profiler: Option<Profiler>,
-    prices: Prices,
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
     /// be attributed to a render.
     renderers: Turns<Renderers>,
@@ -155,10 +154,8 @@ impl Headless {
             AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
         let profile = options.profile.clone();
         let profiler = profile.map(|profile| Profiler::new(profile, &device, &queue));
-        let prices = DeviceShape::of(info.device_type).prices;
         Ok(Self {
             info,
-            prices,
             device,
             queue,
             timeout,
@@ -191,18 +188,6 @@ impl Headless {
     /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     pub(in crate::gpu) fn is_indirect(&self) -> bool {
         self.is_indirect
-    }
-
-    /// The prices by which structures are chosen: [`Prices::SOFTWARE`] or [`Prices::GPU`], by the type of the device,
-    /// until [`Headless::set_prices`] replaces them.
-    #[must_use]
-    pub fn prices(&self) -> &Prices {
-        &self.prices
-    }
-
-    /// Replaces the prices by which structures are chosen, for example by measured ones. Pictures do not depend on them.
-    pub fn set_prices(&mut self, prices: Prices) {
-        self.prices = prices;
     }
 
     pub(in crate::gpu) fn profiler(&self) -> Option<&Profiler> {

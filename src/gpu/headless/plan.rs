@@ -221,7 +221,7 @@ impl HostPeak {
     const fn instead(self, structure: Structure) -> &'static str {
         match (self, structure) {
             (Self::Picture | Self::Checking, _) => "a smaller size",
-            (_, Structure::Grid(_)) => "fewer spheres, or the structure `tree`",
+            (_, Structure::Grid) => "fewer spheres, or the structure `tree`",
             _ => "fewer spheres",
         }
     }

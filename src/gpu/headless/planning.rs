@@ -42,10 +42,7 @@ impl Headless {
         host_bytes_per_pixel: u64,
     ) -> RenderPlan {
         let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
-        let is_primary = settings.integrator.is_primary();
-        // Every sample of a lit picture, and every surface along its path, traces rays.
-        let rays = if is_primary { view.film.pixel_count() } else { u64::MAX };
-        let accel = self.plan_for_rays(scene, choice, rays);
+        let accel = self.plan_accel(scene, choice);
         let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
         RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
@@ -62,22 +59,16 @@ impl Headless {
     ) -> RenderPlan {
         let (settings, layers) = (&RenderSettings::default(), LayerSet::DATA);
         let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
-        let accel = self.plan_for_rays(scene, choice, view.film.pixel_count());
+        let accel = self.plan_accel(scene, choice);
         RenderPlan::of_recording(&request, accel, &self.device_limits())
     }
 
-    /// Plans the structure of a scene for this device and an unknown number of rays, for example for measurements.
+    /// Plans the structure of a scene for this device.
     #[must_use]
     pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
-        self.plan_for_rays(scene, choice, u64::MAX)
-    }
-
-    /// Plans the structure of a scene for this device, its prices, and a number of rays in all pictures together.
-    #[must_use]
-    pub fn plan_for_rays(&self, scene: &Scene, choice: AccelChoice, rays: u64) -> AccelPlan {
         let binding = binding_limit(&self.device().limits());
         let plan = quirks::plan(self.adapter_info(), scene, choice, |choice| {
-            AccelPlan::with_prices(scene.spheres(), choice, binding, rays, self.prices())
+            AccelPlan::new(scene.spheres(), choice, binding)
         });
         match scene.whole() {
             Some(whole) => plan.within((whole.min, whole.max)),

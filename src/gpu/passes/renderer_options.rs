@@ -46,7 +46,7 @@ impl Default for RendererOptions {
             color: ColorTarget::default(),
             data_layers: false,
             cameras: CameraKind::ALL.to_vec(),
-            structures: Structure::AUTOMATIC.to_vec(),
+            structures: Structure::ALL.to_vec(),
             primitives: vec![Primitive::Sphere],
             several_bricks: true,
             query: Query::Nearest,

@@ -100,7 +100,7 @@ impl Upload<'_> {
         let ids = if ids.is_empty() { &no_word[..] } else { ids };
         // What shares a buffer with the ids, so that a kernel has enough bindings.
         let mut with_ids: Vec<&[u32]> = vec![ids];
-        let mut words: Vec<&[u32]> = Vec::new();
+        let mut words: Option<&[u32]> = None;
         let mut boxes = None;
         match index {
             Index::List => {}
@@ -108,23 +108,17 @@ impl Upload<'_> {
                 record.min = grid.min.to_array();
                 record.cell_size = grid.cell_size;
                 record.cell_counts = grid.cell_counts;
-                match &grid.balls {
-                    Some(balls) => {
-                        record.first_reference = record.shape_count + grid.cells.len() as u32;
-                        with_ids.extend([&grid.cells[..], &grid.references]);
-                        words.push(balls);
-                    }
-                    None => words.extend([&grid.cells[..], &grid.references]),
-                }
+                record.first_reference = record.shape_count + grid.cells.len() as u32;
+                with_ids.extend([&grid.cells[..], &grid.references]);
+                words = Some(&grid.balls);
             }
             Index::WideTree(tree) => {
                 let near = tree.near_rays();
                 record.crowd_min = near.min.to_array();
                 record.crowd_margin = near.margin;
                 record.crowd_max = near.max.to_array();
-                words.push(bytemuck::cast_slice(tree.nodes()));
+                words = Some(bytemuck::cast_slice(tree.nodes()));
             }
-            Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
             Index::RayQuery(own) => boxes = Some(own.boxes()),
         }
         self.first_shape += record.shape_count;
@@ -134,7 +128,7 @@ impl Upload<'_> {
             ("the buffer of colors", size_of_val(&appearances.words[..])),
         ]
         .into_iter()
-        .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
+        .chain(words.map(|words| ("the buffer of the structure", size_of_val(words))))
         {
             check_storage_size(self.device, what, bytes as u64)?;
         }
@@ -144,8 +138,7 @@ impl Upload<'_> {
             let shapes = self.storage("pinhole shapes", shapes);
             let ids = self.joined("pinhole ids", BufferUsages::STORAGE, &with_ids);
             let appearances = self.storage("pinhole appearances", &appearances.words);
-            let words: Vec<Buffer> =
-                words.iter().map(|words| self.storage("pinhole structure", words)).collect();
+            let words = words.map(|words| self.storage("pinhole structure", words));
             let query = boxes.map(|boxes| {
                 let (query, work) = query_structure::begin(self.device, boxes);
                 self.bytes += size_of_val(boxes) as u64;

@@ -99,7 +99,7 @@ impl SceneBuffers {
         queue: &Queue,
         scene: &Scene,
     ) -> Result<Self, GpuError> {
-        let plan = plan_by_prices(renderer, device, scene);
+        let plan = plan_of(device, scene);
         let bricks = BrickSource::from(plan.bricks(scene.spheres()));
         let ids = ShapeIds::of_all(scene, bricks.may_part_equals);
         Self::upload(renderer, device, queue, SceneSummary::of(scene), bricks, &ids).await
@@ -166,7 +166,7 @@ impl SceneBuffers {
     ) -> Result<Self, GpuError> {
         let all = Self::new_async(renderer, device, queue, scene).await?;
         let Some(opaque) = scene.opaque() else { return Ok(all) };
-        let plan = plan_by_prices(renderer, device, &opaque);
+        let plan = plan_of(device, &opaque);
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
         let bricks = BrickSource::from(plan.bricks(opaque.spheres()));
         let some = Self::upload(renderer, device, queue, summary, bricks, &ids).await?;
@@ -379,10 +379,9 @@ pub(in crate::gpu) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
-/// Plans the structure of a scene for an unknown number of rays, by the prices of the renderer's type of device.
-fn plan_by_prices(renderer: &Renderer, device: &Device, scene: &Scene) -> AccelPlan {
-    let (limit, prices) = (binding_limit(&device.limits()), &renderer.shape.prices);
-    AccelPlan::with_prices(scene.spheres(), AccelChoice::Auto, limit, u64::MAX, prices)
+/// Plans the structure of a scene for a device.
+fn plan_of(device: &Device, scene: &Scene) -> AccelPlan {
+    AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding_limit(&device.limits()))
 }
 
 /// A binding of a part of a buffer. `offset` and `size` are in bytes.

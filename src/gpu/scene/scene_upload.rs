@@ -115,7 +115,7 @@ impl<'a> SceneUpload<'a> {
     pub(in crate::gpu) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let Self { upload, mut bricks, mut space, .. } = self;
         let is_nested =
-            |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid(_));
+            |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
         space.structure = space.structure.with_nested(bricks.iter().any(is_nested));
         for brick in &mut bricks {
             brick.kind.structure = space.structure;

@@ -15,10 +15,9 @@ pub(in crate::gpu) struct Kernel {
 /// The files of structures, which are alternatives to each other.
 const STRUCTURES: &[&str] = &[
     "accel/list.wgsl",
-    "accel/grid.wgsl",
+    "accel/ball_grid.wgsl",
     "accel/nested_grid.wgsl",
     "accel/wide_tree.wgsl",
-    "accel/binary_tree.wgsl",
     WITH_DIRECTIVE,
 ];
 

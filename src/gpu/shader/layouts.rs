@@ -4,7 +4,7 @@ use std::num::NonZeroU64;
 
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
-use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
@@ -132,12 +132,8 @@ fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
         Structure::List => vec![],
         Structure::RayQuery => vec![BindingType::AccelerationStructure { vertex_return: false }],
-        Structure::WideTree | Structure::BinaryTree => vec![storage::<[u32; 4]>(true)],
-        Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
+        Structure::WideTree | Structure::Grid | Structure::NestedGrid => {
             vec![storage::<[u32; 4]>(true)]
-        }
-        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
-            vec![storage::<u32>(true), storage::<u32>(true)]
         }
     }
 }

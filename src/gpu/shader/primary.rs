@@ -2,7 +2,7 @@
 
 use super::kernel::Kernel;
 use super::part::{Part, part};
-use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
 use crate::gpu::shader::formats::ColorTarget;
 
@@ -44,8 +44,7 @@ pub(in crate::gpu) fn trace_kernel(
 /// The kernel that finds the nearest sphere of every ray and probes fences, which the self-test makes of the one that
 /// records rays (`gpu/self_test/fence_probe.rs`).
 pub(in crate::gpu) fn probe_kernel() -> Kernel {
-    let kind =
-        BrickKind { structure: Structure::Grid(ListLayout::Balls), primitive: Primitive::Sphere };
+    let kind = BrickKind { structure: Structure::Grid, primitive: Primitive::Sphere };
     let mut parts = walk_parts(CameraKind::Pinhole, kind, BrickPass::First);
     parts.extend([part!("primary/entry.wgsl", "probed"), part!("primary/trace.wgsl")]);
     Kernel { entry_point: "trace", parts }
@@ -95,35 +94,16 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
             part!("accel/wide_node.wgsl"),
             part!("accel/wide_tree.wgsl"),
         ],
-        Structure::BinaryTree => vec![
-            part!("accel/slab.wgsl"),
-            part!("accel/leaf.wgsl"),
-            part!("accel/binary_node.wgsl"),
-            part!("accel/binary_tree.wgsl"),
-        ],
-        Structure::Grid(ListLayout::Referenced) => vec![
+        Structure::Grid => vec![
             part!("accel/grid_ray.wgsl"),
-            part!("accel/cell_words.wgsl", "alone"),
-            part!("accel/grid.wgsl"),
-            part!("accel/cell_list.wgsl"),
-        ],
-        Structure::NestedGrid(ListLayout::Referenced) => vec![
-            part!("accel/grid_ray.wgsl"),
-            part!("accel/cell_words.wgsl", "alone"),
-            part!("accel/nested_grid.wgsl"),
-            part!("accel/nested_cell.wgsl"),
-            part!("accel/cell_list.wgsl"),
-        ],
-        Structure::Grid(ListLayout::Balls) => vec![
-            part!("accel/grid_ray.wgsl"),
-            part!("accel/cell_words.wgsl", "with-ids"),
+            part!("accel/cell_words.wgsl"),
             part!("accel/ball_grid.wgsl"),
             part!("accel/balls.wgsl"),
             part!("accel/ball_list.wgsl"),
         ],
-        Structure::NestedGrid(ListLayout::Balls) => vec![
+        Structure::NestedGrid => vec![
             part!("accel/grid_ray.wgsl"),
-            part!("accel/cell_words.wgsl", "with-ids"),
+            part!("accel/cell_words.wgsl"),
             part!("accel/nested_grid.wgsl"),
             part!("accel/nested_ball_cell.wgsl"),
             part!("accel/balls.wgsl"),

@@ -22,7 +22,7 @@ pub(crate) fn hits(
     choice: AccelChoice,
     box_margin: f32,
 ) -> Result<Vec<(u32, u32)>, Failed> {
-    let plan = AccelPlan::for_rays(scene.spheres(), choice, 1 << 27, u64::MAX);
+    let plan = AccelPlan::new(scene.spheres(), choice, 1 << 27);
     let plan = plan.with_box_margin(box_margin);
     let buffers = headless.upload(scene, &plan.build(scene.spheres()).into())?;
     let recording = headless.record(&buffers, view, &RenderSettings::default(), &mut go_on())?;
@@ -59,7 +59,7 @@ pub(super) fn agree() -> Result<(), Failed> {
         if expected.len() - misses < 40 {
             return Err(format!("{name}: few hits").into());
         }
-        for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
+        for choice in [AccelChoice::Grid, AccelChoice::Tree] {
             let found = seen(&scene, |view| hits(headless, &scene, view, choice, 1.0))?;
             let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
             if different > 0 {

@@ -23,19 +23,15 @@ pub(crate) struct Fault {
 pub(crate) struct How {
     pub(crate) choice: AccelChoice,
     pub(crate) binding_bytes: u64,
-    pub(crate) rays: u64,
 }
 
 const fn how(choice: AccelChoice) -> How {
-    How { choice, binding_bytes: 1 << 27, rays: u64::MAX }
+    How { choice, binding_bytes: 1 << 27 }
 }
 
 pub(crate) const LIST: How = how(AccelChoice::List);
 const GRID: How = how(AccelChoice::Grid);
 const TREE: How = how(AccelChoice::Tree);
-const BINARY: How = how(AccelChoice::BinaryTree);
-/// A number of rays so small that cells store indices of spheres.
-const REFERENCES: How = How { rays: 1, ..GRID };
 /// A size of bindings so small that there are several bricks.
 pub(crate) const BRICKS: How = How { binding_bytes: 16 * 100, ..LIST };
 

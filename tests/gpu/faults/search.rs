@@ -1,6 +1,6 @@
 //! Faults of the search for the nearest sphere, and of the assignment of invocations to pixels.
 
-use super::{BINARY, BRICKS, GRID, LIST, REFERENCES, Row, TREE};
+use super::{BRICKS, GRID, LIST, Row, TREE};
 use crate::verify_views as views;
 
 pub(super) const TIES: &[Row] = &[
@@ -75,18 +75,10 @@ pub(super) const GRIDS: &[Row] = &[
     (
         "any_hit_of_a_cell_ends_the_walk",
         views::lattice,
-        REFERENCES,
-        "accel/grid.wgsl",
+        GRID,
+        "accel/ball_grid.wgsl",
         "(*found).t <= t_leave",
         "(*found).shape_index != NO_SHAPE",
-    ),
-    (
-        "diagonal_steps",
-        views::lattice,
-        REFERENCES,
-        "accel/grid.wgsl",
-        "planes <= vec3f(t_leave)",
-        "planes <= vec3f(t_leave + 2.0)",
     ),
     (
         "diagonal_steps_between_balls",
@@ -129,12 +121,12 @@ pub(super) const GRIDS: &[Row] = &[
         "(*list).candidates = 0u;",
     ),
     (
-        "first_reference_dropped",
+        "first_of_four_balls_dropped",
         views::balls,
-        REFERENCES,
-        "accel/cell_list.wgsl",
-        "let here = distance_within(search, candidate, t);",
-        "let here = select(distance_within(search, candidate, t), NO_HIT, at == start);",
+        GRID,
+        "accel/ball_list.wgsl",
+        "met(four, part) << tested",
+        "(met(four, part) & 14u) << tested",
     ),
     (
         "empty_cells_overstepped",
@@ -164,14 +156,6 @@ pub(super) const TREES: &[Row] = &[
         "leaves = node.hits & ~node.inner_mask & 0x7fu;",
     ),
     (
-        "boxes_shrunk_by_a_thousandth",
-        views::along_an_axis,
-        BINARY,
-        "accel/binary_node.wgsl",
-        "(bitcast<vec3f>(high.xyz) - ray.origin)",
-        "(bitcast<vec3f>(high.xyz) - 0.001 * abs(bitcast<vec3f>(high.xyz)) - ray.origin)",
-    ),
-    (
         "boxes_shrunk_by_a_fiftieth",
         views::balls,
         TREE,
@@ -196,36 +180,28 @@ pub(super) const TREES: &[Row] = &[
         "countOneBits(group.y & ((2u << slot) - 1u))",
     ),
     (
-        "stale_stack_entry",
+        "other_children_not_pushed",
         views::balls,
-        BINARY,
-        "accel/binary_tree.wgsl",
-        "            next = stack[top];",
-        "            next = vec2u(stack[top].x, stack[0].y);",
-    ),
-    (
-        "far_child_not_pushed",
-        views::balls,
-        BINARY,
-        "accel/binary_tree.wgsl",
-        "            stack[top] = far_entry;\n            top++;",
-        "            stack[top] = far_entry;",
+        TREE,
+        "accel/wide_tree.wgsl",
+        "            stack[top] = rest;\n            top++;",
+        "            stack[top] = rest;",
     ),
     (
         "leaves_pruned_too_soon",
         views::balls,
-        BINARY,
-        "accel/binary_tree.wgsl",
-        "child.entry <= (*nearest).t",
-        "child.entry + 0.3 <= (*nearest).t",
+        TREE,
+        "accel/wide_tree.wgsl",
+        "wide_node(slab, index, (*nearest).t)",
+        "wide_node(slab, index, (*nearest).t - 0.3)",
     ),
     (
         "descending_rays_enter_at_the_exit",
         views::balls,
-        BINARY,
-        "accel/binary_node.wgsl",
-        "let near = min(a, b);",
-        "let near = a;",
+        TREE,
+        "accel/wide_node.wgsl",
+        "let backward = ray.inverse < vec3f(0.0);",
+        "let backward = vec3<bool>(false);",
     ),
 ];
 

@@ -161,11 +161,9 @@ fn occluders(device: &'static Headless) {
     let mut studio = RenderSettings::studio();
     studio.sampling.samples = 2;
     let mut images = Vec::new();
-    for (choice, structure) in [
-        (AccelChoice::Tree, Structure::WideTree),
-        (AccelChoice::BinaryTree, Structure::BinaryTree),
-        (AccelChoice::List, Structure::List),
-    ] {
+    for (choice, structure) in
+        [(AccelChoice::Tree, Structure::WideTree), (AccelChoice::List, Structure::List)]
+    {
         let plan = device.plan(&scene, &view, &studio, LayerSet::COLOR, choice, 0);
         let occluders = plan.occluders.as_ref().unwrap();
         assert_eq!((plan.accel.structure, occluders.structure), (structure, structure));

@@ -138,22 +138,16 @@ fn structures(headless: &'static Headless) {
     for name in ["studio_ambient_occlusion", "studio_shadow_catcher"] {
         let mut view = named(name);
         view.settings.sampling.samples = 3;
-        let pictures = [
-            AccelChoice::Auto,
-            AccelChoice::Grid,
-            AccelChoice::Tree,
-            AccelChoice::BinaryTree,
-            AccelChoice::List,
-        ]
-        .map(|choice| {
-            let accel = headless.plan_accel(&view.scene, choice).build(view.scene.spheres());
-            let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
-            let go_on = &mut |_: &Progress| Decision::GoOn;
-            headless
-                .render_uploaded(&buffers, &view.seen(), &view.settings, LayerSet::COLOR, go_on)
-                .unwrap()
-                .image
-        });
+        let pictures = [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List]
+            .map(|choice| {
+                let accel = headless.plan_accel(&view.scene, choice).build(view.scene.spheres());
+                let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
+                let go_on = &mut |_: &Progress| Decision::GoOn;
+                headless
+                    .render_uploaded(&buffers, &view.seen(), &view.settings, LayerSet::COLOR, go_on)
+                    .unwrap()
+                    .image
+            });
         assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{name}");
     }
 }

@@ -24,16 +24,14 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("paths::legal::{name}"), move || legal(&view())));
     }
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::in_a_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
     }
     trials.push(Trial::test("paths::legal::in_bricks", || {
         legal_in(AccelChoice::List, SMALL_BINDING)
     }));
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || {
             let view = scenes::thrice();
@@ -110,14 +108,14 @@ fn legal(view: &LitView) -> Result<(), Failed> {
 fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
     is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 
 /// Paths are legal in several bricks between which equal spheres are divided.
 fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, SMALL_BINDING, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, SMALL_BINDING).build(spheres);
     let brick_of = |sphere: &[f32; 4]| {
         let place = |brick: &Brick| brick.spheres.iter().any(|other| other[..3] == sphere[..3]);
         accel.bricks().iter().filter(|brick| place(brick)).count()

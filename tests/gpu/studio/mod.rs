@@ -30,8 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::ALL {
         trials.push(Trial::test(format!("studio::legal::{name}"), move || legal(&view())));
     }
-    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
-    {
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("studio::legal::in_a_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
     }
@@ -100,7 +99,7 @@ fn legal(view: &LitView) -> Result<(), Failed> {
 fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
-    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
     is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 

@@ -150,7 +150,11 @@ pub(super) fn removed() -> Vec<Case> {
          job split scene.toml -o job --samples-per-part=4
          job join job 0-3
          job status job --json
-         job submit job --slurm",
+         job submit job --slurm
+         render scene.toml -o out.png --accel binary-tree
+         bench --calibrate
+         bench scene.toml --counts
+         bench scene.toml --pictures 1",
     )
 }
 

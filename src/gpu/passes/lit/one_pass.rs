@@ -4,7 +4,7 @@ use super::kernels::{
     Materials, Schedule, SkyKind, Sources, base, excluded_parts, excluded_with_light, light_search,
     sampled_search, scattering,
 };
-use crate::accel::{ListLayout, Structure};
+use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
 use crate::gpu::shader::{Kernel, camera_parts, part};
@@ -59,13 +59,7 @@ impl OnePass {
 /// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
 /// two of the appearance, and those of the structure.
 pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
-    let of_structure = match structure {
-        Structure::List => 2,
-        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
-            4
-        }
-        _ => 3,
-    };
+    let of_structure = if structure == Structure::List { 2 } else { 3 };
     5 + of_structure <= limits.max_storage_buffers_per_shader_stage
 }
 

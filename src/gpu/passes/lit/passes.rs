@@ -249,7 +249,6 @@ mod tests {
     use super::super::kernels::{Materials, Sources};
     use super::super::one_pass::one_pass_fits;
     use super::*;
-    use crate::accel::ListLayout;
     use crate::gpu::waiting::block_on;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
@@ -268,8 +267,8 @@ mod tests {
         }
         for mode in modes {
             for &camera in CameraKind::ALL {
-                // The structure with the most buffers.
-                let structure = Structure::NestedGrid(ListLayout::Referenced);
+                // A structure with the most buffers.
+                let structure = Structure::NestedGrid;
                 let (occluders, several_bricks) = (structure, true);
                 for exclude_by in ExcludeBy::ALL {
                     let exclude_by = [exclude_by; 2];
@@ -283,11 +282,9 @@ mod tests {
                         one_pass: None,
                     };
                     block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
-                    // The structure with the most buffers leaves no room for those of the appearance.
-                    assert!(!one_pass_fits(structure, &device.limits()));
-                    let structure = Structure::NestedGrid(ListLayout::Balls);
+                    assert!(one_pass_fits(structure, &device.limits()));
                     for pass in OnePass::ALL {
-                        let key = LitKey { structure, one_pass: Some(pass), ..key };
+                        let key = LitKey { one_pass: Some(pass), ..key };
                         if mode == Mode::Studio {
                             block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
                         }
