@@ -12,7 +12,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use pinhole::accel::{AccelChoice, AccelPlan, ListLayout};
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Headless, HeadlessOptions, Query};
+use pinhole::gpu::{Headless, HeadlessOptions};
 use pinhole::internals::{BinaryTree, GridBudget, RayF32, WideTree, build_grid};
 use pinhole::{Film, LinearRgb, Scene, View};
 
@@ -110,12 +110,9 @@ fn on_adapter(
     for choice in [AccelChoice::Grid, AccelChoice::Tree] {
         let accel = headless.plan_accel(scene, choice).build(scene.spheres());
         let buffers = headless.upload(scene, &accel.into()).unwrap();
-        for (query, asked) in [(Query::Nearest, "nearest"), (Query::Any, "any")] {
-            let name = format!("{}, {choice}, {asked}", headless.adapter_info().name);
-            group.bench_function(name, |b| {
-                b.iter(|| headless.measure(&buffers, &View::new(camera, film), query).unwrap());
-            });
-        }
+        group.bench_function(format!("{}, {choice}", headless.adapter_info().name), |b| {
+            b.iter(|| headless.measure(&buffers, &View::new(camera, film)).unwrap());
+        });
     }
 }
 

@@ -19,7 +19,7 @@ use pinhole::accel::{AccelPlan, ListLayout, Prices, Structure, StructurePrices};
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::generate::{Kind, Standard};
-use pinhole::gpu::{GpuError, Headless, Query};
+use pinhole::gpu::{GpuError, Headless};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
 
@@ -186,7 +186,7 @@ fn measure(
     let mut tracing = Duration::MAX;
     // The first turn also builds the pipeline and finds the size of submissions.
     for _ in 0..=TURNS {
-        let time = interrupt::on_device(|| headless.measure(&buffers, &view, Query::Nearest))?;
+        let time = interrupt::on_device(|| headless.measure(&buffers, &view))?;
         let time = time.map_err(failed)?;
         tracing = tracing.min(time.device.filter(|_| has_clock).unwrap_or(time.wall));
     }

@@ -6,7 +6,7 @@ use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::{
-    BrickPass, Kernel, Probe, occluded_kernel, probe_kernel, self_test_kernel, shade_kernel,
+    BrickPass, Kernel, Probe, probe_kernel, self_test_kernel, shade_kernel,
     trace_kernel,
 };
 
@@ -50,7 +50,6 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
                 for keeps_rays in [false, true] {
                     kernels.push(trace_kernel(camera, kind, brick_pass, keeps_rays));
                 }
-                kernels.push(occluded_kernel(camera, kind, brick_pass));
             }
         }
         for &primitive in Primitive::ALL {

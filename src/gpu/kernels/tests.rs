@@ -37,7 +37,7 @@ fn every_kernel_composes_and_validates() {
     assert_eq!(
         kernels.len(),
         CameraKind::ALL.len()
-            * (6 * BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL).count()
+            * (4 * BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL).count()
                 + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
             + 6
             + crate::gpu::host::kernels().len()

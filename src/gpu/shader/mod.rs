@@ -19,6 +19,6 @@ pub(super) use part::{Part, part};
 pub(super) use part::{VARIANT, variants};
 pub(super) use pipeline::{pipeline, pipeline_with};
 pub(super) use primary::{
-    BrickPass, Probe, camera_parts, color_target, data_layers, occluded_kernel, probe_kernel,
+    BrickPass, Probe, camera_parts, color_target, data_layers, probe_kernel,
     self_test_kernel, shade_kernel, structure_parts, trace_kernel,
 };

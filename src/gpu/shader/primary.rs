@@ -51,17 +51,6 @@ pub(in crate::gpu) fn probe_kernel() -> Kernel {
     Kernel { entry_point: "trace", parts }
 }
 
-/// The kernel that finds whether each ray hits anything.
-pub(in crate::gpu) fn occluded_kernel(
-    camera: CameraKind,
-    kind: BrickKind,
-    brick_pass: BrickPass,
-) -> Kernel {
-    let mut parts = walk_parts(camera, kind, brick_pass);
-    parts.extend([part!("primary/entry.wgsl", "made"), part!("primary/occluded.wgsl")]);
-    Kernel { entry_point: "occluded", parts }
-}
-
 fn walk_parts(
     camera: CameraKind,
     BrickKind { structure, primitive }: BrickKind,
