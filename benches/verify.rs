@@ -234,9 +234,8 @@ fn fences(fenced: &Headless) {
             let mut best = [Duration::MAX; 3];
             for round in 0..=ROUNDS {
                 for (which, headless) in devices.into_iter().enumerate() {
-                    let time = headless
-                        .measure(&buffers[which], &View::new(&camera, film))
-                        .unwrap();
+                    let time =
+                        headless.measure(&buffers[which], &View::new(&camera, film)).unwrap();
                     // A software device's own clock counts only what it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);

@@ -9,7 +9,7 @@
 // centre.
 const SMALLEST_SPOT: f32 = 0x1p-40;
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn fisheye_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let spot = vec2f(fence(location.x * camera.first), fence(location.y * camera.second));
     let radius = fence(sqrt(dot(spot, spot)));

@@ -6,7 +6,7 @@
 // provides: camera_ray
 // needs: CameraRay, Ray, fence3, frame, sin_cos_half_turns
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn panorama_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let longitude = sin_cos_half_turns(location.x);
     let latitude = sin_cos_half_turns(0.5 * location.y);

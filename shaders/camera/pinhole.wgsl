@@ -5,7 +5,7 @@
 // provides: camera_ray
 // needs: CameraRay, Ray, fence3, frame
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn pinhole_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let aside = fence3(location.x * camera.right + location.y * camera.up);
     let toward = aside + camera.forward;

@@ -6,7 +6,7 @@
 // provides: camera_ray
 // needs: CameraRay, Ray, concentric_disk, fence, fence3, frame
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn thin_lens_ray(location: vec2f, lens: vec2f) -> CameraRay {
     let camera = frame.camera;
     let on_lens = concentric_disk(lens) * vec2f(camera.first, camera.second);
     let offset = fence3(on_lens.x * camera.right + on_lens.y * camera.up);

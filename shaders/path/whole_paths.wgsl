@@ -12,7 +12,7 @@
 fn extended(path: Path, seed: u32, sample: u32) -> Path {
     let ray = path.ray;
     let goes_inside = has(path.flags, PATH_INSIDE);
-    let before = hit_before(0u, path.departure, goes_inside);
+    let before = first_hit(path.departure, goes_inside);
     let hit = nearest_hit(enter_scene(CameraRay(ray, 0.0, true)), excluded_by(path.departure), before);
     let behind = distance_from_camera(path.first.w, path.surface);
     let kind = classify_hit(ray, hit, has(path.flags, PATH_ON_GROUND), behind);

@@ -276,7 +276,8 @@ fn any(headless: &'static Headless) {
 }
 
 /// What `trace` does once for each brick: it finds the nearest sphere.
-const NEAREST: &str = "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
+const NEAREST: &str =
+    "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
 
 /// What it does instead here: it looks for any sphere, and records one by the distance 0 and no id.
 const ANY: &str = "

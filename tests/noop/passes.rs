@@ -1,9 +1,7 @@
 //! Every kind of pass, recorded and submitted on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::gpu::{
-    ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions,
-};
+use pinhole::gpu::{ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions};
 use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};

@@ -43,7 +43,7 @@ fn shared_parts() -> Vec<Part> {
 pub(in crate::gpu) fn cover_kernel() -> Kernel {
     let mut parts = shared_parts();
     parts.push(part!("host/cover.wgsl"));
-    Kernel { entry_point: "cover", parts }
+    Kernel::new("cover", parts)
 }
 
 /// The kernel of the pixels, for colours stored as `source`; without a coverage, for a pass without depth.
@@ -68,13 +68,13 @@ pub(in crate::gpu) fn composite_kernel(
     let depth = match coverage {
         None => {
             parts.push(part!("host/overlay.wgsl"));
-            return Kernel { entry_point: "overlay", parts };
+            return Kernel::new("overlay", parts);
         }
         Some(Coverage::Hits) => part!("host/picture_depth.wgsl", "primary"),
         Some(Coverage::Alpha) => part!("host/picture_depth.wgsl", "lit"),
     };
     parts.extend([part!("host/clip_depth.wgsl"), depth, part!("host/composite.wgsl")]);
-    Kernel { entry_point: "composite", parts }
+    Kernel::new("composite", parts)
 }
 
 /// Builds the pipeline like [`Composite::new`], but with edited shaders.

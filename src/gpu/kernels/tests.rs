@@ -3,11 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::all_kernels;
 use super::declarations::Declarations;
-use crate::accel::{BrickKind, Primitive, Structure};
-use crate::camera::CameraKind;
-use crate::gpu::shader::formats::ColorTarget;
+use super::{all_kernels, all_sources, composed_kernels};
 use crate::gpu::shader::{Kernel, Part, part, variants};
 
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
@@ -28,21 +25,17 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
     Ok(module)
 }
 
+/// The most sources that there may be. A change may lower it: what kernels differ in is an `override` constant, unless it
+/// is a type, a directive or a binding.
+const MOST_SOURCES: usize = 150;
+
 /// The parts with entry points of render passes.
 const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];
 
 #[test]
 fn every_kernel_composes_and_validates() {
-    let kernels = all_kernels();
-    assert_eq!(
-        kernels.len(),
-        CameraKind::ALL.len()
-            * (4 * BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL).count()
-                + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
-            + 6
-            + crate::gpu::host::kernels().len()
-            + crate::gpu::passes::lit::all_kernels().len()
-    );
+    let kernels = all_sources();
+    assert!(kernels.len() <= MOST_SOURCES, "{} sources", kernels.len());
     for kernel in kernels {
         let module = validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));
         let entry = &module.entry_points[0];
@@ -53,6 +46,21 @@ fn every_kernel_composes_and_validates() {
         assert!(is_compute != kernel.parts.iter().any(|part| RENDERED.contains(&part.name)));
         let size = entry.workgroup_size.iter().product::<u32>();
         assert_eq!(size, if is_compute { 64 } else { 0 });
+    }
+}
+
+/// wgpu refuses a value for a constant that a source does not declare, and a constant without a value.
+#[test]
+fn every_pipeline_has_the_constants_that_its_source_declares() {
+    for composed in composed_kernels() {
+        let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
+        let overrides = module.overrides.iter().filter_map(|(_, found)| found.name.clone());
+        let declared: BTreeSet<String> = overrides.collect();
+        for constants in &composed.pipelines {
+            let given: BTreeSet<String> =
+                constants.iter().map(|(name, _)| (*name).to_owned()).collect();
+            assert_eq!((&given, given.len()), (&declared, constants.len()), "{}", composed.name);
+        }
     }
 }
 
@@ -72,7 +80,7 @@ fn no_two_kernels_have_the_same_name() {
 fn every_kernel_sets_what_fences_need() {
     let uses_frame =
         |kernel: &Kernel| kernel.parts.iter().any(|part| part.name == "scene/frame.wgsl");
-    for kernel in all_kernels().iter().filter(|kernel| uses_frame(kernel)) {
+    for kernel in all_sources().iter().filter(|kernel| uses_frame(kernel)) {
         let source = kernel.source();
         let entry = source.split(&format!("fn {}(", kernel.entry_point)).nth(1).unwrap();
         let first = entry.lines().nth(1).unwrap();
@@ -83,7 +91,7 @@ fn every_kernel_sets_what_fences_need() {
 /// Parts pass data by arguments: no part reads or writes a private variable of another.
 #[test]
 fn no_part_uses_a_private_variable_of_another() {
-    for kernel in all_kernels() {
+    for kernel in all_sources() {
         let parts: Vec<_> =
             kernel.parts.iter().map(|part| (part, Declarations::of(&part.source))).collect();
         for (owner, declared) in &parts {
@@ -101,11 +109,11 @@ fn no_part_uses_a_private_variable_of_another() {
 fn an_error_names_the_file_and_its_line() {
     let broken = Part::whole("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
     let parts = vec![part!("camera/ray.wgsl"), broken, part!("camera/film.wgsl")];
-    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    let message = validate(&Kernel::new("none", parts)).unwrap_err();
     assert!(message.contains("broken.wgsl:3:"), "{message}");
     let file = "// Head.\n\n//// a\nconst x: f32 = 1.0;\n//// b\n\nconst x: f32 = y;\n";
     let parts = vec![part!("camera/ray.wgsl"), Part::variant("broken.wgsl#b", file)];
-    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    let message = validate(&Kernel::new("none", parts)).unwrap_err();
     assert!(message.contains("broken.wgsl:7:"), "{message}");
 }
 
@@ -129,7 +137,7 @@ pub(super) fn files() -> BTreeMap<String, String> {
 
 #[test]
 fn every_file_and_variant_is_used_and_short() {
-    let kernels = all_kernels();
+    let kernels = all_sources();
     let used: BTreeSet<String> =
         kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.name.to_owned())).collect();
     let mut there = BTreeSet::new();

@@ -26,6 +26,8 @@ pub(in crate::gpu) fn pipeline_with(
     checks: &Checks,
 ) -> ComputePipeline {
     let name = kernel.name();
+    let constants: Vec<_> =
+        kernel.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect();
     let create = || {
         let module = shader_module(
             device,
@@ -44,7 +46,10 @@ pub(in crate::gpu) fn pipeline_with(
             layout: Some(&layout),
             module: &module,
             entry_point: Some(kernel.entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
             cache: None,
         })
     };
