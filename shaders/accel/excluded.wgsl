@@ -26,6 +26,8 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 
 //// departed
 // Excluding the departed shape.
+// provides: Excluded, excluded_by, is_excluded
+// needs: Departure, Shape, departed_shape, ids, is_same, no_shape
 
 // Whether shapes are excluded by their ids, and not by their indices.
 override EXCLUDES_BY_ID: bool;
@@ -52,6 +54,8 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 
 //// departed-and-light
 // Excluding the departed shape, and also the emitter that the ray is directed to.
+// provides: Excluded, excluded_by, is_excluded
+// needs: Departure, NO_EMITTER, NO_ID, SAMPLES_LIGHT, Shape, departed_shape, emitter, ids, is_same, no_shape
 
 // Whether shapes are excluded by their ids, and not by their indices.
 override EXCLUDES_BY_ID: bool;

@@ -1,4 +1,6 @@
 // The ray of the camera of a pipeline, for a location on the film and a pair of numbers that chooses a point on the lens.
+// provides: camera_ray
+// needs: CameraRay, fisheye_ray, orthographic_ray, panorama_ray, pinhole_ray, thin_lens_ray
 
 // The number of the camera.
 override CAMERA: u32;

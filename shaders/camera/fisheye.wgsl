@@ -2,7 +2,7 @@
 //
 // `right`, `up` and `forward` are unit vectors. `first` and `second` are half the sides of the film in units of the
 // radius of the visible disk. `third` is half the angle of view in half turns.
-// provides: camera_ray
+// provides: fisheye_ray
 // needs: CameraRay, Ray, fence, fence3, frame, sin_cos_half_turns
 
 // Smallest radius in the disk at which the direction of a point is defined. Points nearer to the centre count as the

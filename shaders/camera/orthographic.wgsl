@@ -2,7 +2,7 @@
 //
 // `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the unit direction of
 // all rays.
-// provides: camera_ray
+// provides: orthographic_ray
 // needs: CameraRay, Ray, fence3, frame
 
 fn orthographic_ray(location: vec2f) -> CameraRay {

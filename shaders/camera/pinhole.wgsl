@@ -2,7 +2,7 @@
 //
 // `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the vector from the eye
 // to the centre of the view plane.
-// provides: camera_ray
+// provides: pinhole_ray
 // needs: CameraRay, Ray, fence3, frame
 
 fn pinhole_ray(location: vec2f) -> CameraRay {

@@ -1,6 +1,6 @@
 // The BSDF of reflecting surfaces: Lambertian, with or without a specular lobe, and metal. Twin:
 // src/cpu/light/bsdf/mod.rs.
-// provides: reflect_toward, scatter_reflection
+// provides: reflect_by_any, scatter_reflection
 // needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
 //   mirrors_brdf, reflected_density, visible_mirror
 

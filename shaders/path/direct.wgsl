@@ -1,5 +1,9 @@
 // Sampling a light source for next-event estimation: the lights, the emitters and the image of the sky are chosen at
 // random. Twin: src/cpu/light/path.rs.
+// provides: density_of_hit_emitter, sample_light
+// needs: DirectLight, LIGHT_MULTIPLE, NO_EMITTER, NO_HIT, PI, Ray, SAMPLES_LIGHT, Surface, axes_around, chosen_emitter,
+//   cone_direction, cone_of_sphere, emitter_density, emitter_with_id, exit_distance_of, ground_distance, lighting,
+//   no_light, reflect_toward, sample_lamp, sample_pair, sample_sky, sky_radiance, tables, to_local, to_world, unit2
 
 struct LightSample {
     direction: vec3f,

@@ -1,5 +1,7 @@
 // The state of a path's sampled light, until it is known whether the light is occluded. Without a light source that can
 // be sampled there is none; studios add light immediately.
+// provides: DirectLight, clear_light, emitter_of, needs_shadow_ray, no_light, radiance_so_far, store_light
+// needs: NO_EMITTER, PENDING, RADIANCE, SAMPLES_LIGHT, SHADOW, load, store
 
 struct DirectLight {
     // Direction towards the light, and its distance, which is 0 if there is no light.

@@ -1,4 +1,6 @@
 // The hit of a path's ray before a brick is traced.
+// provides: hit_before
+// needs: Departure, Hit, first_hit, load_hit
 
 // Whether the brick is not the first.
 override IS_LATER_BRICK: bool;

@@ -1,4 +1,6 @@
 // Absorption of light between two surfaces, by Beer's law. Only glass absorbs any.
+// provides: load_medium, store_medium, transmittance
+// needs: ANY_MATERIALS, MEDIUM, load, store
 
 fn load_medium(index: u32) -> vec3f {
     var medium = vec3f(0.0);

@@ -1,4 +1,7 @@
 // Scattering by the materials of a scene.
+// provides: reflect_toward, scatter_light
+// needs: ANY_MATERIALS, DIELECTRIC, Material, PI, Reflection, Scattered, Surface, cosine_direction, reflect_by_any,
+//   scatter_dielectric, scatter_reflection
 
 fn scatter_light(at: Surface, out: vec3f, lobe: f32, u: vec2u) -> Scattered {
     if (!ANY_MATERIALS) {

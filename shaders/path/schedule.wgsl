@@ -1,4 +1,6 @@
 // The path that an invocation processes.
+// provides: path_of
+// needs: NO_PATH, dispatch, frame, pixel_in_tile, queue
 
 // Whether a dispatch processes the paths of a list, and not one for each pixel and each sample in flight.
 override TAKES_LIST: bool;

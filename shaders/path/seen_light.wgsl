@@ -1,5 +1,7 @@
 // The light that a path has sampled, as far as nothing occludes it, for kernels that trace whole paths. It finds what
 // `path/occlude.wgsl` finds.
+// provides: seen_light
+// needs: CameraRay, Departure, DirectLight, Ray, SAMPLES_LIGHT, Search, enter_scene, excluded_by, find_any
 
 fn seen_light(light: DirectLight, position: vec3f, departure: Departure) -> vec3f {
     var visibility = light.pending.w;

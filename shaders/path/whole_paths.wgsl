@@ -4,9 +4,9 @@
 // dispatched: for some samples of all pixels of a tile.
 // provides: whole_paths
 // needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SPHERE, NO_EMITTER, PATH_ALIVE, PATH_INSIDE, PATH_ON_GROUND,
-//   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by, frame,
-//   ground_vertex, has, hit_before, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile, pixel_seed,
-//   report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
+//   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by,
+//   first_hit, frame, ground_vertex, has, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile,
+//   pixel_seed, report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
 
 // The path after its next surface, whose last number the dispatch has. An early return would crash Mesa 22.3.
 fn extended(path: Path, seed: u32, sample: u32) -> Path {

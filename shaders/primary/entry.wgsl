@@ -12,6 +12,8 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 //// recorded
 // The ray of a pixel, computed where it is used, and recorded for src/verify. Later bricks take the ray that the first
 // recorded: another pipeline might compute a ray that differs in the last bit.
+// provides: entry_of
+// needs: Entry, IS_LATER_BRICK, Ray, hit_index, inverse_direction, make_entry
 
 // Rays with four vectors for each pixel, of which the first two are of this ray: origin and distance; direction, and 1
 // if the ray misses the scene's box or 2 if it hits the box.

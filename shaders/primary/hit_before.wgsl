@@ -1,4 +1,6 @@
 // The hit of a pixel before a brick is traced.
+// provides: IS_LATER_BRICK, hit_before
+// needs: Hit, NO_HIT, NO_ID, load_hit
 
 // Whether the brick is not the first. It is a constant because a software device also reads the memory that a branch not
 // taken would read.

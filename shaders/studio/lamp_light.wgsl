@@ -1,5 +1,8 @@
 // The light of all lamps that a surface reflects to the camera, in one pass. Software devices compute both sides of every
 // branch, so what most pictures need has a pipeline of its own. Twin: src/cpu/light/studio.rs.
+// provides: lamp_light
+// needs: LAMBERT, LAMP_HEAD, LIGHTING_SHADOWS, Lamp, Seen, fence3, is_hidden, lamp_kind, lighting, lighting_has,
+//   reflected, sample_lamp, sample_pair, shade_of_lamp, table
 
 // Whether all lamps are at the eye or infinitely far away, have no size and cast no shadows, and all surfaces are matt.
 override IS_SHARP: bool;

@@ -1,4 +1,7 @@
 // The ground of a studio, which is a surface or a shadow catcher, in one pass. Twin: src/cpu/light/studio.rs.
+// provides: is_caught, is_ground, light_at, shade_of_ambient, shade_of_lamp
+// needs: CameraRay, Hit, LIGHTING_CATCHER, NO_HIT, NO_ID, Seen, Vertex, caught, central_light, ground_distance,
+//   light_to_catch, lighting, lighting_has, luminance
 
 override HAS_GROUND: bool;
 

@@ -11,6 +11,7 @@ use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_
 use crate::accel::wide_node::WideNode;
 use crate::accel::{self};
 use crate::camera::CameraKind;
+use crate::gpu::host::composite;
 use crate::gpu::passes::{emitter_table, lit, tiles};
 use crate::gpu::shader::records;
 use crate::image::NO_ID;
@@ -32,6 +33,9 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("PANORAMA", CameraKind::Panorama as u32),
         ("FISHEYE", CameraKind::Fisheye as u32),
         ("KIND", word::KIND),
+        ("AS_STORED", composite::AS_STORED),
+        ("TO_LINEAR", composite::TO_LINEAR),
+        ("TO_SRGB", composite::TO_SRGB),
         ("EMPTY", word::EMPTY),
         ("LIST", word::LIST),
         ("GRID", word::GRID),

@@ -54,6 +54,11 @@ impl Kernel {
         })
     }
 
+    /// The constants as wgpu takes them.
+    pub(in crate::gpu) fn values_of_constants(&self) -> Vec<(&'static str, f64)> {
+        self.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect()
+    }
+
     /// Whether it is written in more than the WGSL of any device.
     pub(in crate::gpu) fn has_ray_queries(&self) -> bool {
         self.parts.iter().any(|part| part.name == WITH_DIRECTIVE)

@@ -17,7 +17,7 @@ pub(super) use kernel::{Constant, Kernel};
 pub(super) use part::{Part, part};
 #[cfg(test)]
 pub(super) use part::{VARIANT, variants};
-pub(super) use pipeline::{pipeline, pipeline_with};
+pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
     BrickPass, Probe, camera_constant, camera_parts, camera_rays, color_target, data_layers,
     probe_kernel, self_test_kernel, shade_kernel, structure_parts, trace_kernel,
