@@ -7,7 +7,7 @@ use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::declarations::Declarations;
-use super::{all_kernels, all_sources, composed_kernels};
+use super::{all_kernels, all_sources};
 use crate::gpu::shader::{Kernel, Part, part, variants};
 
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
@@ -32,7 +32,7 @@ fn validator(has_ray_queries: bool) -> Validator {
 
 /// The most sources that there may be. A change may lower it: what kernels differ in is an `override` constant, unless it
 /// is a type, a directive or a binding.
-const MOST_SOURCES: usize = 150;
+const MOST_SOURCES: usize = 112;
 
 /// The parts with entry points of render passes.
 const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];
@@ -58,22 +58,24 @@ fn every_kernel_composes_and_validates() {
 /// values in when a driver needs the pipeline, so that the `noop` device does not show whether what results is valid.
 #[test]
 fn every_pipeline_has_the_constants_that_its_source_declares() {
-    for composed in composed_kernels() {
-        let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
-        let info = validator(false).validate(&module).unwrap();
+    let mut sources = BTreeMap::new();
+    for kernel in all_kernels() {
+        let (module, info) = sources.entry(kernel.name()).or_insert_with(|| {
+            let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
+            let info = validator(kernel.has_ray_queries()).validate(&module).unwrap();
+            (module, info)
+        });
+        let overrides = module.overrides.iter().filter_map(|(_, found)| found.name.as_deref());
+        let declared: BTreeSet<&str> = overrides.collect();
+        let given: BTreeSet<&str> = kernel.constants.iter().map(|(name, _)| *name).collect();
+        let name = kernel.name();
+        assert_eq!((&given, given.len()), (&declared, kernel.constants.len()), "{name}");
+        let values = kernel.values_of_constants().into_iter();
+        let values = values.map(|(name, value)| (name.to_owned(), value)).collect();
         let entry_point = &module.entry_points[0];
-        let overrides = module.overrides.iter().filter_map(|(_, found)| found.name.clone());
-        let declared: BTreeSet<String> = overrides.collect();
-        for constants in &composed.pipelines {
-            let given: BTreeSet<String> =
-                constants.iter().map(|(name, _)| (*name).to_owned()).collect();
-            assert_eq!((&given, given.len()), (&declared, constants.len()), "{}", composed.name);
-            let values =
-                constants.iter().map(|(name, value)| ((*name).to_owned(), f64::from(*value)));
-            let entry_point = Some((entry_point.stage, entry_point.name.as_str()));
-            process_overrides(&module, &info, entry_point, &values.collect())
-                .unwrap_or_else(|error| panic!("{} {constants:?}: {error:?}", composed.name));
-        }
+        let entry_point = Some((entry_point.stage, entry_point.name.as_str()));
+        process_overrides(module, info, entry_point, &values)
+            .unwrap_or_else(|error| panic!("{name} {:?}: {error:?}", kernel.constants));
     }
 }
 
