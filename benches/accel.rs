@@ -11,7 +11,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Headless, HeadlessOptions, Query};
+use pinhole::gpu::{Headless, HeadlessOptions};
 use pinhole::{Film, LinearRgb, Scene, View};
 
 const CHOICES: [AccelChoice; 2] = [AccelChoice::Grid, AccelChoice::Tree];
@@ -57,12 +57,9 @@ fn on_adapter(
     for choice in CHOICES {
         let accel = headless.plan_accel(scene, choice).build(scene.spheres());
         let buffers = headless.upload(scene, &accel.into()).unwrap();
-        for (query, asked) in [(Query::Nearest, "nearest"), (Query::Any, "any")] {
-            let name = format!("{}, {choice}, {asked}", headless.adapter_info().name);
-            group.bench_function(name, |b| {
-                b.iter(|| headless.measure(&buffers, &View::new(camera, film), query).unwrap());
-            });
-        }
+        group.bench_function(format!("{}, {choice}", headless.adapter_info().name), |b| {
+            b.iter(|| headless.measure(&buffers, &View::new(camera, film)).unwrap());
+        });
     }
 }
 

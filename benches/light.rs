@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use pinhole::accel::AccelChoice;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, Query, SceneBuffers};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, SceneBuffers};
 use pinhole::light::{Light, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
@@ -101,7 +101,7 @@ fn measure(headless: &Headless, standard: Standard) {
     let mut bare = f64::INFINITY;
     let (mut plain, mut traced) = ([f64::INFINITY; 2], 0);
     for _ in 0..TURNS {
-        let time = headless.measure(&subject.scene, &view, Query::Nearest).unwrap();
+        let time = headless.measure(&subject.scene, &view).unwrap();
         traced = time.pixels;
         bare = bare.min(time.wall.as_secs_f64());
         for (best, shading) in plain.iter_mut().zip([Shading::Flat, Shading::Headlight]) {

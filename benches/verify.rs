@@ -27,7 +27,7 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, Structures};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Structures};
 use pinhole::internals::ShaderEdit;
 use pinhole::verify::{
     Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict,
@@ -234,9 +234,8 @@ fn fences(fenced: &Headless) {
             let mut best = [Duration::MAX; 3];
             for round in 0..=ROUNDS {
                 for (which, headless) in devices.into_iter().enumerate() {
-                    let time = headless
-                        .measure(&buffers[which], &View::new(&camera, film), Query::Nearest)
-                        .unwrap();
+                    let time =
+                        headless.measure(&buffers[which], &View::new(&camera, film)).unwrap();
                     // A software device's own clock counts only what it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);

@@ -301,13 +301,13 @@ pub(super) struct PlanArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Each scene is measured with the structure that --accel auto chooses, and with the \
-    other of grid and tree. Rays go through the centers of all pixels; `any` asks only whether there is a hit. \
+    other of grid and tree. Rays go through the centers of all pixels. \
     Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of \
     `render`.\n\n\
     JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
-    trace_device, any_wall, any_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
-    any_rays_per_second, submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
+    trace_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
+    submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
     peak_memory_bytes. New versions may add keys, but do not change these."
 )]
 pub(super) struct BenchArgs {

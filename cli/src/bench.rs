@@ -17,7 +17,7 @@ use super::{interrupt, memory, process, progress, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::gpu::{
-    GpuError, Headless, PictureRequest, Query, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
+    GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
     UploadStep,
 };
 use pinhole::image::LayerSet;
@@ -137,24 +137,19 @@ fn measure(
     first.map(drop).map_err(failed)?;
     let first_render = started.elapsed();
 
-    let repeat = |query| repeat(headless, &buffers, name, &view, query, reps);
-    let (nearest, any) = (repeat(Query::Nearest)?, repeat(Query::Any)?);
-    let longest = nearest.iter().map(|time| time.longest).max().unwrap_or_default();
+    let times = repeat(headless, &buffers, name, &view, reps)?;
+    let longest = times.iter().map(|time| time.longest).max().unwrap_or_default();
     // The scene counts as it was built, and the frame as it was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
     let clock = AdapterReport::of(headless).clock();
     let rays = film.pixel_count();
-    let wall = |times: &[TraceTime]| Spread::of(times.iter().map(|time| Some(time.wall)));
     // The clock of a software device says nothing about the work.
     let has_clock = clock == DEVICE_CLOCK;
     let of_device = |time: &TraceTime| time.device.filter(|_| has_clock);
-    let device = |times: &[TraceTime]| Spread::of(times.iter().map(of_device));
-    let (trace_wall, trace_device) = (wall(&nearest), device(&nearest));
-    let (any_wall, any_device) = (wall(&any), device(&any));
-    let rate = |wall: Option<Spread>, device: Option<Spread>| {
-        device.or(wall).map(|spread| rays as f64 / spread.median_seconds)
-    };
+    let trace_wall = Spread::of(times.iter().map(|time| Some(time.wall)));
+    let trace_device = Spread::of(times.iter().map(of_device));
+    let rate = trace_device.or(trace_wall).map(|spread| rays as f64 / spread.median_seconds);
     Ok(RunReport {
         choice: choice.to_string(),
         structure: structure.name(),
@@ -164,13 +159,10 @@ fn measure(
         first_render_seconds: first_render.as_secs_f64(),
         trace_wall,
         trace_device,
-        any_wall,
-        any_device,
         clock,
         rays,
-        rays_per_second: rate(trace_wall, trace_device),
-        any_rays_per_second: rate(any_wall, any_device),
-        submissions: nearest.iter().map(|time| time.submissions).max().unwrap_or(0),
+        rays_per_second: rate,
+        submissions: times.iter().map(|time| time.submissions).max().unwrap_or(0),
         longest_submission_seconds: longest.as_secs_f64(),
         device_bytes,
         device_bytes_per_sphere: (!spheres.is_empty())
@@ -205,13 +197,12 @@ fn repeat(
     buffers: &SceneBuffers,
     name: &str,
     view: &View<'_>,
-    query: Query,
     reps: u32,
 ) -> Result<Vec<TraceTime>, Failure> {
     (0..reps)
         .map(|rep| {
-            progress::stage(format!("{name}: {query:?} hit, {} of {reps}", rep + 1));
-            let time = interrupt::on_device(|| headless.measure(buffers, view, query))?;
+            progress::stage(format!("{name}: tracing, {} of {reps}", rep + 1));
+            let time = interrupt::on_device(|| headless.measure(buffers, view))?;
             time.map_err(|error| explained(headless, &error))
         })
         .collect()

@@ -51,15 +51,11 @@ pub(super) struct RunReport {
     pub(super) trace_wall: Option<Spread>,
     /// Tracing time by the device's clock, if it has one that measures work.
     pub(super) trace_device: Option<Spread>,
-    pub(super) any_wall: Option<Spread>,
-    pub(super) any_device: Option<Spread>,
     /// Clock that the rates and the comparison use: `device` or `host`.
     pub(super) clock: &'static str,
     pub(super) rays: u64,
-    /// Rate of nearest hits, from the median time by that clock.
+    /// From the median time by that clock.
     pub(super) rays_per_second: Option<f64>,
-    /// Rate of any hits, from the median time by that clock.
-    pub(super) any_rays_per_second: Option<f64>,
     pub(super) submissions: u32,
     pub(super) longest_submission_seconds: f64,
     /// Memory on the device for the scene and the frame.
@@ -136,7 +132,6 @@ impl SceneReport {
                 "device ms",
                 "best",
                 "Mrays/s",
-                "any Mrays/s",
                 "B/sphere",
                 "peak",
                 "submissions",
@@ -152,7 +147,7 @@ impl SceneReport {
 }
 
 impl RunReport {
-    fn row(&self) -> [String; 14] {
+    fn row(&self) -> [String; 13] {
         let dash = || "-".to_owned();
         let milliseconds = |seconds: f64| format!("{:.1}", seconds * 1e3);
         let spread = |spread: Option<Spread>| {
@@ -173,7 +168,6 @@ impl RunReport {
             device,
             device_best,
             rate(self.rays_per_second),
-            rate(self.any_rays_per_second),
             self.device_bytes_per_sphere.map_or_else(dash, |bytes| format!("{bytes:.1}")),
             self.peak_memory_bytes.map_or_else(dash, readable),
             self.submissions.to_string(),

@@ -9,11 +9,28 @@ use super::failure::Failure;
 use super::output::{NewFolder, name_all, unnamed};
 use super::speak::answer;
 
-/// Writes all kernels into a folder, or none.
+/// The list of pipelines: the file of the kernel, and the values of its `override` constants.
+const PIPELINES: &str = "pipelines.txt";
+
+/// Writes all kernels and the list of pipelines into a folder, or none.
 pub(super) fn dump(folder: &Path) -> Result<(), Failure> {
-    let kernels: Vec<(PathBuf, String)> = composed_kernels()
-        .map(|kernel| (folder.join(file_name(&kernel.name)), kernel.source))
-        .collect();
+    let mut kernels: Vec<(PathBuf, String)> = Vec::new();
+    let mut pipelines = String::new();
+    for kernel in composed_kernels() {
+        let file = file_name(&kernel.name);
+        for constants in &kernel.pipelines {
+            let constants = constants.iter().map(|(name, value)| format!(" {name}={value}"));
+            pipelines += &format!("{file}{}\n", constants.collect::<String>());
+        }
+        kernels.push((folder.join(file), kernel.source));
+    }
+    let text = format!(
+        "{}: {} kernels, and {PIPELINES} with the constants of {} pipelines\n",
+        folder.display(),
+        kernels.len(),
+        pipelines.lines().count(),
+    );
+    kernels.push((folder.join(PIPELINES), pipelines));
     let first = kernels.first().map(|(path, _)| path.clone()).unwrap_or_default();
     NewFolder::new(folder, &first.file_name().unwrap_or_default().to_string_lossy())?.with(
         || {
@@ -22,7 +39,6 @@ pub(super) fn dump(folder: &Path) -> Result<(), Failure> {
             name_all(files.collect::<anyhow::Result<Vec<_>>>()?)
         },
     )?;
-    let text = format!("{}: {} kernels\n", folder.display(), kernels.len());
     Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }
 

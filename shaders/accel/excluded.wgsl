@@ -1,6 +1,11 @@
 // Shapes that are excluded from a search. A ray that departs from a shape excludes it: outside, the ray never returns
 // to a sphere, and inside, the distance to its far side is known without a search. No minimum distance is therefore
 // needed. A ray towards a light that is a shape excludes that shape as well.
+//
+// The departed shape is excluded by its index, which is that of the searched structure, if all equal shapes are in the
+// same brick. Otherwise it is excluded by its id: an equal shape may be in another brick, or the searched structure may
+// lack some shapes and so use other indices. Comparing ids takes one memory access for each test. All equal shapes have
+// the id of the first of them.
 
 //// none
 // No excluded shapes, for rays that do not start on a shape.
@@ -19,84 +24,66 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
     return false;
 }
 
-//// by-index
-// Excluding the departed shape by its index. The index is that of the searched structure, and all equal shapes are in
-// the same brick.
+//// departed
+// Excluding the departed shape.
 // provides: Excluded, excluded_by, is_excluded
-// needs: Departure, Shape, departed_shape, is_same
+// needs: Departure, Shape, departed_shape, ids, is_same, no_shape
+
+// Whether shapes are excluded by their ids, and not by their indices.
+override EXCLUDES_BY_ID: bool;
 
 struct Excluded {
     departed: Shape,
+    id: u32,
 }
 
 fn excluded_by(departure: Departure) -> Excluded {
-    return Excluded(departed_shape(departure));
+    var excluded = Excluded(no_shape(), departure.id);
+    if (!EXCLUDES_BY_ID) {
+        excluded.departed = departed_shape(departure);
+    }
+    return excluded;
 }
 
 fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
+    if (EXCLUDES_BY_ID) {
+        return ids[shape_index] == excluded.id;
+    }
     return is_same(shape, excluded.departed);
 }
 
-//// by-id
-// Excluding the departed shape by its id. An equal shape may be in another brick, or the searched structure may lack
-// some shapes and so use other indices. Comparing ids takes one memory access for each test. All equal shapes have the
-// id of the first of them.
+//// departed-and-light
+// Excluding the departed shape, and also the emitter that the ray is directed to.
 // provides: Excluded, excluded_by, is_excluded
-// needs: Departure, Shape, ids
+// needs: Departure, NO_EMITTER, NO_ID, SAMPLES_LIGHT, Shape, departed_shape, emitter, ids, is_same, no_shape
 
-struct Excluded {
-    departed: u32,
-}
-
-fn excluded_by(departure: Departure) -> Excluded {
-    return Excluded(departure.id);
-}
-
-fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
-    return ids[shape_index] == excluded.departed;
-}
-
-//// by-index-and-light
-// Excluding the departed shape by its index, and also the emitter that the ray is directed to.
-// provides: Excluded, excluded_by, is_excluded
-// needs: Departure, NO_EMITTER, Shape, departed_shape, emitter, is_same, no_shape
+// Whether shapes are excluded by their ids, and not by their indices.
+override EXCLUDES_BY_ID: bool;
 
 struct Excluded {
     departed: Shape,
     light: Shape,
+    id: u32,
+    light_id: u32,
 }
 
 fn excluded_by(departure: Departure) -> Excluded {
-    var light = no_shape();
-    if (departure.word != NO_EMITTER) {
-        light = emitter(departure.word).sphere;
+    var excluded = Excluded(no_shape(), no_shape(), departure.id, NO_ID);
+    if (SAMPLES_LIGHT && departure.word != NO_EMITTER) {
+        let light = emitter(departure.word);
+        excluded.light = light.sphere;
+        excluded.light_id = light.id;
     }
-    return Excluded(departed_shape(departure), light);
+    if (!EXCLUDES_BY_ID) {
+        excluded.departed = departed_shape(departure);
+    }
+    return excluded;
 }
 
 fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
-    return is_same(shape, excluded.departed) || is_same(shape, excluded.light);
-}
-
-//// by-id-and-light
-// Excluding the departed shape by its id, and also the emitter that the ray is directed to.
-// provides: Excluded, excluded_by, is_excluded
-// needs: Departure, NO_EMITTER, NO_ID, Shape, emitter, ids
-
-struct Excluded {
-    departed: u32,
-    light: u32,
-}
-
-fn excluded_by(departure: Departure) -> Excluded {
-    var light = NO_ID;
-    if (departure.word != NO_EMITTER) {
-        light = emitter(departure.word).id;
+    if (EXCLUDES_BY_ID) {
+        let id = ids[shape_index];
+        return id == excluded.id || (SAMPLES_LIGHT && id == excluded.light_id);
     }
-    return Excluded(departure.id, light);
-}
-
-fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
-    let id = ids[shape_index];
-    return id == excluded.departed || id == excluded.light;
+    return is_same(shape, excluded.departed) || (SAMPLES_LIGHT && is_same(shape, excluded.light));
 }

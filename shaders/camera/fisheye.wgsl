@@ -2,14 +2,14 @@
 //
 // `right`, `up` and `forward` are unit vectors. `first` and `second` are half the sides of the film in units of the
 // radius of the visible disk. `third` is half the angle of view in half turns.
-// provides: camera_ray
+// provides: fisheye_ray
 // needs: CameraRay, Ray, fence, fence3, frame, sin_cos_half_turns
 
 // Smallest radius in the disk at which the direction of a point is defined. Points nearer to the centre count as the
 // centre.
 const SMALLEST_SPOT: f32 = 0x1p-40;
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn fisheye_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let spot = vec2f(fence(location.x * camera.first), fence(location.y * camera.second));
     let radius = fence(sqrt(dot(spot, spot)));

@@ -2,10 +2,10 @@
 //
 // `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the unit direction of
 // all rays.
-// provides: camera_ray
+// provides: orthographic_ray
 // needs: CameraRay, Ray, fence3, frame
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn orthographic_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let aside = fence3(location.x * camera.right + location.y * camera.up);
     return CameraRay(Ray(camera.origin + aside, camera.forward), camera.advance, true);

@@ -3,10 +3,10 @@
 // `right`, `up` and `forward` are unit vectors. `first` is the distance by which the origin of a ray is moved along the
 // tangent of the viewing circle. `second` and `third` are the cosine and the sine of the angle by which rays are
 // rotated to the left.
-// provides: camera_ray
+// provides: panorama_ray
 // needs: CameraRay, Ray, fence3, frame, sin_cos_half_turns
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn panorama_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let longitude = sin_cos_half_turns(location.x);
     let latitude = sin_cos_half_turns(0.5 * location.y);

@@ -2,10 +2,10 @@
 //
 // `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the vector from the eye
 // to the centre of the view plane.
-// provides: camera_ray
+// provides: pinhole_ray
 // needs: CameraRay, Ray, fence3, frame
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn pinhole_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
     let aside = fence3(location.x * camera.right + location.y * camera.up);
     let toward = aside + camera.forward;

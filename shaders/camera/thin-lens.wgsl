@@ -3,10 +3,10 @@
 // `right` and `up` are the vectors from the centre of the plane of focus to its edges. `forward` is the vector from the
 // centre of the lens to the centre of that plane. `first` and `second` are the radius of the lens, divided by the
 // lengths of `right` and `up`.
-// provides: camera_ray
+// provides: thin_lens_ray
 // needs: CameraRay, Ray, concentric_disk, fence, fence3, frame
 
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+fn thin_lens_ray(location: vec2f, lens: vec2f) -> CameraRay {
     let camera = frame.camera;
     let on_lens = concentric_disk(lens) * vec2f(camera.first, camera.second);
     let offset = fence3(on_lens.x * camera.right + on_lens.y * camera.up);

@@ -1,21 +1,27 @@
 // The colour of a pixel as the host's target takes it.
-
-//// as-stored
-// Passing on colours as they are stored.
 // provides: color_for_host
+
+// How the colour is turned into that of the target.
+override ENCODING: u32;
+const AS_STORED: u32 = 0u;
+const TO_LINEAR: u32 = 1u;
+const TO_SRGB: u32 = 2u;
 
 fn color_for_host(color: vec3f) -> vec3f {
-    return color;
+    var turned = color;
+    if (ENCODING == TO_LINEAR) {
+        turned = linear_of(color);
+    }
+    if (ENCODING == TO_SRGB) {
+        turned = srgb_of(color);
+    }
+    return turned;
 }
-
-//// to-linear
-// Turning sRGB into linear light.
-// provides: color_for_host
 
 // The inverse transfer function of sRGB, IEC 61966-2-1. Its power is replaced by the polynomial with the least relative
 // error, 1.1e-4, because powers take a software device several times as long. Colours have eight bits, and the error is
 // less than a hundredth of the difference between two of them.
-fn color_for_host(color: vec3f) -> vec3f {
+fn linear_of(color: vec3f) -> vec3f {
     var power = vec3f(-0.12352837);
     power = power * color + 0.41711057;
     power = power * color - 0.63052071;
@@ -26,12 +32,8 @@ fn color_for_host(color: vec3f) -> vec3f {
     return select(power, color / 12.92, color <= vec3f(0.04045));
 }
 
-//// to-srgb
-// Turning linear light into sRGB.
-// provides: color_for_host
-
 // The transfer function of sRGB, IEC 61966-2-1.
-fn color_for_host(color: vec3f) -> vec3f {
+fn srgb_of(color: vec3f) -> vec3f {
     let light = clamp(color, vec3f(0.0), vec3f(1.0));
     // Below the threshold the power is not used. The maximum keeps its base away from zero.
     let power = 1.055 * pow(max(light, vec3f(0.0031308)), vec3f(1.0 / 2.4)) - 0.055;

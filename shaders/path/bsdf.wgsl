@@ -1,6 +1,6 @@
 // The BSDF of reflecting surfaces: Lambertian, with or without a specular lobe, and metal. Twin:
 // src/cpu/light/bsdf/mod.rs.
-// provides: reflect_toward, scatter_reflection
+// provides: reflect_by_any, scatter_reflection
 // needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
 //   mirrors_brdf, reflected_density, visible_mirror
 
@@ -16,9 +16,8 @@ fn compensation(color: vec3f, kept: f32) -> vec3f {
     return vec3f(1.0) + color * ((1.0 - kept) / kept);
 }
 
-// The BSDF times the cosine, and the density of scattering. Both directions point away from the surface, in the tangent
-// frame.
-fn reflect_toward(material: Material, color: vec3f, out: vec3f, toward: vec3f) -> Reflection {
+// The reflection of `reflect_toward` by any material.
+fn reflect_by_any(material: Material, color: vec3f, out: vec3f, toward: vec3f) -> Reflection {
     if (toward.z <= 0.0 || out.z <= 0.0 || material.kind >= DIELECTRIC) {
         return Reflection(vec3f(0.0), 0.0);
     }
@@ -42,7 +41,7 @@ fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u
     if (is_metal || lobe < material.parameter) {
         let half = visible_mirror(material.alpha, out, u);
         let toward = 2.0 * dot(half, out) * half - out;
-        let r = reflect_toward(material, color, out, toward);
+        let r = reflect_by_any(material, color, out, toward);
         if (is_metal) {
             // The quotient of value and density, with common factors cancelled.
             let kept = energy(material.energies, out.z);
@@ -54,7 +53,7 @@ fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u
         return Scattered(toward, r.value / max(r.density, 1e-30), r.density);
     }
     let toward = cosine_direction(u);
-    let r = reflect_toward(material, color, out, toward);
+    let r = reflect_by_any(material, color, out, toward);
     let mixed = r.value / max(r.density, 1e-30);
     let weight = select(mixed, color, material.parameter == 0.0);
     return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);

@@ -1,25 +1,9 @@
-// Sampling a light source for next-event estimation. Twin: src/cpu/light/path.rs.
-
-//// none
-// Light sampling for scenes without a light source that can be sampled.
+// Sampling a light source for next-event estimation: the lights, the emitters and the image of the sky are chosen at
+// random. Twin: src/cpu/light/path.rs.
 // provides: density_of_hit_emitter, sample_light
-// needs: DirectLight, Surface, no_light
-
-fn sample_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
-    return no_light();
-}
-
-// No emitter can be chosen.
-fn density_of_hit_emitter(id: u32, position: vec3f) -> f32 {
-    return 0.0;
-}
-
-//// any
-// Light sampling that chooses among the lights, the emitters and the image of the sky at random.
-// provides: density_of_hit_emitter, sample_light
-// needs: DirectLight, LIGHT_MULTIPLE, NO_EMITTER, NO_HIT, PI, Ray, Surface, axes_around, chosen_emitter,
+// needs: DirectLight, LIGHT_MULTIPLE, NO_EMITTER, NO_HIT, PI, Ray, SAMPLES_LIGHT, Surface, axes_around, chosen_emitter,
 //   cone_direction, cone_of_sphere, emitter_density, emitter_with_id, exit_distance_of, ground_distance, lighting,
-//   reflect_toward, sample_lamp, sample_pair, sample_sky, sky_radiance, tables, to_local, to_world, unit2
+//   no_light, reflect_toward, sample_lamp, sample_pair, sample_sky, sky_radiance, tables, to_local, to_world, unit2
 
 struct LightSample {
     direction: vec3f,
@@ -63,6 +47,14 @@ fn light_from_sky(u: vec2u) -> LightSample {
 }
 
 fn sample_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
+    var light = no_light();
+    if (SAMPLES_LIGHT) {
+        light = sampled_light(at, out, through, seed, sample, is_end);
+    }
+    return light;
+}
+
+fn sampled_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
     let u = sample_pair(seed, sample, 4u + 8u * at.number);
     let choice = sample_pair(seed, sample, 5u + 8u * at.number);
     let source = min(u32(unit2(choice).x * f32(lighting.source_count)), lighting.source_count - 1u);
@@ -88,9 +80,13 @@ fn sample_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32,
         select(vec4f(0.0), vec4f(light, 1.0), is_open), found.emitter);
 }
 
-// The density with which light sampling would have chosen the emitter that was hit.
+// The density with which light sampling would have chosen the emitter that was hit; 0 if it chooses none.
 fn density_of_hit_emitter(id: u32, position: vec3f) -> f32 {
-    let sources = f32(max(lighting.source_count, 1u));
-    let density = emitter_density(emitter(emitter_with_id(id)), position) / sources;
-    return select(density, 0.0, lighting.emitter_count == 0u);
+    var density = 0.0;
+    if (SAMPLES_LIGHT) {
+        let sources = f32(max(lighting.source_count, 1u));
+        let chosen = emitter_density(emitter(emitter_with_id(id)), position) / sources;
+        density = select(chosen, 0.0, lighting.emitter_count == 0u);
+    }
+    return density;
 }

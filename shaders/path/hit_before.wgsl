@@ -1,23 +1,14 @@
 // The hit of a path's ray before a brick is traced.
-
-//// first-brick
-// The hit before the first brick is traced: the far side of the departed shape if the ray goes inside, otherwise a
-// miss.
 // provides: hit_before
-// needs: Departure, Hit, NO_HIT, NO_ID
+// needs: Departure, Hit, first_hit, load_hit
 
+// Whether the brick is not the first.
+override IS_LATER_BRICK: bool;
+
+// The hit in the bricks before this one.
 fn hit_before(index: u32, departure: Departure, is_going_inside: bool) -> Hit {
-    let far_side = Hit(departure.exit_distance, departure.id, departure.shape_index, 0.0);
-    let nothing = Hit(NO_HIT, NO_ID, 0u, 0.0);
-    return Hit(select(nothing.t, far_side.t, is_going_inside), select(nothing.id, far_side.id, is_going_inside),
-        select(nothing.shape_index, far_side.shape_index, is_going_inside), 0.0);
-}
-
-//// later-brick
-// The hit of a path's ray in the bricks before this one.
-// provides: hit_before
-// needs: Departure, Hit, load_hit
-
-fn hit_before(index: u32, departure: Departure, is_going_inside: bool) -> Hit {
-    return load_hit(index);
+    if (IS_LATER_BRICK) {
+        return load_hit(index);
+    }
+    return first_hit(departure, is_going_inside);
 }

@@ -1,25 +1,14 @@
-// The light that a path has sampled, as far as nothing occludes it, for kernels that trace whole paths.
-
-//// none
-// Variant for scenes without a light source that can be sampled.
+// The light that a path has sampled, as far as nothing occludes it, for kernels that trace whole paths. It finds what
+// `path/occlude.wgsl` finds.
 // provides: seen_light
-// needs: Departure, DirectLight
-
-fn seen_light(light: DirectLight, position: vec3f, departure: Departure) -> vec3f {
-    return vec3f(0.0);
-}
-
-//// any
-// Variant for paths that sample a light at every surface. It finds what `path/occlude.wgsl` finds.
-// provides: seen_light
-// needs: CameraRay, Departure, DirectLight, Ray, Search, enter_scene, excluded_by, find_any
+// needs: CameraRay, Departure, DirectLight, Ray, SAMPLES_LIGHT, Search, enter_scene, excluded_by, find_any
 
 fn seen_light(light: DirectLight, position: vec3f, departure: Departure) -> vec3f {
     var visibility = light.pending.w;
     // The distance is 0 if there is no light.
     let entry = enter_scene(CameraRay(Ray(position, light.shadow.xyz), 0.0, true));
     let rest = light.shadow.w - entry.distance;
-    if (rest > 0.0 && entry.is_inside) {
+    if (SAMPLES_LIGHT && rest > 0.0 && entry.is_inside) {
         if (find_any(Search(entry.ray, entry.inverse, excluded_by(departure)), rest)) {
             visibility = 0.0;
         }

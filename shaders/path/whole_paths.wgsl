@@ -4,15 +4,15 @@
 // dispatched: for some samples of all pixels of a tile.
 // provides: whole_paths
 // needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SPHERE, NO_EMITTER, PATH_ALIVE, PATH_INSIDE, PATH_ON_GROUND,
-//   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by, frame,
-//   ground_vertex, has, hit_before, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile, pixel_seed,
-//   report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
+//   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by,
+//   first_hit, frame, ground_vertex, has, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile,
+//   pixel_seed, report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
 
 // The path after its next surface, whose last number the dispatch has. An early return would crash Mesa 22.3.
 fn extended(path: Path, seed: u32, sample: u32) -> Path {
     let ray = path.ray;
     let goes_inside = has(path.flags, PATH_INSIDE);
-    let before = hit_before(0u, path.departure, goes_inside);
+    let before = first_hit(path.departure, goes_inside);
     let hit = nearest_hit(enter_scene(CameraRay(ray, 0.0, true)), excluded_by(path.departure), before);
     let behind = distance_from_camera(path.first.w, path.surface);
     let kind = classify_hit(ray, hit, has(path.flags, PATH_ON_GROUND), behind);

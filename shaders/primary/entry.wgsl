@@ -10,19 +10,28 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 }
 
 //// recorded
-// The ray of a pixel, computed where it is used, and recorded for src/verify.
+// The ray of a pixel, computed where it is used, and recorded for src/verify. Later bricks take the ray that the first
+// recorded: another pipeline might compute a ray that differs in the last bit.
 // provides: entry_of
-// needs: Entry, hit_index, make_entry
+// needs: Entry, IS_LATER_BRICK, Ray, hit_index, inverse_direction, make_entry
 
 // Rays with four vectors for each pixel, of which the first two are of this ray: origin and distance; direction, and 1
 // if the ray misses the scene's box or 2 if it hits the box.
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
-    let entry = make_entry(pixel_in_tile);
     let first = 4u * hit_index(pixel_in_tile);
-    rays[first] = vec4f(entry.ray.origin, entry.distance);
-    rays[first + 1u] = vec4f(entry.ray.direction, select(1.0, 2.0, entry.is_inside));
+    var entry: Entry;
+    if (IS_LATER_BRICK) {
+        let origin = rays[first];
+        let direction = rays[first + 1u];
+        let inverse = inverse_direction(direction.xyz);
+        entry = Entry(Ray(origin.xyz, direction.xyz), inverse, origin.w, direction.w > 1.5);
+    } else {
+        entry = make_entry(pixel_in_tile);
+        rays[first] = vec4f(entry.ray.origin, entry.distance);
+        rays[first + 1u] = vec4f(entry.ray.direction, select(1.0, 2.0, entry.is_inside));
+    }
     return entry;
 }
 
@@ -49,21 +58,4 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
     rays[first] = vec4f(sum, back, error, unfenced);
     rays[first + 1u] = vec4f(a, b, 0.0, 2.0);
     return entry;
-}
-
-//// replayed
-// The ray of a pixel as the kernel of the first brick recorded it. Another kernel might compute a ray that differs in
-// the last bit.
-// provides: entry_of
-// needs: Entry, Ray, hit_index, inverse_direction
-
-// Rays as in the variant `recorded`.
-@group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
-
-fn entry_of(pixel_in_tile: vec2u) -> Entry {
-    let first = 4u * hit_index(pixel_in_tile);
-    let origin = rays[first];
-    let direction = rays[first + 1u];
-    let inverse = inverse_direction(direction.xyz);
-    return Entry(Ray(origin.xyz, direction.xyz), inverse, origin.w, direction.w > 1.5);
 }

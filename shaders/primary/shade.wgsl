@@ -26,7 +26,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     }
     var color = frame.background;
     var normal = vec3f(0.0);
-    // The depth is NO_HIT for a miss, or the result of `occluded`, which records no ids.
+    // The depth is NO_HIT for a miss.
     var depth = hit.t;
     if (is_here) {
         let entry = shade_entry(invocation.xy);

@@ -58,7 +58,7 @@ pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::Frame;
 pub use passes::renderer::Renderer;
-pub use passes::renderer_options::{Query, RendererOptions};
+pub use passes::renderer_options::RendererOptions;
 pub use passes::targets::{DataTargets, Targets};
 pub use profile::{PassClock, Profile, ProfilePhase, ProfileSpan, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;

@@ -13,10 +13,10 @@ use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
-    Query, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
 };
 use pinhole::image::NO_ID;
-use pinhole::internals::NO_HIT;
+use pinhole::internals::{NO_HIT, ShaderEdit};
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, glam};
 
 use crate::embedding::{Host, size_of_film, view_of};
@@ -238,7 +238,7 @@ fn slices(headless: &'static Headless) {
     }
 }
 
-/// For every structure, in one brick and in several, the query `Any` reports a hit exactly where the picture of the
+/// For every structure, in one brick and in several, the search for any hit reports one exactly where the picture of the
 /// list has a sphere, and that picture agrees with the reference.
 fn any(headless: &'static Headless) {
     let host = Host::new();
@@ -269,6 +269,20 @@ fn any(headless: &'static Headless) {
     assert!(Structure::ALL.iter().all(|structure| met.contains(structure)), "{met:?}");
 }
 
+/// What `trace` does once for each brick: it finds the nearest sphere.
+const NEAREST: &str =
+    "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
+
+/// What it does instead here: it looks for any sphere, and records one by the distance 0 and no id.
+const ANY: &str = "
+    let is_known = hit_before(index).t < NO_HIT;
+    var t = select(NO_HIT, 0.0, is_known);
+    if (entry.is_inside && !is_known && find_any(Search(entry.ray, entry.inverse, no_exclusion()), NO_HIT)) {
+        t = 0.0;
+    }
+    store_hit(index, Hit(t, NO_ID, 0u, 0.0));
+";
+
 /// For each pixel, whether its ray hits anything, which is the case where the depth layer has no miss.
 fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
     let View { scene, camera, film, settings } = view;
@@ -278,7 +292,11 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
         cameras: vec![camera.kind()],
         structures: vec![accel.structure()],
         several_bricks: accel.bricks().len() > 1,
-        query: Query::Any,
+        edits: vec![ShaderEdit {
+            file: "primary/trace.wgsl".to_owned(),
+            find: NEAREST.to_owned(),
+            replace: ANY.to_owned(),
+        }],
         ..RendererOptions::default()
     };
     let renderer = Renderer::new(&host.device, &options).unwrap();

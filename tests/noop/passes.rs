@@ -1,9 +1,7 @@
 //! Every kind of pass, recorded and submitted on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::gpu::{
-    ColorTarget, LitPicture, LitRenderer, Query, Recolor, Renderer, RendererOptions,
-};
+use pinhole::gpu::{ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions};
 use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};
@@ -14,15 +12,14 @@ use crate::{Host, SIZE, cameras, film, pinhole_camera, scene, spheres};
 fn primary_rays_of_every_camera_structure_and_target() {
     let host = Host::new();
     let (scene, cameras) = (scene(), cameras());
-    for (color, data_layers, query, keeps_rays) in [
-        (ColorTarget::Srgb8, false, Query::Nearest, false),
-        (ColorTarget::Linear16, true, Query::Nearest, true),
-        (ColorTarget::Linear32, true, Query::Any, false),
+    for (color, data_layers, keeps_rays) in [
+        (ColorTarget::Srgb8, false, false),
+        (ColorTarget::Linear16, true, true),
+        (ColorTarget::Linear32, true, false),
     ] {
         let options = RendererOptions {
             color,
             data_layers,
-            query,
             keeps_rays,
             structures: Structure::ALL.to_vec(),
             ..RendererOptions::default()

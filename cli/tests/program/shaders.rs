@@ -13,6 +13,7 @@ fn every_kernel_is_written() {
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
+    let pipelines = String::from_utf8(folder.read("kernels/pipelines.txt")).unwrap();
     let mut sorted = names.clone();
     sorted.sort();
     let list = sorted.join("\n") + "\n";
@@ -25,8 +26,13 @@ fn every_kernel_is_written() {
         "PINHOLE_UPDATE_SNAPSHOTS=1 rewrites tests/program/snapshots/kernels.txt"
     );
     let text = String::from_utf8(run.stdout).unwrap();
-    assert_eq!(text, format!("kernels: {} kernels\n", names.len()));
-    for name in names {
+    let (kernels, of) = (names.len() - 1, pipelines.lines().count());
+    let expected = format!(
+        "kernels: {kernels} kernels, and pipelines.txt with the constants of {of} pipelines\n"
+    );
+    assert_eq!(text, expected);
+    for name in names.into_iter().filter(|name| name != "pipelines.txt") {
+        assert!(pipelines.lines().any(|line| line.split(' ').next() == Some(&name)), "{name}");
         let source = String::from_utf8(folder.read(&format!("kernels/{name}"))).unwrap();
         let entry_point = name.split(['-', '.']).next().unwrap();
         assert!(source.contains(&format!("fn {entry_point}(")), "{name}");

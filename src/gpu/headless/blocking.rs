@@ -10,7 +10,6 @@ use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch};
 use crate::gpu::headless::timer::TraceTime;
 use crate::gpu::options::HeadlessOptions;
-use crate::gpu::passes::renderer_options::Query;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::Structures;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport};
@@ -191,13 +190,8 @@ impl Headless {
     ///
     /// # Errors
     /// The same as for [`Headless::render`].
-    pub fn measure(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        query: Query,
-    ) -> Result<TraceTime, GpuError> {
-        block_on(self.measure_async(scene, view, query))
+    pub fn measure(&self, scene: &SceneBuffers, view: &View<'_>) -> Result<TraceTime, GpuError> {
+        block_on(self.measure_async(scene, view))
     }
 
     /// Renders a picture of primary rays with all layers and keeps the ray and the hit of every pixel, from which

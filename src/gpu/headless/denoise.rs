@@ -27,10 +27,7 @@ pub(in crate::gpu) struct Denoise {
 const MAX_STRIP_PIXELS: u64 = 1 << 21;
 
 pub(in crate::gpu) fn denoise_kernel() -> Kernel {
-    Kernel {
-        entry_point: "denoise",
-        parts: vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")],
-    }
+    Kernel::new("denoise", vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")])
 }
 
 impl Headless {

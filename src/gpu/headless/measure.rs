@@ -14,7 +14,6 @@ use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::pass_times::{PassTimes, Stamps};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::passes::renderer_options::Query;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::PrimarySettings;
@@ -28,9 +27,8 @@ impl Headless {
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
-        query: Query,
     ) -> Result<TraceTime, GpuError> {
-        let key = RendererKey { query, ..RendererKey::new(scene, view.camera) };
+        let key = RendererKey::new(scene, view.camera);
         self.with_renderer(key, async |renderer: &Renderer| {
             self.measure_with(renderer, scene, view).await
         })

@@ -15,7 +15,7 @@ use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{AllLitPasses, LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::passes::renderer_options::{Query, RendererOptions};
+use crate::gpu::passes::renderer_options::RendererOptions;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::recolor::Recolor;
@@ -31,7 +31,6 @@ pub(in crate::gpu) struct RendererKey {
     /// The kinds of the scene's bricks, without repetition.
     pub(in crate::gpu) kinds: Vec<BrickKind>,
     pub(in crate::gpu) several_bricks: bool,
-    pub(in crate::gpu) query: Query,
     pub(in crate::gpu) data_layers: bool,
     pub(in crate::gpu) keeps_rays: bool,
     /// Whether it records sums in place of rays, for the self-test.
@@ -55,7 +54,6 @@ impl RendererKey {
             camera: camera.kind(),
             kinds,
             several_bricks,
-            query: Query::Nearest,
             data_layers: layers != LayerSet::COLOR,
             keeps_rays: false,
             probes_fences: false,
@@ -82,7 +80,7 @@ impl Renderers {
     }
 
     fn options(&self, device_type: wgpu::DeviceType, key: &RendererKey) -> RendererOptions {
-        let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = *key;
+        let RendererKey { camera, several_bricks, data_layers, keeps_rays, .. } = *key;
         let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
         let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
         let probe = key.probes_fences.then(fence_probe::edit);
@@ -93,7 +91,6 @@ impl Renderers {
             structures: structures.into_iter().collect(),
             primitives: primitives.into_iter().collect(),
             several_bricks,
-            query,
             keeps_rays,
             indirect: true,
             device_type: Some(device_type),

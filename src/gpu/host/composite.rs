@@ -13,7 +13,7 @@ use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::targets::Targets;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
-use crate::gpu::shader::{Kernel, Part, part};
+use crate::gpu::shader::{Kernel, Part, part, with_constants};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 
@@ -35,6 +35,12 @@ pub struct CompositePicture {
     has_camera: bool,
 }
 
+/// How the colour of a picture is turned into that of the host's target: the values of `ENCODING` in
+/// `host/host_color.wgsl`.
+pub(in crate::gpu) const AS_STORED: u32 = 0;
+pub(in crate::gpu) const TO_LINEAR: u32 = 1;
+pub(in crate::gpu) const TO_SRGB: u32 = 2;
+
 fn shared_parts() -> Vec<Part> {
     vec![part!("host/host_view.wgsl"), part!("host/covered.wgsl")]
 }
@@ -43,7 +49,7 @@ fn shared_parts() -> Vec<Part> {
 pub(in crate::gpu) fn cover_kernel() -> Kernel {
     let mut parts = shared_parts();
     parts.push(part!("host/cover.wgsl"));
-    Kernel { entry_point: "cover", parts }
+    Kernel::new("cover", parts)
 }
 
 /// The kernel of the pixels, for colours stored as `source`; without a coverage, for a pass without depth.
@@ -56,25 +62,23 @@ pub(in crate::gpu) fn composite_kernel(
         ColorTarget::Srgb8 => TargetEncoding::Srgb,
         ColorTarget::Linear16 | ColorTarget::Linear32 => TargetEncoding::Linear,
     };
-    let color = match (stored, encoding) {
-        (TargetEncoding::Srgb, TargetEncoding::Linear) => {
-            part!("host/host_color.wgsl", "to-linear")
-        }
-        (TargetEncoding::Linear, TargetEncoding::Srgb) => part!("host/host_color.wgsl", "to-srgb"),
-        _ => part!("host/host_color.wgsl", "as-stored"),
+    let constant = match (stored, encoding) {
+        (TargetEncoding::Srgb, TargetEncoding::Linear) => TO_LINEAR,
+        (TargetEncoding::Linear, TargetEncoding::Srgb) => TO_SRGB,
+        _ => AS_STORED,
     };
     let mut parts = shared_parts();
-    parts.push(color);
+    parts.push(part!("host/host_color.wgsl"));
     let depth = match coverage {
         None => {
             parts.push(part!("host/overlay.wgsl"));
-            return Kernel { entry_point: "overlay", parts };
+            return Kernel::new("overlay", parts).with([("ENCODING", constant)]);
         }
         Some(Coverage::Hits) => part!("host/picture_depth.wgsl", "primary"),
         Some(Coverage::Alpha) => part!("host/picture_depth.wgsl", "lit"),
     };
     parts.extend([part!("host/clip_depth.wgsl"), depth, part!("host/composite.wgsl")]);
-    Kernel { entry_point: "composite", parts }
+    Kernel::new("composite", parts).with([("ENCODING", constant)])
 }
 
 /// Builds the pipeline like [`Composite::new`], but with edited shaders.
@@ -149,6 +153,8 @@ impl Composite {
                     source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
                 })
             });
+            let [vertex_constants, fragment_constants] =
+                kernels.each_ref().map(Kernel::values_of_constants);
             let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label,
                 layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -159,7 +165,7 @@ impl Composite {
                 vertex: wgpu::VertexState {
                     module: &vertex,
                     entry_point: Some(kernels[0].entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: with_constants(&vertex_constants),
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState::default(),
@@ -177,7 +183,7 @@ impl Composite {
                 fragment: Some(wgpu::FragmentState {
                     module: &fragment,
                     entry_point: Some(kernels[1].entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: with_constants(&fragment_constants),
                     targets: &[Some(wgpu::ColorTargetState {
                         format: options.format,
                         blend: options.blend,

@@ -11,7 +11,7 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Kernel, Part, camera_parts, part};
+use crate::gpu::shader::{Kernel, Part, camera_constant, camera_parts, part};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 
@@ -58,16 +58,16 @@ pub(in crate::gpu) fn limit_kernel(camera: CameraKind) -> Kernel {
         part!("scene/enter.wgsl"),
         part!("camera/entry.wgsl"),
     ]);
-    parts.extend(camera_parts(camera));
+    parts.extend(camera_parts());
     parts.extend([part!("host/farthest.wgsl"), part!("host/limit.wgsl")]);
-    Kernel { entry_point: "limit", parts }
+    Kernel::new("limit", parts).with([camera_constant(camera)])
 }
 
 /// The kernel that removes hits.
 pub(in crate::gpu) fn hide_kernel() -> Kernel {
     let mut parts = shared_parts();
     parts.push(part!("host/hide.wgsl"));
-    Kernel { entry_point: "hide", parts }
+    Kernel::new("hide", parts)
 }
 
 impl DepthTest {

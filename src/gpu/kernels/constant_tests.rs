@@ -4,10 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{Expression, Handle, Literal, Module};
 
-use super::all_kernels;
+use super::all_sources;
 use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, word};
 use crate::accel::wide_node::WideNode;
 use crate::accel::{self};
+use crate::camera::CameraKind;
+use crate::gpu::host::composite;
 use crate::gpu::passes::{emitter_table, lit, tiles};
 use crate::gpu::shader::records;
 use crate::image::NO_ID;
@@ -23,7 +25,15 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
     let words = [
         ("NO_ID", NO_ID),
         ("WORKGROUP_SIDE", tiles::WORKGROUP_SIDE),
+        ("PINHOLE", CameraKind::Pinhole as u32),
+        ("ORTHOGRAPHIC", CameraKind::Orthographic as u32),
+        ("THIN_LENS", CameraKind::ThinLens as u32),
+        ("PANORAMA", CameraKind::Panorama as u32),
+        ("FISHEYE", CameraKind::Fisheye as u32),
         ("KIND", word::KIND),
+        ("AS_STORED", composite::AS_STORED),
+        ("TO_LINEAR", composite::TO_LINEAR),
+        ("TO_SRGB", composite::TO_SRGB),
         ("EMPTY", word::EMPTY),
         ("LIST", word::LIST),
         ("GRID", word::GRID),
@@ -138,7 +148,7 @@ fn bits(module: &Module, expression: Handle<Expression>) -> Bits {
 #[test]
 fn constants_are_the_same_in_rust_and_wgsl() {
     let mut found: BTreeMap<String, BTreeSet<Bits>> = BTreeMap::new();
-    for kernel in all_kernels() {
+    for kernel in all_sources() {
         let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
         for (_, constant) in module.constants.iter() {
             let name = constant.name.clone().unwrap();

@@ -1,13 +1,12 @@
 //! The list of all kernels, and tests of all of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::{
-    BrickPass, Kernel, Probe, occluded_kernel, probe_kernel, self_test_kernel, shade_kernel,
-    trace_kernel,
+    BrickPass, Kernel, Probe, probe_kernel, self_test_kernel, shade_kernel, trace_kernel,
 };
 
 #[cfg(test)]
@@ -28,19 +27,32 @@ pub struct ComposedKernel {
     pub name: String,
     /// WGSL of all parts. A comment before each part names its file in the folder `shaders`.
     pub source: String,
+    /// The values of its `override` constants by their names, for each pipeline that is made of it. Those of the type
+    /// `bool` are 0 or 1.
+    pub pipelines: BTreeSet<Vec<(&'static str, u32)>>,
 }
 
 /// Returns all kernels of this crate that need nothing but WGSL, ordered by name, for readers and for other compilers:
 /// those with ray queries, which are an extension of wgpu, are left out.
 pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
     let core = all_kernels().into_iter().filter(|kernel| !kernel.has_ray_queries());
-    // Some settings of lit pictures share a kernel.
-    let sources: BTreeMap<String, String> =
-        core.map(|kernel| (kernel.name(), kernel.source())).collect();
-    sources.into_iter().map(|(name, source)| ComposedKernel { name, source })
+    let mut composed = BTreeMap::new();
+    for kernel in core {
+        let (name, source) = (kernel.name(), kernel.source());
+        let new = ComposedKernel { name: name.clone(), source, pipelines: BTreeSet::new() };
+        composed.entry(name).or_insert(new).pipelines.insert(kernel.constants);
+    }
+    composed.into_values()
 }
 
-/// All kernels that can be composed.
+/// All kernels that can be composed, with one set of constants for each source.
+#[cfg(test)]
+pub(in crate::gpu) fn all_sources() -> Vec<Kernel> {
+    let mut names = BTreeSet::new();
+    all_kernels().into_iter().filter(|kernel| names.insert(kernel.name())).collect()
+}
+
+/// All kernels of which pipelines are made. Many have the same source and differ in constants.
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
         [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
@@ -50,7 +62,6 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
                 for keeps_rays in [false, true] {
                     kernels.push(trace_kernel(camera, kind, brick_pass, keeps_rays));
                 }
-                kernels.push(occluded_kernel(camera, kind, brick_pass));
             }
         }
         for &primitive in Primitive::ALL {

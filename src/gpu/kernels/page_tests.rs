@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::all_kernels;
+use super::all_sources;
 use super::declarations::Declarations;
 use super::tests::files;
 use crate::gpu::shader::{VARIANT, variants};
@@ -28,7 +28,7 @@ struct Known {
 
 fn known_parts() -> BTreeMap<String, Known> {
     let mut known: BTreeMap<String, Known> = BTreeMap::new();
-    for kernel in all_kernels() {
+    for kernel in all_sources() {
         let parts: Vec<_> =
             kernel.parts.iter().map(|part| (part.name, Declarations::of(&part.source))).collect();
         for (name, own) in &parts {
@@ -124,7 +124,7 @@ fn kernel_table(known: &BTreeMap<String, Known>, files: &BTreeMap<String, String
     let mut table =
         "| entry point | file | what it finds or does | dispatched |\n|---|---|---|---|\n"
             .to_owned();
-    let entry_points: Names = all_kernels().iter().map(|k| k.entry_point.to_owned()).collect();
+    let entry_points: Names = all_sources().iter().map(|k| k.entry_point.to_owned()).collect();
     for entry_point in entry_points {
         let (file, _) =
             known.iter().find(|(_, part)| part.provides.contains(&entry_point)).unwrap();
@@ -155,7 +155,7 @@ fn part_table(known: &BTreeMap<String, Known>, files: &BTreeMap<String, String>)
 fn binding_table() -> String {
     type Row = (u32, u32, String);
     let mut rows: BTreeMap<Row, (String, Names)> = BTreeMap::new();
-    for kernel in all_kernels() {
+    for kernel in all_sources() {
         for part in &kernel.parts {
             let lines: Vec<&str> = part.source.lines().collect();
             for (at, line) in lines.iter().enumerate() {

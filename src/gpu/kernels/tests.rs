@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::all_kernels;
+use naga::back::pipeline_constants::process_overrides;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
 use super::declarations::Declarations;
-use crate::accel::{BrickKind, Primitive, Structure};
-use crate::camera::CameraKind;
-use crate::gpu::shader::formats::ColorTarget;
+use super::{all_kernels, all_sources};
 use crate::gpu::shader::{Kernel, Part, part, variants};
 
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
@@ -15,34 +15,32 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
     let readable = |message: String| kernel.with_positions_in_files(&message);
     let module = naga::front::wgsl::parse_str(&source)
         .map_err(|error| readable(error.emit_to_string(&source)))?;
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        // All others may use only the core features of WebGPU.
-        match kernel.has_ray_queries() {
-            true => naga::valid::Capabilities::RAY_QUERY,
-            false => naga::valid::Capabilities::empty(),
-        },
-    )
-    .validate(&module)
-    .map_err(|error| readable(error.emit_to_string(&source)))?;
+    validator(kernel.has_ray_queries())
+        .validate(&module)
+        .map_err(|error| readable(error.emit_to_string(&source)))?;
     Ok(module)
 }
+
+fn validator(has_ray_queries: bool) -> Validator {
+    // All others may use only the core features of WebGPU.
+    let capabilities = match has_ray_queries {
+        true => Capabilities::RAY_QUERY,
+        false => Capabilities::empty(),
+    };
+    Validator::new(ValidationFlags::all(), capabilities)
+}
+
+/// The most sources that there may be. A change may lower it: what kernels differ in is an `override` constant, unless it
+/// is a type, a directive or a binding.
+const MOST_SOURCES: usize = 112;
 
 /// The parts with entry points of render passes.
 const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];
 
 #[test]
 fn every_kernel_composes_and_validates() {
-    let kernels = all_kernels();
-    assert_eq!(
-        kernels.len(),
-        CameraKind::ALL.len()
-            * (6 * BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL).count()
-                + 3 * Primitive::ALL.len() * ColorTarget::ALL.len())
-            + 6
-            + crate::gpu::host::kernels().len()
-            + crate::gpu::passes::lit::all_kernels().len()
-    );
+    let kernels = all_sources();
+    assert!(kernels.len() <= MOST_SOURCES, "{} sources", kernels.len());
     for kernel in kernels {
         let module = validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));
         let entry = &module.entry_points[0];
@@ -53,6 +51,31 @@ fn every_kernel_composes_and_validates() {
         assert!(is_compute != kernel.parts.iter().any(|part| RENDERED.contains(&part.name)));
         let size = entry.workgroup_size.iter().product::<u32>();
         assert_eq!(size, if is_compute { 64 } else { 0 });
+    }
+}
+
+/// wgpu refuses a value for a constant that a source does not declare, and a constant without a value. It puts the
+/// values in when a driver needs the pipeline, so that the `noop` device does not show whether what results is valid.
+#[test]
+fn every_pipeline_has_the_constants_that_its_source_declares() {
+    let mut sources = BTreeMap::new();
+    for kernel in all_kernels() {
+        let (module, info) = sources.entry(kernel.name()).or_insert_with(|| {
+            let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
+            let info = validator(kernel.has_ray_queries()).validate(&module).unwrap();
+            (module, info)
+        });
+        let overrides = module.overrides.iter().filter_map(|(_, found)| found.name.as_deref());
+        let declared: BTreeSet<&str> = overrides.collect();
+        let given: BTreeSet<&str> = kernel.constants.iter().map(|(name, _)| *name).collect();
+        let name = kernel.name();
+        assert_eq!((&given, given.len()), (&declared, kernel.constants.len()), "{name}");
+        let values = kernel.values_of_constants().into_iter();
+        let values = values.map(|(name, value)| (name.to_owned(), value)).collect();
+        let entry_point = &module.entry_points[0];
+        let entry_point = Some((entry_point.stage, entry_point.name.as_str()));
+        process_overrides(module, info, entry_point, &values)
+            .unwrap_or_else(|error| panic!("{name} {:?}: {error:?}", kernel.constants));
     }
 }
 
@@ -72,7 +95,7 @@ fn no_two_kernels_have_the_same_name() {
 fn every_kernel_sets_what_fences_need() {
     let uses_frame =
         |kernel: &Kernel| kernel.parts.iter().any(|part| part.name == "scene/frame.wgsl");
-    for kernel in all_kernels().iter().filter(|kernel| uses_frame(kernel)) {
+    for kernel in all_sources().iter().filter(|kernel| uses_frame(kernel)) {
         let source = kernel.source();
         let entry = source.split(&format!("fn {}(", kernel.entry_point)).nth(1).unwrap();
         let first = entry.lines().nth(1).unwrap();
@@ -83,7 +106,7 @@ fn every_kernel_sets_what_fences_need() {
 /// Parts pass data by arguments: no part reads or writes a private variable of another.
 #[test]
 fn no_part_uses_a_private_variable_of_another() {
-    for kernel in all_kernels() {
+    for kernel in all_sources() {
         let parts: Vec<_> =
             kernel.parts.iter().map(|part| (part, Declarations::of(&part.source))).collect();
         for (owner, declared) in &parts {
@@ -101,11 +124,11 @@ fn no_part_uses_a_private_variable_of_another() {
 fn an_error_names_the_file_and_its_line() {
     let broken = Part::whole("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
     let parts = vec![part!("camera/ray.wgsl"), broken, part!("camera/film.wgsl")];
-    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    let message = validate(&Kernel::new("none", parts)).unwrap_err();
     assert!(message.contains("broken.wgsl:3:"), "{message}");
     let file = "// Head.\n\n//// a\nconst x: f32 = 1.0;\n//// b\n\nconst x: f32 = y;\n";
     let parts = vec![part!("camera/ray.wgsl"), Part::variant("broken.wgsl#b", file)];
-    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    let message = validate(&Kernel::new("none", parts)).unwrap_err();
     assert!(message.contains("broken.wgsl:7:"), "{message}");
 }
 
@@ -129,7 +152,7 @@ pub(super) fn files() -> BTreeMap<String, String> {
 
 #[test]
 fn every_file_and_variant_is_used_and_short() {
-    let kernels = all_kernels();
+    let kernels = all_sources();
     let used: BTreeSet<String> =
         kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.name.to_owned())).collect();
     let mut there = BTreeSet::new();

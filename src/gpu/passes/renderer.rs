@@ -11,7 +11,7 @@ use crate::gpu::checks::Checks;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::renderer_options::{Query, RendererOptions};
+use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::query_structure;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::Layouts;
@@ -29,7 +29,6 @@ pub struct Renderer {
     pub(in crate::gpu) several_bricks: bool,
     pub(in crate::gpu) is_indirect: bool,
     pub(in crate::gpu) shape: DeviceShape,
-    query: Query,
     pub(in crate::gpu) edits: Edits,
     /// Pipelines that can be recorded.
     built: Vec<(PassKey, ComputePipeline)>,
@@ -92,7 +91,7 @@ impl Renderer {
     /// [`Renderer::record`] records nothing and returns [`GpuError::NotReady`].
     #[must_use]
     pub fn begin(device: &Device, options: &RendererOptions) -> Self {
-        let RendererOptions { color, data_layers, query, keeps_rays, .. } = *options;
+        let RendererOptions { color, data_layers, keeps_rays, .. } = *options;
         let device_type = options.device_type.unwrap_or(device.adapter_info().device_type);
         let checks = Checks::default();
         let layouts = checks.create(device, || Layouts::new(device, options));
@@ -114,7 +113,6 @@ impl Renderer {
             several_bricks: options.several_bricks,
             is_indirect: options.indirect,
             shape: DeviceShape::of(device_type),
-            query,
             edits: Edits { replacements: options.edits.clone(), rewrite: options.rewrite.clone() },
             built: Vec::new(),
             building: Mutex::new(VecDeque::new()),
@@ -187,9 +185,8 @@ impl Renderer {
     pub(in crate::gpu) fn continues_hits(&self, camera: CameraKind) -> bool {
         let built = self.built.iter().map(|(key, _)| key);
         let mut keys = built.chain(&self.remaining);
-        // Rays that are kept are those of the first brick's pass, and a search for any hit has no distances.
+        // Rays that are kept are those of the first brick's pass.
         !self.keeps_rays
-            && self.query == Query::Nearest
             && keys
                 .any(|key| matches!(key, PassKey::Trace(of, _, BrickPass::Later) if *of == camera))
     }
@@ -205,19 +202,16 @@ impl Renderer {
     }
 
     fn kernel(&self, key: PassKey) -> Kernel {
-        match (key, self.query) {
-            (PassKey::Shade(camera, primitive), _) => shader::shade_kernel(
+        match key {
+            PassKey::Shade(camera, primitive) => shader::shade_kernel(
                 camera,
                 primitive,
                 self.color,
                 self.data_layers,
                 self.keeps_rays,
             ),
-            (PassKey::Trace(camera, kind, brick_pass), Query::Nearest) => {
+            PassKey::Trace(camera, kind, brick_pass) => {
                 shader::trace_kernel(camera, kind, brick_pass, self.keeps_rays)
-            }
-            (PassKey::Trace(camera, kind, brick_pass), Query::Any) => {
-                shader::occluded_kernel(camera, kind, brick_pass)
             }
         }
     }
@@ -263,17 +257,12 @@ mod tests {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         assert_eq!(device.limits().max_storage_buffer_binding_size, 128 << 20);
         for &color in ColorTarget::ALL {
-            for (data_layers, query, keeps_rays) in [
-                (false, Query::Nearest, false),
-                (true, Query::Nearest, true),
-                (true, Query::Any, false),
-            ] {
+            for (data_layers, keeps_rays) in [(false, false), (true, true), (true, false)] {
                 let options = RendererOptions {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
                     primitives: Primitive::ALL.to_vec(),
-                    query,
                     keeps_rays,
                     ..RendererOptions::default()
                 };

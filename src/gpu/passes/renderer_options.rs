@@ -22,8 +22,6 @@ pub struct RendererOptions {
     /// Whether scenes may be too large for one binding, so that they consist of several bricks. Rays end at a host's
     /// depth by the same pipelines, see [`Renderer::record_with_depth`](crate::gpu::Renderer::record_with_depth).
     pub several_bricks: bool,
-    /// What the search for a ray returns. A renderer with [`Query::Any`] is useful for measurements only.
-    pub query: Query,
     /// Whether frames keep the ray of every pixel, in 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
     /// Whether lit pictures use indirect dispatches, so that the device traces only paths that continue. All adapters
@@ -49,7 +47,6 @@ impl Default for RendererOptions {
             structures: Structure::ALL.to_vec(),
             primitives: vec![Primitive::Sphere],
             several_bricks: true,
-            query: Query::Nearest,
             keeps_rays: false,
             indirect: true,
             device_type: None,
@@ -57,15 +54,4 @@ impl Default for RendererOptions {
             rewrite: None,
         }
     }
-}
-
-/// The result that the search for a ray returns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Query {
-    /// The nearest sphere that the ray hits.
-    #[default]
-    Nearest,
-    /// Whether the ray hits any sphere.
-    Any,
 }

@@ -20,7 +20,7 @@ pub(in crate::gpu) struct BrickBuffers {
     pub(in crate::gpu) kind: BrickKind,
     /// The boxes of the shapes, by which bricks are sorted and looked for in pictures.
     pub(in crate::gpu) bounds: BrickBounds,
-    /// Bind group 1 of `trace` and `occluded`.
+    /// Bind group 1 of `trace`.
     pub(in crate::gpu) trace_group: BindGroup,
     /// Bind group 1 of `shade`.
     pub(in crate::gpu) surface_group: BindGroup,

@@ -39,7 +39,7 @@ pub struct Recolor {
 }
 
 pub(in crate::gpu) fn recolor_kernel() -> Kernel {
-    Kernel { entry_point: "recolor", parts: vec![part!("scene/recolor.wgsl")] }
+    Kernel::new("recolor", vec![part!("scene/recolor.wgsl")])
 }
 
 impl Recolor {

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::gpu::shader::Constant;
 use crate::scene::{Duplicates, Scene};
 
 /// How the shape that a ray starts on is excluded from its search.
@@ -16,6 +17,10 @@ pub(in crate::gpu) enum ExcludeBy {
 impl ExcludeBy {
     /// All variants.
     pub(in crate::gpu) const ALL: [Self; 2] = [Self::Index, Self::Id];
+
+    pub(in crate::gpu) fn constant(self) -> Constant {
+        ("EXCLUDES_BY_ID", u32::from(self == Self::Id))
+    }
 }
 
 /// The ids of the spheres of a structure, and the way in which rays exclude the sphere that they start on.

@@ -1,15 +1,19 @@
 //! Kernels, whose source is the concatenation of a list of parts.
 
 use super::part::Part;
-use crate::camera::CameraKind;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 
-/// An entry point, and the parts that it is composed of.
+/// The value of an `override` constant of WGSL, which is 0 or 1 for one of type `bool`.
+pub(in crate::gpu) type Constant = (&'static str, u32);
+
+/// An entry point, the parts that it is composed of, and the values of the `override` constants that they declare.
+/// Kernels that differ in the values alone have the same source, and a pipeline for each set of values.
 #[derive(Clone, Debug)]
 pub(in crate::gpu) struct Kernel {
     pub(in crate::gpu) entry_point: &'static str,
     pub(in crate::gpu) parts: Vec<Part>,
+    pub(in crate::gpu) constants: Vec<Constant>,
 }
 
 /// The files of structures, which are alternatives to each other.
@@ -26,20 +30,32 @@ const WITH_DIRECTIVE: &str = "accel/ray_query.wgsl";
 
 /// Whether other kernels with the same entry point may have another part in place of this one.
 fn is_choice(part: &str) -> bool {
-    let camera = part.strip_prefix("camera/").and_then(|file| file.strip_suffix(".wgsl"));
-    part.contains('#')
-        || STRUCTURES.contains(&part)
-        || CameraKind::ALL.iter().any(|kind| Some(kind.name()) == camera)
+    part.contains('#') || STRUCTURES.contains(&part)
 }
 
 impl Kernel {
-    /// The entry point and the parts that distinguish this kernel from others.
+    pub(in crate::gpu) const fn new(entry_point: &'static str, parts: Vec<Part>) -> Self {
+        Self { entry_point, parts, constants: Vec::new() }
+    }
+
+    /// The kernel with the values of some more constants.
+    pub(in crate::gpu) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
+        self.constants.extend(constants);
+        self
+    }
+
+    /// The entry point and the parts that distinguish this kernel from others with another source.
     pub(in crate::gpu) fn name(&self) -> String {
         let chosen = self.parts.iter().map(|part| part.name).filter(|name| is_choice(name));
         chosen.fold(self.entry_point.to_owned(), |name, part| {
             let (_, file) = part.split_once('/').unwrap_or(("", part));
             name + " " + &file.replace(".wgsl", "")
         })
+    }
+
+    /// The constants as wgpu takes them.
+    pub(in crate::gpu) fn values_of_constants(&self) -> Vec<(&'static str, f64)> {
+        self.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect()
     }
 
     /// Whether it is written in more than the WGSL of any device.

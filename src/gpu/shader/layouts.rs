@@ -15,7 +15,7 @@ use crate::gpu::shader::records;
 pub(in crate::gpu) struct Layouts {
     /// Layout of bind group 0 of every kernel.
     pub(in crate::gpu) frame: BindGroupLayout,
-    /// Layouts of bind group 1 of `trace` and `occluded`: brick, shapes, ids, and the words of the structure.
+    /// Layouts of bind group 1 of `trace`: brick, shapes, ids, and the words of the structure.
     pub(in crate::gpu) brick: Vec<(BrickKind, BindGroupLayout)>,
     /// Layout of bind group 1 of `shade`, for spheres.
     pub(in crate::gpu) surface: BindGroupLayout,
@@ -75,13 +75,13 @@ impl Layouts {
 }
 
 impl Layouts {
-    /// Layout of bind group 1 of `trace` and `occluded`.
+    /// Layout of bind group 1 of `trace`.
     pub(in crate::gpu) fn brick_of(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
         let found = self.brick.iter().find(|(of, _)| *of == kind);
         found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
     }
 
-    /// Layout of bind group 1 of `trace` and `occluded` for a brick of which it is not known yet whether it will be
+    /// Layout of bind group 1 of `trace` for a brick of which it is not known yet whether it will be
     /// searched as a nested grid. Both kinds of grids have the same bindings.
     pub(in crate::gpu) fn brick_like(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
         let bound_as = |kind: BrickKind| (kind.structure.with_nested(true), kind.primitive);

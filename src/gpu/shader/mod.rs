@@ -13,12 +13,12 @@ mod primary;
 pub(super) mod records;
 mod row_order;
 
-pub(super) use kernel::Kernel;
+pub(super) use kernel::{Constant, Kernel};
 pub(super) use part::{Part, part};
 #[cfg(test)]
 pub(super) use part::{VARIANT, variants};
-pub(super) use pipeline::{pipeline, pipeline_with};
+pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
-    BrickPass, Probe, camera_parts, color_target, data_layers, occluded_kernel, probe_kernel,
-    self_test_kernel, shade_kernel, structure_parts, trace_kernel,
+    BrickPass, Probe, camera_constant, camera_parts, camera_rays, color_target, data_layers,
+    probe_kernel, self_test_kernel, shade_kernel, structure_parts, trace_kernel,
 };

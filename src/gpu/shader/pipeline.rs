@@ -26,6 +26,7 @@ pub(in crate::gpu) fn pipeline_with(
     checks: &Checks,
 ) -> ComputePipeline {
     let name = kernel.name();
+    let constants = kernel.values_of_constants();
     let create = || {
         let module = shader_module(
             device,
@@ -44,7 +45,7 @@ pub(in crate::gpu) fn pipeline_with(
             layout: Some(&layout),
             module: &module,
             entry_point: Some(kernel.entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: with_constants(&constants),
             cache: None,
         })
     };
@@ -55,6 +56,13 @@ pub(in crate::gpu) fn pipeline_with(
         }
         other => other,
     })
+}
+
+/// The options of a stage whose `override` constants have some values.
+pub(in crate::gpu) fn with_constants<'a>(
+    constants: &'a [(&'a str, f64)],
+) -> wgpu::PipelineCompilationOptions<'a> {
+    wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() }
 }
 
 /// Creates a shader module without the counter that wgpu inserts into every loop to stop endless ones, because it takes

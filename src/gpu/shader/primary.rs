@@ -1,6 +1,6 @@
 //! The kernels of primary rays and of the self-test, as lists of parts.
 
-use super::kernel::Kernel;
+use super::kernel::{Constant, Kernel};
 use super::part::{Part, part};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
@@ -11,6 +11,12 @@ use crate::gpu::shader::formats::ColorTarget;
 pub(in crate::gpu) enum BrickPass {
     First,
     Later,
+}
+
+impl BrickPass {
+    pub(in crate::gpu) fn constant(self) -> Constant {
+        ("IS_LATER_BRICK", u32::from(self == Self::Later))
+    }
 }
 
 /// The operations that a kernel of the self-test executes.
@@ -31,53 +37,35 @@ pub(in crate::gpu) fn trace_kernel(
     brick_pass: BrickPass,
     keeps_rays: bool,
 ) -> Kernel {
-    let mut parts = walk_parts(camera, kind, brick_pass);
-    parts.push(match (keeps_rays, brick_pass) {
-        (false, _) => part!("primary/entry.wgsl", "made"),
-        (true, BrickPass::First) => part!("primary/entry.wgsl", "recorded"),
-        (true, BrickPass::Later) => part!("primary/entry.wgsl", "replayed"),
+    let mut parts = walk_parts(kind);
+    parts.push(match keeps_rays {
+        false => part!("primary/entry.wgsl", "made"),
+        true => part!("primary/entry.wgsl", "recorded"),
     });
     parts.push(part!("primary/trace.wgsl"));
-    Kernel { entry_point: "trace", parts }
+    Kernel::new("trace", parts).with([camera_constant(camera), brick_pass.constant()])
 }
 
 /// The kernel that finds the nearest sphere of every ray and probes fences, which the self-test makes of the one that
 /// records rays (`gpu/self_test/fence_probe.rs`).
 pub(in crate::gpu) fn probe_kernel() -> Kernel {
     let kind = BrickKind { structure: Structure::Grid, primitive: Primitive::Sphere };
-    let mut parts = walk_parts(CameraKind::Pinhole, kind, BrickPass::First);
+    let mut parts = walk_parts(kind);
     parts.extend([part!("primary/entry.wgsl", "probed"), part!("primary/trace.wgsl")]);
-    Kernel { entry_point: "trace", parts }
+    let camera = camera_constant(CameraKind::Pinhole);
+    Kernel::new("trace", parts).with([camera, BrickPass::First.constant()])
 }
 
-/// The kernel that finds whether each ray hits anything.
-pub(in crate::gpu) fn occluded_kernel(
-    camera: CameraKind,
-    kind: BrickKind,
-    brick_pass: BrickPass,
-) -> Kernel {
-    let mut parts = walk_parts(camera, kind, brick_pass);
-    parts.extend([part!("primary/entry.wgsl", "made"), part!("primary/occluded.wgsl")]);
-    Kernel { entry_point: "occluded", parts }
-}
-
-fn walk_parts(
-    camera: CameraKind,
-    BrickKind { structure, primitive }: BrickKind,
-    brick_pass: BrickPass,
-) -> Vec<Part> {
-    let mut parts = common_parts(camera, primitive);
+fn walk_parts(BrickKind { structure, primitive }: BrickKind) -> Vec<Part> {
+    let mut parts = common_parts(primitive);
     parts.extend([
         part!("primary/schedule.wgsl"),
         part!("primary/status.wgsl"),
         part!("accel/spend.wgsl"),
         part!("accel/excluded.wgsl", "none"),
         part!("accel/brick.wgsl"),
+        part!("primary/hit_before.wgsl"),
     ]);
-    parts.push(match brick_pass {
-        BrickPass::First => part!("primary/hit_before.wgsl", "first-brick"),
-        BrickPass::Later => part!("primary/hit_before.wgsl", "later-brick"),
-    });
     parts.extend(structure_parts(structure));
     parts
 }
@@ -138,7 +126,7 @@ pub(in crate::gpu) fn shade_kernel(
     data_layers: bool,
     keeps_rays: bool,
 ) -> Kernel {
-    let mut parts = common_parts(camera, primitive);
+    let mut parts = common_parts(primitive);
     parts.extend([
         part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
@@ -151,7 +139,7 @@ pub(in crate::gpu) fn shade_kernel(
         color_target(color),
         self::data_layers(data_layers),
     ]);
-    Kernel { entry_point: "shade", parts }
+    Kernel::new("shade", parts).with([camera_constant(camera)])
 }
 
 /// The kernel of the self-test that executes some operations.
@@ -161,10 +149,8 @@ pub(in crate::gpu) fn self_test_kernel(probe: Probe) -> Kernel {
         Probe::Exact => ("exact", part!("self_test/exact.wgsl")),
         Probe::Loops => ("loops", part!("self_test/loops.wgsl")),
     };
-    Kernel {
-        entry_point,
-        parts: vec![part!("self_test/records.wgsl"), part!("math/fence.wgsl"), part],
-    }
+    let parts = vec![part!("self_test/records.wgsl"), part!("math/fence.wgsl"), part];
+    Kernel::new(entry_point, parts)
 }
 
 /// The part of a primitive, which provides `Shape`, `intersect` and `shape_normal`.
@@ -174,7 +160,7 @@ fn primitive_part(primitive: Primitive) -> Part {
     }
 }
 
-fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
+fn common_parts(primitive: Primitive) -> Vec<Part> {
     let mut parts = vec![
         part!("scene/records.wgsl"),
         part!("scene/frame.wgsl"),
@@ -186,30 +172,36 @@ fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
         part!("camera/entry.wgsl"),
         primitive_part(primitive),
     ];
-    parts.extend(camera_parts(camera));
+    parts.extend(camera_parts());
     parts
 }
 
-/// The parts of a camera, including the functions that cameras use.
-pub(in crate::gpu) fn camera_parts(camera: CameraKind) -> [Part; 3] {
-    [part!("math/trigonometry.wgsl"), part!("math/disk.wgsl"), camera_part(camera)]
+/// The parts of all cameras, including the functions that cameras use.
+pub(in crate::gpu) fn camera_parts() -> Vec<Part> {
+    let mut parts = vec![part!("math/trigonometry.wgsl"), part!("math/disk.wgsl")];
+    parts.extend(camera_rays());
+    parts
 }
 
-macro_rules! define_camera_part {
+/// The constant that chooses a camera.
+pub(in crate::gpu) fn camera_constant(camera: CameraKind) -> Constant {
+    ("CAMERA", camera as u32)
+}
+
+macro_rules! define_camera_rays {
     ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
-        fn camera_part(camera: CameraKind) -> Part {
-            match camera {
-                $(CameraKind::$variant => Part::whole(
-                    concat!("camera/", $name, ".wgsl"),
-                    include_str!(concat!(
-                        env!("CARGO_MANIFEST_DIR"),
-                        "/shaders/camera/",
-                        $name,
-                        ".wgsl"
-                    )),
-                ),)+
-            }
+        /// The parts of all cameras, and that which chooses among them.
+        pub(in crate::gpu) fn camera_rays() -> Vec<Part> {
+            vec![part!("camera/camera_ray.wgsl"), $(Part::whole(
+                concat!("camera/", $name, ".wgsl"),
+                include_str!(concat!(
+                    env!("CARGO_MANIFEST_DIR"),
+                    "/shaders/camera/",
+                    $name,
+                    ".wgsl"
+                )),
+            ),)+]
         }
     };
 }
-camera_table!(define_camera_part);
+camera_table!(define_camera_rays);

@@ -49,7 +49,7 @@ pub(super) const TIES: &[Row] = &[
         "brick_forgets_those_before",
         views::balls,
         BRICKS,
-        "primary/hit_before.wgsl#later-brick",
+        "primary/hit_before.wgsl",
         "return load_hit(index);",
         "return Hit(NO_HIT, NO_ID, 0u, 0.0);",
     ),

@@ -115,7 +115,7 @@ fn faults(headless: &'static Headless) {
             "// Only the ray to the light excludes the light.\n        Departure(vertex.id",
             "Departure(NO_ID",
         ),
-        ("path_sun_and_lamps", "path/seen_light.wgsl#any", "visibility = 0.0", "visibility = 1.0"),
+        ("path_sun_and_lamps", "path/seen_light.wgsl", "visibility = 0.0", "visibility = 1.0"),
         (
             "studio_ambient_occlusion",
             "studio/ambient_light.wgsl",

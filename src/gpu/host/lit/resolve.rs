@@ -22,7 +22,7 @@ pub(in crate::gpu) fn resolve_kernel(color: ColorTarget) -> Kernel {
         part!("host/mean.wgsl"),
         part!("host/resolve.wgsl"),
     ];
-    Kernel { entry_point: "resolve", parts }
+    Kernel::new("resolve", parts)
 }
 
 /// Builds the pipeline. `targets` is the layout of the host's textures.

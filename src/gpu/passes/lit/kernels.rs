@@ -4,7 +4,9 @@ use super::one_pass::OnePass;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
-use crate::gpu::shader::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
+use crate::gpu::shader::{
+    BrickPass, Constant, Kernel, Part, camera_constant, camera_parts, part, structure_parts,
+};
 
 /// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,20 +30,12 @@ impl Mode {
         self == Self::Studio
     }
 
-    fn direct_light(self) -> Part {
-        if self.samples_light() {
-            part!("path/direct_light.wgsl", "any")
-        } else {
-            part!("path/direct_light.wgsl", "none")
-        }
-    }
-
-    fn medium(self) -> Part {
-        if self.has_medium() {
-            part!("path/medium.wgsl", "glass")
-        } else {
-            part!("path/medium.wgsl", "none")
-        }
+    /// The constants of `path/choices.wgsl`.
+    pub(super) fn constants(self) -> [Constant; 2] {
+        [
+            ("ANY_MATERIALS", u32::from(self.has_medium())),
+            ("SAMPLES_LIGHT", u32::from(self.samples_light())),
+        ]
     }
 }
 
@@ -76,27 +70,29 @@ pub(super) enum Schedule {
 }
 
 impl Schedule {
-    fn part(self) -> Part {
-        match self {
-            Self::Pixels => part!("path/schedule.wgsl", "pixels"),
-            Self::Queue => part!("path/schedule.wgsl", "queue"),
-        }
+    fn constant(self) -> Constant {
+        ("TAKES_LIST", u32::from(self == Self::Queue))
     }
 }
 
 /// The kernel that starts paths with camera rays.
 pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
+    let mut parts = paths();
     parts.extend([
         part!("path/address.wgsl"),
         part!("scene/lighting.wgsl"),
         part!("math/sampling.wgsl"),
         part!("camera/filter.wgsl"),
         part!("camera/film_sample.wgsl"),
+        part!("path/choices.wgsl"),
+        part!("path/direct_light.wgsl"),
+        part!("path/medium.wgsl"),
+        part!("path/start.wgsl"),
     ]);
-    parts.extend(camera_parts(camera));
-    parts.extend([mode.direct_light(), mode.medium(), part!("path/start.wgsl")]);
-    Kernel { entry_point: "start", parts }
+    parts.extend(camera_parts());
+    Kernel::new("start", parts)
+        .with(mode.constants())
+        .with([camera_constant(camera), Schedule::Pixels.constant()])
 }
 
 /// The kernel that finds the nearest sphere of every path's ray.
@@ -106,85 +102,79 @@ pub(super) fn extend_kernel(
     brick_pass: BrickPass,
     schedule: Schedule,
 ) -> Kernel {
-    let mut parts = base(schedule);
-    parts.extend(excluded_parts(exclude_by));
-    parts.extend([part!("accel/spend.wgsl"), part!("accel/brick.wgsl")]);
+    let mut parts = paths();
+    parts.extend(excluded_parts());
+    parts.extend([
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("path/first_hit.wgsl"),
+        part!("path/hit_before.wgsl"),
+        part!("path/extend.wgsl"),
+    ]);
     parts.extend(structure_parts(structure));
-    parts.push(match brick_pass {
-        BrickPass::First => part!("path/hit_before.wgsl", "first-brick"),
-        BrickPass::Later => part!("path/hit_before.wgsl", "later-brick"),
-    });
-    parts.push(part!("path/extend.wgsl"));
-    Kernel { entry_point: "extend", parts }
+    let constants = [exclude_by.constant(), brick_pass.constant(), schedule.constant()];
+    Kernel::new("extend", parts).with(constants)
 }
 
 /// The kernel that finds whether sampled lights are occluded.
-pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
-    let mut parts = base(Schedule::Queue);
+pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy, mode: Mode) -> Kernel {
+    let mut parts = paths();
     parts.extend([
+        part!("path/choices.wgsl"),
         part!("accel/spend.wgsl"),
         part!("accel/brick.wgsl"),
         part!("scene/emitter.wgsl"),
     ]);
-    parts.extend(excluded_with_light(exclude_by));
+    parts.extend(excluded_with_light());
     parts.extend(structure_parts(structure));
     parts.push(part!("path/occlude.wgsl"));
-    Kernel { entry_point: "occlude", parts }
+    Kernel::new("occlude", parts)
+        .with(mode.constants())
+        .with([exclude_by.constant(), Schedule::Queue.constant()])
 }
 
 /// The kernel of studios that finds whether a light is hidden.
 pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
-    let mut parts = hidden_light(structure, exclude_by);
+    let mut parts = hidden_light(structure);
     parts.extend([part!("scene/lamp.wgsl"), part!("studio/shadow.wgsl")]);
-    Kernel { entry_point: "shadow", parts }
+    Kernel::new("shadow", parts).with([exclude_by.constant(), Schedule::Queue.constant()])
 }
 
 /// The kernel of studios that finds whether directions of ambient light are occluded.
 pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
-    let mut parts = hidden_light(structure, exclude_by);
+    let mut parts = hidden_light(structure);
     parts.push(part!("studio/ambient.wgsl"));
-    Kernel { entry_point: "ambient", parts }
+    Kernel::new("ambient", parts).with([exclude_by.constant(), Schedule::Queue.constant()])
 }
 
 /// The parts that exclude the shape on which a ray starts, and the emitter that it is directed to.
-pub(super) fn excluded_with_light(exclude_by: ExcludeBy) -> Vec<Part> {
-    match exclude_by {
-        ExcludeBy::Index => vec![
-            part!("path/departed_shape.wgsl"),
-            part!("accel/excluded.wgsl", "by-index-and-light"),
-        ],
-        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id-and-light")],
-    }
+pub(super) fn excluded_with_light() -> [Part; 2] {
+    [part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "departed-and-light")]
 }
 
 /// The parts that exclude the shape on which a ray starts.
-pub(super) fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
-    match exclude_by {
-        ExcludeBy::Index => {
-            vec![part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "by-index")]
-        }
-        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id")],
-    }
+pub(super) fn excluded_parts() -> [Part; 2] {
+    [part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "departed")]
 }
 
-fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
-    let mut parts = base(Schedule::Queue);
+fn hidden_light(structure: Structure) -> Vec<Part> {
+    let mut parts = paths();
     parts.push(part!("path/address.wgsl"));
-    parts.extend(light_search(structure, exclude_by));
+    parts.extend(light_search(structure));
     parts.push(part!("studio/hide.wgsl"));
     parts
 }
 
 /// The parts that find whether a light is hidden from a surface.
-pub(super) fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
-    let mut parts = sampled_search(structure, excluded_parts(exclude_by));
+pub(super) fn light_search(structure: Structure) -> Vec<Part> {
+    let mut parts = sampled_search(structure, excluded_parts());
     parts.push(part!("studio/hidden_light.wgsl"));
     parts
 }
 
 /// The parts that take directions by chance, and find what is along them. `excluded` are those that exclude shapes.
-pub(super) fn sampled_search(structure: Structure, excluded: Vec<Part>) -> Vec<Part> {
-    let mut parts = excluded;
+pub(super) fn sampled_search(structure: Structure, excluded: [Part; 2]) -> Vec<Part> {
+    let mut parts = Vec::from(excluded);
     parts.extend([
         part!("accel/spend.wgsl"),
         part!("accel/brick.wgsl"),
@@ -200,7 +190,7 @@ pub(super) fn sampled_search(structure: Structure, excluded: Vec<Part>) -> Vec<P
 
 /// The kernel of studios that computes surfaces from hits.
 pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
-    let mut parts = shading(schedule);
+    let mut parts = shading();
     parts.extend([
         part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
@@ -209,7 +199,7 @@ pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
         part!("studio/faded.wgsl"),
         part!("studio/surface.wgsl"),
     ]);
-    Kernel { entry_point: "surface", parts }
+    Kernel::new("surface", parts).with([schedule.constant()])
 }
 
 /// The kernel of studios that adds the contributions of some lights.
@@ -224,14 +214,14 @@ pub(super) fn illuminate_kernel() -> Kernel {
         part!("studio/reflected.wgsl"),
         part!("studio/illuminate.wgsl"),
     ]);
-    Kernel { entry_point: "illuminate", parts }
+    Kernel::new("illuminate", parts).with([Schedule::Queue.constant()])
 }
 
 /// The kernel of studios that adds ambient light from some directions.
 pub(super) fn gather_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.push(part!("studio/gather.wgsl"));
-    Kernel { entry_point: "gather", parts }
+    Kernel::new("gather", parts).with([Schedule::Queue.constant()])
 }
 
 /// The kernel that shades hits and scatters paths.
@@ -241,7 +231,7 @@ pub(super) fn scatter_kernel(
     sources: Sources,
     sky: SkyKind,
 ) -> Kernel {
-    let mut parts = shading(schedule);
+    let mut parts = shading();
     parts.extend([
         part!("math/sampling.wgsl"),
         part!("math/disk.wgsl"),
@@ -250,12 +240,13 @@ pub(super) fn scatter_kernel(
         part!("scene/emitter.wgsl"),
         part!("path/scatter.wgsl"),
     ]);
-    parts.extend(scattering(materials, sources, sky));
-    Kernel { entry_point: "scatter", parts }
+    parts.extend(scattering(sky));
+    let mode = Mode::Path(materials, sources, sky);
+    Kernel::new("scatter", parts).with(mode.constants()).with([schedule.constant()])
 }
 
 /// The parts that say what becomes of a path at a surface.
-pub(super) fn scattering(materials: Materials, sources: Sources, sky: SkyKind) -> Vec<Part> {
+pub(super) fn scattering(sky: SkyKind) -> Vec<Part> {
     let mut parts = vec![
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
@@ -266,22 +257,15 @@ pub(super) fn scattering(materials: Materials, sources: Sources, sky: SkyKind) -
         part!("path/by_chance.wgsl"),
         part!("path/bounce.wgsl"),
         part!("path/leave.wgsl"),
+        part!("path/choices.wgsl"),
+        part!("path/direct_light.wgsl"),
+        part!("path/medium.wgsl"),
+        part!("path/microfacet.wgsl"),
+        part!("path/bsdf.wgsl"),
+        part!("path/dielectric.wgsl"),
+        part!("path/scatter_light.wgsl"),
+        part!("path/direct.wgsl"),
     ];
-    let mode = Mode::Path(materials, sources, sky);
-    parts.extend([mode.direct_light(), mode.medium()]);
-    match materials {
-        Materials::Matt => parts.push(part!("path/scatter_light.wgsl", "matt")),
-        Materials::Any => parts.extend([
-            part!("path/microfacet.wgsl"),
-            part!("path/bsdf.wgsl"),
-            part!("path/dielectric.wgsl"),
-            part!("path/scatter_light.wgsl", "any"),
-        ]),
-    }
-    parts.push(match sources {
-        Sources::None => part!("path/direct.wgsl", "none"),
-        Sources::Any => part!("path/direct.wgsl", "any"),
-    });
     match sky {
         SkyKind::Plain => parts.push(part!("scene/sky.wgsl", "plain")),
         SkyKind::Image => parts.extend(sky_image()),
@@ -291,32 +275,33 @@ pub(super) fn scattering(materials: Materials, sources: Sources, sky: SkyKind) -
 
 /// The kernel that accumulates samples.
 pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
+    let mut parts = paths();
     parts.extend([
-        mode.direct_light(),
+        part!("path/choices.wgsl"),
+        part!("path/direct_light.wgsl"),
         part!("math/luminance.wgsl"),
         part!("path/film_sums.wgsl"),
         part!("path/accumulate.wgsl"),
     ]);
-    Kernel { entry_point: "accumulate", parts }
+    Kernel::new("accumulate", parts).with(mode.constants()).with([Schedule::Pixels.constant()])
 }
 
 /// The kernel that computes the numbers of workgroups of the next indirect dispatches.
 pub(super) fn advance_kernel() -> Kernel {
-    let mut parts = base(Schedule::Queue);
-    parts.extend([part!("path/advance.wgsl")]);
-    Kernel { entry_point: "advance", parts }
+    let mut parts = base();
+    parts.push(part!("path/advance.wgsl"));
+    Kernel::new("advance", parts)
 }
 
 /// The kernel that sums variances and luminances of pixels.
 pub(super) fn noise_kernel() -> Kernel {
-    let mut parts = base(Schedule::Pixels);
+    let mut parts = base();
     parts.extend([
         part!("math/luminance.wgsl"),
         part!("path/film_sums.wgsl"),
         part!("path/noise.wgsl"),
     ]);
-    Kernel { entry_point: "noise", parts }
+    Kernel::new("noise", parts)
 }
 
 fn sky_image() -> Vec<Part> {
@@ -328,7 +313,15 @@ fn sky_image() -> Vec<Part> {
     ]
 }
 
-pub(super) fn base(schedule: Schedule) -> Vec<Part> {
+/// What kernels have in which every invocation processes a path.
+fn paths() -> Vec<Part> {
+    let mut parts = base();
+    parts.push(part!("path/schedule.wgsl"));
+    parts
+}
+
+/// What all kernels of lit pictures have.
+pub(super) fn base() -> Vec<Part> {
     vec![
         part!("scene/records.wgsl"),
         part!("scene/lighting_records.wgsl"),
@@ -341,12 +334,11 @@ pub(super) fn base(schedule: Schedule) -> Vec<Part> {
         part!("path/departure.wgsl"),
         part!("path/queue.wgsl"),
         part!("primary/schedule.wgsl"),
-        schedule.part(),
     ]
 }
 
-fn shading(schedule: Schedule) -> Vec<Part> {
-    let mut parts = base(schedule);
+fn shading() -> Vec<Part> {
+    let mut parts = paths();
     parts.extend([
         part!("path/address.wgsl"),
         part!("math/trigonometry.wgsl"),
@@ -356,7 +348,7 @@ fn shading(schedule: Schedule) -> Vec<Part> {
 }
 
 fn studio_light() -> Vec<Part> {
-    let mut parts = shading(Schedule::Queue);
+    let mut parts = shading();
     parts.extend([
         part!("math/sampling.wgsl"),
         part!("math/disk.wgsl"),
@@ -400,8 +392,8 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         kernels.extend(cameras.flat_map(|camera| {
             OnePass::ALL.map(|pass| pass.kernel(*camera, structure, exclude_by))
         }));
-        let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
-        kernels.extend(searches.map(|of| of(structure, exclude_by)));
+        kernels.extend(modes.iter().map(|mode| occlude_kernel(structure, exclude_by, *mode)));
+        kernels.extend([shadow_kernel, ambient_kernel].map(|of| of(structure, exclude_by)));
     }
     kernels.extend(super::live::live_kernels());
     kernels.extend(SCHEDULES.map(surface_kernel));

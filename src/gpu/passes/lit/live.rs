@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, BindingType, ComputePipeline, Device};
 
-use super::kernels::{Schedule, base, light_search};
+use super::kernels::{base, light_search};
 use super::one_pass::OnePass;
 use super::passes::LitLayouts;
 use crate::accel::Structure;
@@ -19,7 +19,7 @@ use crate::gpu::scene::shape_ids::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
-    Kernel, camera_parts, color_target, data_layers, part, pipeline, pipeline_with,
+    Kernel, camera_constant, camera_rays, color_target, data_layers, part, pipeline, pipeline_with,
 };
 
 /// The properties in which sets of passes differ.
@@ -66,12 +66,11 @@ pub(in crate::gpu) struct LivePasses {
 
 /// The kernel that traces the rays of a frame.
 pub(in crate::gpu) fn live_kernel(key: LiveKey) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
-    parts.extend(light_search(key.structure, key.exclude_by));
-    // What cameras share is among the parts of lights.
-    let [_, _, camera] = camera_parts(key.camera);
+    let mut parts = base();
+    parts.extend(light_search(key.structure));
+    // The functions that cameras use are among the parts of lights.
+    parts.extend(camera_rays());
     parts.extend([
-        camera,
         part!("camera/film.wgsl"),
         part!("scene/appearance_words.wgsl", "beside-structure"),
         part!("scene/appearance.wgsl"),
@@ -86,19 +85,21 @@ pub(in crate::gpu) fn live_kernel(key: LiveKey) -> Kernel {
         part!("live/records.wgsl"),
         part!("live/light.wgsl"),
         part!("live/trace.wgsl"),
+        part!("studio/catcher.wgsl"),
+        part!("studio/one_ground.wgsl"),
     ]);
-    parts.extend(match key.has_ground {
-        false => vec![part!("studio/one_ground.wgsl", "none")],
-        true => vec![part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")],
-    });
-    Kernel { entry_point: "live", parts }
+    Kernel::new("live", parts).with([
+        camera_constant(key.camera),
+        key.exclude_by.constant(),
+        ("HAS_GROUND", u32::from(key.has_ground)),
+    ])
 }
 
 /// The kernel that averages over frames.
 pub(in crate::gpu) fn reproject_kernel() -> Kernel {
     let parts =
         vec![part!("live/records.wgsl"), part!("live/view.wgsl"), part!("live/reproject.wgsl")];
-    Kernel { entry_point: "reproject", parts }
+    Kernel::new("reproject", parts)
 }
 
 /// The kernel that averages over neighbours and writes the picture.
@@ -110,7 +111,7 @@ pub(in crate::gpu) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel 
         color_target(color),
         data_layers(has_data),
     ];
-    Kernel { entry_point: "show", parts }
+    Kernel::new("show", parts)
 }
 
 /// All kernels of live pictures.

@@ -1,13 +1,13 @@
 //! The kernels that take whole samples of scenes of one brick, each in one dispatch.
 
 use super::kernels::{
-    Materials, Schedule, SkyKind, Sources, base, excluded_parts, excluded_with_light, light_search,
-    sampled_search, scattering,
+    Materials, Mode, SkyKind, Sources, base, excluded_with_light, light_search, sampled_search,
+    scattering,
 };
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
-use crate::gpu::shader::{Kernel, camera_parts, part};
+use crate::gpu::shader::{Kernel, camera_constant, camera_rays, part};
 
 /// The pictures of which one pass takes whole samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -70,13 +70,13 @@ fn studio_kernel(
     exclude_by: ExcludeBy,
     studio: OnePass,
 ) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
-    parts.extend(light_search(structure, exclude_by));
-    parts.extend([part!("camera/filter.wgsl"), part!("camera/film_sample.wgsl")]);
-    // What cameras share is among the parts of lights.
-    let [_, _, camera] = camera_parts(camera);
-    parts.push(camera);
+    let mut parts = base();
+    parts.extend(light_search(structure));
+    // The functions that cameras use are among the parts of lights.
+    parts.extend(camera_rays());
     parts.extend([
+        part!("camera/filter.wgsl"),
+        part!("camera/film_sample.wgsl"),
         part!("scene/appearance_words.wgsl", "beside-structure"),
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
@@ -89,22 +89,18 @@ fn studio_kernel(
         part!("studio/ambient_light.wgsl"),
         part!("studio/one_surface.wgsl"),
         part!("studio/one_pass.wgsl"),
+        part!("path/microfacet.wgsl"),
+        part!("studio/reflected.wgsl"),
+        part!("studio/lamp_light.wgsl"),
+        part!("studio/catcher.wgsl"),
+        part!("studio/one_ground.wgsl"),
     ]);
-    if studio == OnePass::Sharp {
-        parts.push(part!("studio/lamp_light.wgsl", "sharp"));
-    } else {
-        parts.extend([
-            part!("path/microfacet.wgsl"),
-            part!("studio/reflected.wgsl"),
-            part!("studio/lamp_light.wgsl", "any"),
-        ]);
-    }
-    if studio == OnePass::Ground {
-        parts.extend([part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")]);
-    } else {
-        parts.push(part!("studio/one_ground.wgsl", "none"));
-    }
-    Kernel { entry_point: "one_pass", parts }
+    Kernel::new("one_pass", parts).with([
+        camera_constant(camera),
+        exclude_by.constant(),
+        ("IS_SHARP", u32::from(studio == OnePass::Sharp)),
+        ("HAS_GROUND", u32::from(studio == OnePass::Ground)),
+    ])
 }
 
 /// The kernel of paths in one brick.
@@ -115,12 +111,8 @@ fn paths_kernel(
     materials: Materials,
     sources: Sources,
 ) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
-    let excluded = match sources {
-        Sources::None => excluded_parts(exclude_by),
-        Sources::Any => excluded_with_light(exclude_by),
-    };
-    parts.extend(sampled_search(structure, excluded));
+    let mut parts = base();
+    parts.extend(sampled_search(structure, excluded_with_light()));
     parts.extend([
         part!("scene/emitter.wgsl"),
         part!("camera/filter.wgsl"),
@@ -128,17 +120,15 @@ fn paths_kernel(
         part!("scene/appearance_words.wgsl", "beside-structure"),
         part!("math/luminance.wgsl"),
         part!("path/film_sums.wgsl"),
-        part!("path/hit_before.wgsl", "first-brick"),
+        part!("path/first_hit.wgsl"),
+        part!("path/seen_light.wgsl"),
         part!("path/begin_path.wgsl"),
         part!("path/whole_paths.wgsl"),
     ]);
-    // What cameras share is among the other parts.
-    let [_, _, camera] = camera_parts(camera);
-    parts.push(camera);
-    parts.extend(scattering(materials, sources, SkyKind::Plain));
-    parts.push(match sources {
-        Sources::None => part!("path/seen_light.wgsl", "none"),
-        Sources::Any => part!("path/seen_light.wgsl", "any"),
-    });
-    Kernel { entry_point: "whole_paths", parts }
+    // The functions that cameras use are among the other parts.
+    parts.extend(camera_rays());
+    parts.extend(scattering(SkyKind::Plain));
+    Kernel::new("whole_paths", parts)
+        .with(Mode::Path(materials, sources, SkyKind::Plain).constants())
+        .with([camera_constant(camera), exclude_by.constant()])
 }

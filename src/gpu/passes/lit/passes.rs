@@ -205,7 +205,7 @@ impl LitPasses {
                 ShadePasses::Path {
                     scatter: both(&kernel, &groups)?,
                     occlude: build(
-                        kernels::occlude_kernel(occluders, light_exclude_by),
+                        kernels::occlude_kernel(occluders, light_exclude_by, key.mode),
                         &lit_brick,
                     )?,
                 }
