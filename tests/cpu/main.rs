@@ -16,6 +16,8 @@ mod appearance;
 mod arrays;
 #[path = "../support/binary_files/mod.rs"]
 mod binary_files;
+#[path = "../support/cases.rs"]
+mod cases;
 #[path = "../support/damage.rs"]
 mod damage;
 #[path = "../support/seeds/mod.rs"]
@@ -54,6 +56,7 @@ mod pages;
 mod perspective;
 mod pictures;
 mod reference;
+mod refused;
 mod round_cameras;
 mod run_file;
 mod run_file_light;
