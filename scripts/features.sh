@@ -6,5 +6,4 @@ cd "$(dirname "$0")/.."
 for feature in "" annotate color-by csv dcd exr gpu gromacs gsd gzip hdr lammps las mmcif npy parallel pdb ply png run-file scene-file vtk xyz; do
     cargo clippy --locked --quiet -p pinhole --lib --no-default-features --features "$feature" -- -D warnings
 done
-# The slowest tests are left out: they are arithmetic that does not depend on the feature.
-scripts/test.sh --cpu-only --locked -- --skip accused --skip soundness --skip unbiased
+scripts/test.sh --cpu-only --locked
