@@ -32,21 +32,14 @@ pub(crate) fn shortened(text: &str) -> String {
 }
 
 /// The first names, at most `most` of them, with an ellipsis if there are more.
-#[cfg(any(feature = "color-by", feature = "table"))]
+#[cfg(feature = "formats")]
 pub(crate) fn listed(mut names: impl Iterator<Item = String>, most: usize) -> String {
     let shown: Vec<String> = names.by_ref().take(most).collect();
     shown.join(", ") + if names.next().is_some() { ", …" } else { "" }
 }
 
 /// The text without the byte order mark that some editors put before UTF-8.
-#[cfg(any(
-    feature = "csv",
-    feature = "lammps",
-    feature = "mmcif",
-    feature = "pdb",
-    feature = "vtk",
-    feature = "xyz"
-))]
+#[cfg(feature = "formats")]
 pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }

@@ -133,7 +133,6 @@ impl Outputs {
 
     /// Refuses to overwrite an input.
     pub(super) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        profile::check_not_inputs(inputs)?;
         check_not_inputs(self.paths(), inputs)
     }
 

@@ -41,7 +41,6 @@ impl Additions {
     }
 
     /// The factor by which bonds make a sphere of a species smaller, if the user did not choose its radius.
-    #[cfg(feature = "scene-file")]
     pub(crate) fn radius_factor(&self, species: Option<&str>) -> f64 {
         match &self.bonds {
             Some(_) if !self.keeps_radii => bonds::radius_factor(species),

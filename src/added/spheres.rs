@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use crate::image::color::LinearRgb;
 use crate::load::{Labels, Loaded};
 use crate::scene::material::SurfaceProperties;
-#[cfg(feature = "scene-file")]
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors};
@@ -100,7 +99,6 @@ impl Added {
     }
 
     /// Adds the spheres to those that they were made for.
-    #[cfg(feature = "scene-file")]
     pub(crate) fn extend_spheres(&self, all: &mut Vec<Sphere>) {
         for ([x, y, z, radius], look) in self.spheres.iter().zip(self.looks()) {
             let like = match look {

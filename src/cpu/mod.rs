@@ -46,7 +46,7 @@ pub use trace::trace;
 /// Given a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
 /// [`SearchStructure`] and give a reference to it: the picture is the same, to the bit, and soon finished.
 ///
-/// Rows are rendered in parallel with the feature `parallel`; the picture does not depend on it.
+/// Rows are rendered on all cores; the picture does not depend on how many there are.
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.

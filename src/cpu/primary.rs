@@ -67,13 +67,7 @@ pub(super) fn for_rows(
     });
 }
 
-#[cfg(feature = "parallel")]
 fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>) + Sync) {
     use rayon::prelude::*;
     rows.into_par_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
-}
-
-#[cfg(not(feature = "parallel"))]
-fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>)) {
-    rows.into_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
 }

@@ -60,7 +60,7 @@ pub use passes::frame::Frame;
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::RendererOptions;
 pub use passes::targets::{DataTargets, Targets};
-pub use profile::{PassClock, Profile, ProfilePhase, ProfileSpan, ProfileTotal, ProfileTrack};
+pub use profile::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
 #[cfg(not(target_arch = "wasm32"))]

@@ -10,6 +10,7 @@ use pinhole::internals::NO_HIT;
 use pinhole::verify::TracedRay;
 
 use crate::legal_device::{Habit, LegalDevice};
+use crate::support::effort::tries;
 
 /// The error of the length of a direction, in units of 2⁻²³: three roundings of the square, halved; a root, a reciprocal
 /// and a product.
@@ -149,7 +150,8 @@ fn no_hit_of_a_device_that_rounds_as_it_likes_is_outside_of_its_box() {
     let mut random = Rng::with_seed(11);
     // The number of hits, and the largest margin that was needed, in units.
     let (mut hits, mut needed) = (0, 0.0);
-    for _ in 0..120_000 {
+    let cases = tries(120_000);
+    for _ in 0..cases {
         let (ray, sphere) = ray_and_sphere(&mut random);
         let habits = [Habit::Up, Habit::Down, Habit::Random, Habit::Chosen(random.u64(..))];
         for habit in habits {
@@ -163,7 +165,7 @@ fn no_hit_of_a_device_that_rounds_as_it_likes_is_outside_of_its_box() {
         }
     }
     println!("{hits} hits; the largest margin that one of them needs is {needed} u of 128");
-    assert!(hits > 200_000);
+    assert!(hits > cases * 5 / 3, "{hits}");
     // The search is not blind: errors are large, but not as large as all of them together in the proof.
     assert!((16.0..=68.0).contains(&needed), "{needed}");
 }

@@ -7,6 +7,7 @@ use tempfile::TempDir;
 
 use crate::damage::{SLOW, damaged, read_all};
 use crate::seeds;
+use crate::support::effort::tries;
 
 #[test]
 fn every_format_has_good_files() {
@@ -25,11 +26,11 @@ fn every_format_has_good_files() {
 
 #[test]
 fn damaged_files_end_with_spheres_or_one_line() {
-    const EACH: u64 = 400;
+    let each = u64::from(tries(400));
     let folder = TempDir::new().unwrap();
     for format in FORMATS {
         let seeds = seeds::of(format, folder.path());
-        for number in 0..EACH {
+        for number in 0..each {
             let mut random = Rng::with_seed(number);
             let seed = &seeds[number as usize % seeds.len()];
             let other = &seeds[random.usize(0..seeds.len())].bytes;

@@ -48,11 +48,9 @@ fn same_pictures(headless: &'static Headless) {
         let expected =
             headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).unwrap();
         let seen = view.seen();
-        let (unfinished, found) =
-            run(headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL));
+        // How often it returned unfinished depends on how fast the device is.
+        let (_, found) = run(headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL));
         assert!(found.unwrap() == expected, "{}", settings.integrator.name());
-        // It returned for the upload, and for each submission.
-        assert!(unfinished >= 2, "{}: {unfinished}", settings.integrator.name());
     }
 }
 

@@ -4,6 +4,8 @@
 pub(crate) mod appearances;
 pub(crate) mod compare;
 #[allow(dead_code, reason = "each test program uses some of it")]
+pub(crate) mod effort;
+#[allow(dead_code, reason = "each test program uses some of it")]
 pub(crate) mod hosts;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod maps;

@@ -1,7 +1,7 @@
 //! Tests of what ends lit pictures early, on the CPU: a time, a level of noise, and signals.
 
 use std::process::Stdio;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::support::Folder;
 
@@ -58,10 +58,7 @@ fn a_time_gives_at_least_one_sample() {
         let [least, found] = samples(&folder);
         assert!(least >= 1 && found <= most, "{flags}: {least} to {found}");
     }
-    let started = Instant::now();
     folder.run(&format!("{RENDER} --integrator path --time 1s")).succeeded();
-    // The machine may be slow, but all 2^24 samples would take hours.
-    assert!(started.elapsed() < Duration::from_secs(60));
     let [least, most] = samples(&folder);
     assert!(least > 1 && most < 1 << 24, "{least} to {most}");
     // This time is too short for a sample in every pixel.
@@ -79,10 +76,9 @@ fn a_time_gives_at_least_one_sample() {
 #[test]
 fn two_eyes_share_the_time() {
     let folder = folder();
-    let started = Instant::now();
     folder.run(&format!("{RENDER} --stereo side-by-side --separation 0.1 --time 1s")).succeeded();
-    assert!(started.elapsed() < Duration::from_secs(60));
-    assert!(samples(&folder)[0] > 1);
+    let [least, most] = samples(&folder);
+    assert!(least > 1 && most < 1 << 24, "{least} to {most}");
 }
 
 #[test]

@@ -21,7 +21,6 @@ mod path_recording;
 pub(in crate::gpu) mod plan;
 pub(in crate::gpu) mod planning;
 pub(in crate::gpu) mod primary;
-pub(in crate::gpu) mod profiler;
 pub(in crate::gpu) mod profiling;
 pub(in crate::gpu) mod progress;
 pub(in crate::gpu) mod readable_trace;
@@ -49,13 +48,13 @@ use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
-use crate::gpu::headless::profiler::Profiler;
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::profile::Profile;
 use crate::gpu::scene::query_structure;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -75,7 +74,7 @@ pub struct Headless {
     is_indirect: bool,
     is_one_pass: bool,
     faults: Arc<Faults>,
-    profiler: Option<Profiler>,
+    profile: Option<Profile>,
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
     /// be attributed to a render.
     renderers: Turns<Renderers>,
@@ -153,7 +152,6 @@ impl Headless {
         let info =
             AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
         let profile = options.profile.clone();
-        let profiler = profile.map(|profile| Profiler::new(profile, &device, &queue));
         Ok(Self {
             info,
             device,
@@ -162,7 +160,7 @@ impl Headless {
             is_indirect,
             is_one_pass,
             faults,
-            profiler,
+            profile,
             renderers,
             edits,
         })
@@ -190,8 +188,8 @@ impl Headless {
         self.is_indirect
     }
 
-    pub(in crate::gpu) fn profiler(&self) -> Option<&Profiler> {
-        self.profiler.as_ref()
+    pub(in crate::gpu) fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref()
     }
 
     /// Whether one pass takes whole samples where it can.

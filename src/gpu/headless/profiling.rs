@@ -9,36 +9,32 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::tiles::Groups;
-use crate::gpu::profile::{PassClock, ProfilePhase};
+use crate::gpu::profile::ProfilePhase;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 impl Headless {
     /// What notes the passes of one submission.
     pub(in crate::gpu) fn pass_times(&self) -> PassTimes {
-        match self.profiler() {
-            Some(profiler) => PassTimes::new(profiler.stamps(self.device())),
-            None => PassTimes::default(),
-        }
+        self.profile().map_or_else(PassTimes::default, |_| PassTimes::new(None))
     }
 
-    /// Whether every pass is submitted by itself, so that the host's clock can measure it.
+    /// Whether every pass is submitted by itself, so that the host's clock can measure it for a profile.
     pub(in crate::gpu) fn submits_one_by_one(&self) -> bool {
-        self.profiler().is_some_and(|profiler| profiler.clock == PassClock::Host)
+        self.profile().is_some()
     }
 
-    /// Adds the passes of a submission to the profile, see [`Profiler::add`].
-    pub(in crate::gpu) fn note_passes(
-        &self,
-        times: PassTimes,
-        submitted: Instant,
-        began: Instant,
-    ) -> Result<(), GpuError> {
-        self.profiler().map_or(Ok(()), |profiler| profiler.add(times, submitted, began))
+    /// Adds the passes of a submission to the profile, which has just finished. The device may have begun with it at
+    /// `began`.
+    pub(in crate::gpu) fn note_passes(&self, times: &PassTimes, began: Instant) {
+        if let (Some(profile), Some(first)) = (self.profile(), times.names().first()) {
+            let is_one = times.names().iter().all(|name| name == first);
+            profile.add_pass(if is_one { first } else { "several passes" }, began.elapsed());
+        }
     }
 
     /// Begins a phase of the host, if there is a profile.
     pub(in crate::gpu) fn phase(&self, name: &'static str) -> Option<ProfilePhase> {
-        self.profiler().map(|profiler| profiler.profile.phase(name))
+        self.profile().map(|profile| profile.phase(name))
     }
 
     /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and
@@ -61,15 +57,13 @@ impl Headless {
     /// Submits an encoder like [`Headless::run`], and adds its passes to the profile.
     pub(in crate::gpu) async fn run_timed(
         &self,
-        mut encoder: CommandEncoder,
+        encoder: CommandEncoder,
         times: PassTimes,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
-        times.record_copy(&mut encoder);
         let submitted = Instant::now();
-        let submission = self.start(encoder);
-        let mapped: Vec<_> = mapped.iter().copied().chain(times.buffer()).collect();
-        self.wait(&mapped, submission).await?;
-        self.note_passes(times, submitted, submitted)
+        self.run(encoder, mapped).await?;
+        self.note_passes(&times, submitted);
+        Ok(())
     }
 }

@@ -145,8 +145,7 @@ impl Headless {
     fn begin_renderer(&self, renderers: &mut Renderers, key: RendererKey) {
         #[cfg(not(target_arch = "wasm32"))]
         {
-            let profile = self.profiler().map(|profiler| profiler.profile.clone());
-            renderers.begin(self.device(), self.info.device_type, key, profile);
+            renderers.begin(self.device(), self.info.device_type, key, self.profile.clone());
         }
         #[cfg(target_arch = "wasm32")]
         let _ = (renderers, key);

@@ -1,5 +1,5 @@
-//! What is noted of the passes of a submission for a profile: their names and, where the device measures them, when
-//! each began and ended.
+//! What is noted of the passes of a submission: their names, for a profile, and when each began and ended by the device's
+//! clock, for measurements of tracing.
 
 use wgpu::{
     Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, Device, QuerySet, Queue,
@@ -10,7 +10,7 @@ use crate::gpu::error::GpuError;
 /// Number of timestamps of a submission, two for each pass. It is the most that WebGPU allows.
 const STAMPS: u32 = 4096;
 
-/// The passes of a submission. Without a profile nothing is noted.
+/// The passes of a submission. By default nothing is noted.
 #[derive(Debug, Default)]
 pub(in crate::gpu) struct PassTimes {
     is_on: bool,
@@ -99,7 +99,7 @@ impl Stamps {
     pub(in crate::gpu) fn new(device: &Device) -> Self {
         let buffer = |usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole profile"),
+                label: Some("pinhole pass times"),
                 size: u64::from(STAMPS) * 8,
                 usage,
                 mapped_at_creation: false,
@@ -107,7 +107,7 @@ impl Stamps {
         };
         Self {
             queries: device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("pinhole profile"),
+                label: Some("pinhole pass times"),
                 ty: wgpu::QueryType::Timestamp,
                 count: STAMPS,
             }),

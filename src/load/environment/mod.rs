@@ -10,9 +10,7 @@ use std::io::{Cursor, Read, Seek, SeekFrom};
 use crate::light::environment::Environment;
 use crate::load::error::{LoadError, LoadErrorKind};
 
-#[cfg(feature = "exr")]
 mod exr;
-#[cfg(feature = "hdr")]
 mod hdr;
 
 /// The largest number of texels that a file may have: 16,384 × 8192.
@@ -26,26 +24,13 @@ pub const MAX_TEXELS: u64 = 1 << 27;
 /// If the file has neither format, is damaged or too large, or if a texel is not a valid radiance.
 pub fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     if bytes.starts_with(b"#?") {
-        #[cfg(feature = "hdr")]
         return hdr::read(bytes);
-        #[cfg(not(feature = "hdr"))]
-        return Err(not_built("Radiance HDR", "hdr"));
     }
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        #[cfg(feature = "exr")]
         return exr::read(bytes);
-        #[cfg(not(feature = "exr"))]
-        return Err(not_built("OpenEXR", "exr"));
     }
     Err(LoadError::new(
         "this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them",
-    ))
-}
-
-#[cfg(not(all(feature = "exr", feature = "hdr")))]
-fn not_built(format: &str, feature: &str) -> LoadError {
-    LoadError::new(format!(
-        "this file has the format {format}, which this build cannot read; build pinhole with the feature `{feature}`"
     ))
 }
 

@@ -14,11 +14,12 @@ use pinhole::verify::{Certificate, Checker, LitCertificate, LitRecording, Outcom
 use pinhole::{Film, LayerSet, Scene, View};
 
 use crate::any_rounding::{Adversary, Rounding};
+use crate::support::effort::tries;
 use crate::support::random_light::{self, RandomView};
 use crate::{headless, light, paths, scenes, studio, support};
 
-/// The seeds of random lit scenes, and of random studios.
-const SEEDS: std::ops::Range<u64> = 0..10;
+/// How many random lit scenes, and random studios, there are if all run.
+const SEEDS: u32 = 10;
 
 /// The longest side of pictures, which are cut to it.
 const SIDE: u32 = 64;
@@ -97,7 +98,7 @@ pub(crate) fn lit_views() -> Vec<(String, Lazy<RandomView>)> {
         let view = RandomView { scene, camera, film, settings, name: name() };
         views.push((format!("studio::{of}"), Box::new(move || view)));
     }
-    for seed in SEEDS {
+    for seed in 0..u64::from(tries(SEEDS)) {
         views.push((format!("random::paths_{seed}"), Box::new(move || random_light::view(seed))));
         views
             .push((format!("random::studio_{seed}"), Box::new(move || random_light::studio(seed))));

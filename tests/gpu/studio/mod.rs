@@ -14,13 +14,14 @@ use crate::headless;
 use crate::light::scenes::{LitView, studios};
 use crate::lit::{is_found, is_legal, is_violated};
 use crate::replayed;
+use crate::support::effort::tries;
 use crate::support::random_light;
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
 
-/// The seeds of the random scenes, with one test for each.
-const SEEDS: std::ops::Range<u64> = 0..48;
+/// How many random scenes there are if all run, with one test for each.
+const SEEDS: u32 = 48;
 
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
@@ -37,7 +38,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials.push(Trial::test("studio::legal::in_bricks", || {
         legal_in(AccelChoice::List, SMALL_BINDING)
     }));
-    for seed in SEEDS {
+    for seed in 0..u64::from(tries(SEEDS)) {
         trials.push(Trial::test(format!("studio::random::seed_{seed}"), move || random(seed)));
     }
     for fault in faults::all() {

@@ -1,0 +1,15 @@
+//! How much of a heavy campaign runs.
+
+/// The part of heavy campaigns that runs: an eighth, or what the environment variable `PINHOLE_EFFORT` says, above 0 and
+/// at most 1.
+pub(crate) fn effort() -> f64 {
+    let Ok(text) = std::env::var("PINHOLE_EFFORT") else { return 0.125 };
+    let effort = text.parse().unwrap_or(0.0);
+    assert!(effort > 0.0 && effort <= 1.0, "PINHOLE_EFFORT is {text}, not above 0 and at most 1");
+    effort
+}
+
+/// The number of tries of a campaign that tries `full` if all of it runs; at least one.
+pub(crate) fn tries(full: u32) -> u32 {
+    (f64::from(full) * effort()).ceil() as u32
+}
