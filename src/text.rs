@@ -15,6 +15,7 @@ pub fn one_line(text: &str) -> String {
 }
 
 /// The text, shortened to 40 characters and an ellipsis if it is longer, with control characters escaped.
+#[cfg(any(feature = "formats", feature = "run-file"))]
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     let mut shown = String::new();

@@ -317,9 +317,12 @@ fn every_structure_has_its_spheres() {
     assert!(nested > 1, "{nested}");
 }
 
+/// Damages a grid, in which a list ends at an index.
+type Damage = fn(&mut Grid, usize);
+
 #[test]
 fn damage_to_a_grid_is_found() {
-    let damages: [(&str, fn(&mut Grid, usize)); 8] = [
+    let damages: [(&str, Damage); 8] = [
         ("no end of a list", |grid, end| grid.references[end] &= !LAST),
         ("no end of balls", |grid, end| grid.balls[end] &= !LAST),
         ("another sphere", |grid, end| grid.references[end] = LAST),

@@ -63,7 +63,7 @@ pub(super) const STEP_COST: f32 = 12.0;
 
 /// Limits for the size of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridBudget {
+pub(crate) struct GridBudget {
     /// The largest total number of elements of all lists.
     pub listed: usize,
     /// The largest number of cells, of both levels together.

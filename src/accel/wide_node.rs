@@ -12,11 +12,11 @@ use super::extent::Extent;
 use super::slab::NODE_PART;
 
 /// The largest number of spheres in a leaf.
-pub const WIDE_LEAF: usize = 3;
+pub(crate) const WIDE_LEAF: usize = 3;
 
 /// The largest number of levels of a tree, and the size of the kernel's stack. `build` proves that no tree has more; a
 /// walk leaves at most one entry on the stack for each level except the first.
-pub const WIDE_LEVELS: u32 = 16;
+pub(crate) const WIDE_LEVELS: u32 = 16;
 
 /// In the byte of a leaf: the mask of its first sphere, and the position of its count.
 pub(crate) const LEAF_FIRST: u32 = 31;

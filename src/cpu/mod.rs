@@ -9,9 +9,7 @@
 use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
-use crate::render::{
-    Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch,
-};
+use crate::render::{Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch};
 
 mod denoise;
 mod error;

@@ -174,7 +174,7 @@ pub static FORMATS: &[Format] = &[
         has_colors: false,
         z_is_up: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
-        reader: |bytes, options| Ok(super::npy::read(bytes, options.radius)?),
+        reader: |bytes, options| super::npy::read(bytes, options.radius),
         extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
     },
     Format {
@@ -188,8 +188,8 @@ pub static FORMATS: &[Format] = &[
         has_colors: false,
         z_is_up: false,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
-        reader: |bytes, options| Ok(super::npz::read(bytes, options.radius)?),
-        extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
+        reader: |bytes, options| super::npz::read(bytes, options.radius),
+        extra_bytes: |bytes| super::npz::array_bytes(bytes),
     },
     Format {
         name: "csv",

@@ -56,12 +56,6 @@ pub(crate) fn own_colors() -> View {
     View { scene: Scene::from_parts(spheres, appearance).unwrap(), ..view }
 }
 
-/// A view with pixels so small that narrow overlaps are visible.
-pub(crate) fn along_an_axis() -> View {
-    let pose = Pose::looking_along([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
-    view(&random(400, 31), OrthographicCamera::new(pose, [2.4, 2.0]).unwrap(), [768, 640])
-}
-
 pub(crate) fn parallel() -> View {
     let camera =
         OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();

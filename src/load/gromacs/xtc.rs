@@ -93,10 +93,7 @@ impl Header {
             return Ok(Self { atoms, cell, packed: None, bytes: 12 * atoms as u64 });
         }
         let packed = Packed::read(reader, &what).and_then(|packed| {
-            packed
-                .check()
-                .map_err(|message| wrong(start + HEADER_BYTES, message))
-                .map(|()| packed)
+            packed.check().map_err(|message| wrong(start + HEADER_BYTES, message)).map(|()| packed)
         })?;
         let offset = reader.offset;
         let bytes: u64 = match magic {
@@ -106,7 +103,7 @@ impl Header {
         // Not even one bit for each atom: memory depends on their number.
         if atoms as u64 / 8 > bytes {
             return Err(
-                wrong(offset, format!("{bytes} bytes are too few for {atoms} atoms")).into()
+                wrong(offset, format!("{bytes} bytes are too few for {atoms} atoms"))
             );
         }
         Ok(Self { atoms, cell, packed: Some(packed), bytes: bytes.saturating_add(3) / 4 * 4 })

@@ -18,17 +18,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
     let [header] = &*meta.headers else {
-        return Err(kind(format!("{} parts", meta.headers.len())));
+        return Err(kind(&format!("{} parts", meta.headers.len())));
     };
     if header.deep || header.compression != Compression::ZIP16 {
-        return Err(kind(format!("the compression {}", header.compression)));
+        return Err(kind(&format!("the compression {}", header.compression)));
     }
     let channels = &header.channels.list;
     if ["R", "G", "B", "A"]
         .iter()
         .any(|name| !channels.iter().any(|c| c.name == **name && c.sample_type == SampleType::F32))
     {
-        return Err(kind("other channels".into()));
+        return Err(kind("other channels"));
     }
     let Vec2(width, height) = header.layer_size;
     let memory = || no_memory(width, height);
@@ -72,7 +72,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     })
 }
 
-fn kind(found: String) -> LoadError {
+fn kind(found: &str) -> LoadError {
     let written = "one part with R, G, B and A in f32 and ZIP compression";
     LoadError::new(format!("the {FORMAT} file has {found}; this crate writes {written}"))
 }

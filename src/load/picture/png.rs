@@ -21,12 +21,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     let bits = match info.bit_depth {
         BitDepth::Eight => Bits::Eight,
         BitDepth::Sixteen => Bits::Sixteen,
-        other => return Err(kind(format!("samples of {} bits", other as u8))),
+        other => return Err(kind(&format!("samples of {} bits", other as u8))),
     };
     let has_alpha = match info.color_type {
         ColorType::Rgb => false,
         ColorType::Rgba => true,
-        other => return Err(kind(format!("samples of the kind {other:?}"))),
+        other => return Err(kind(&format!("samples of the kind {other:?}"))),
     };
     let memory = || no_memory(width as usize, height as usize);
     let size = reader.output_buffer_size().ok_or_else(memory)?;
@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     })
 }
 
-fn kind(found: String) -> LoadError {
+fn kind(found: &str) -> LoadError {
     let written = "RGB and RGBA with 8 or 16 bits";
     LoadError::new(format!("the {FORMAT} file has {found}; this crate writes {written}"))
 }
