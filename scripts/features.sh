@@ -3,7 +3,7 @@
 # the library and the program built without the feature `gpu`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-for feature in "" annotate color-by csv dcd exr gpu gromacs gsd gzip hdr lammps las mmcif npy parallel pdb ply png run-file scene-file vtk xyz; do
+for feature in "" exr formats gpu png run-file scene-file vtk; do
     cargo clippy --locked --quiet -p pinhole --lib --no-default-features --features "$feature" -- -D warnings
 done
 scripts/test.sh --cpu-only --locked

@@ -109,12 +109,12 @@
 //! ```
 //!
 //! # Features
-//! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, readers and the CPU
-//! reference on all cores. `dcd`, `gromacs`, `gsd`, `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`,
-//! `exr`, `hdr`, `las`, `ply`, `scene-file` and `vtk` are readers and writers, and `gzip` (default) reads compressed
-//! files. `color-by` turns columns into colours, selects by them, and adds bonds and cells; `annotate` draws legends, scale bars and labels.
-//! `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
-//! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
+//! `gpu` (default) is the compute-shader renderer. `formats` (default) reads files of spheres and writes arrays of NumPy, and
+//! `png` (default) writes pictures. `vtk` reads VTK files. `scene-file` reads scene files, turns columns into colours, selects by them, adds
+//! bonds and cells, and draws legends, scale bars and labels. `exr` writes OpenEXR pictures, and
+//! reads environments from OpenEXR and Radiance HDR. `run-file` stores what a device rendered. `all-formats` is all of these but `gpu`. To embed only
+//! the renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package
+//! `pinhole-cli`.
 //!
 //! # Stability
 //! A version that breaks nothing may add fields to settings and options, such as [`RenderSettings`]: write
@@ -133,12 +133,12 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
-#[cfg(feature = "color-by")]
+#[cfg(feature = "scene-file")]
 pub mod added;
-#[cfg(feature = "annotate")]
+#[cfg(feature = "scene-file")]
 pub mod annotate;
 pub mod camera;
-#[cfg(feature = "color-by")]
+#[cfg(feature = "scene-file")]
 pub mod color_by;
 pub mod cpu;
 #[cfg(feature = "scene-file")]
@@ -151,6 +151,7 @@ pub mod image;
 #[doc(hidden)]
 pub mod internals;
 pub mod light;
+#[cfg(feature = "formats")]
 pub mod load;
 mod parallel;
 pub mod range;
@@ -158,7 +159,7 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
-#[cfg(feature = "color-by")]
+#[cfg(feature = "scene-file")]
 pub mod select;
 #[cfg(feature = "scene-file")]
 pub mod style;
@@ -190,7 +191,7 @@ mod pages {
     struct Verify;
     #[doc = include_str!("../docs/conformance.md")]
     struct Conformance;
-    #[cfg(all(feature = "annotate", feature = "pdb", feature = "png"))]
+    #[cfg(all(feature = "scene-file", feature = "png"))]
     #[doc = include_str!("../docs/color.md")]
     struct Color;
 }

@@ -1,7 +1,9 @@
-//! Loops that run on all cores with the feature `parallel`, and on one core without it, with the same results.
+//! Loops that run on all cores where there are threads, with the same results on any number of them.
 
 use std::collections::TryReserveError;
 use std::ops::Range;
+
+use rayon::prelude::*;
 
 /// The number of items that a thread takes at a time: large enough to be worth a task, small enough that short lists
 /// stay on one thread.
@@ -9,13 +11,7 @@ const CHUNK: usize = 1 << 16;
 
 /// The results of `f` for `0..count`, in order.
 pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        (0..count).into_par_iter().map(f).collect()
-    }
-    #[cfg(not(feature = "parallel"))]
-    (0..count).map(f).collect()
+    (0..count).into_par_iter().map(f).collect()
 }
 
 /// The results of `f` for `0..count`, in order, like [`map`], but for cheap results.
@@ -28,13 +24,7 @@ pub(crate) fn try_map<R: Send>(
 ) -> Result<Vec<R>, TryReserveError> {
     let mut list = Vec::new();
     list.try_reserve_exact(count)?;
-    #[cfg(feature = "parallel")]
-    if count > CHUNK {
-        use rayon::prelude::*;
-        list.par_extend((0..count).into_par_iter().with_min_len(CHUNK / 8).map(f));
-        return Ok(list);
-    }
-    list.extend((0..count).map(f));
+    list.par_extend((0..count).into_par_iter().with_min_len(CHUNK / 8).map(f));
     Ok(list)
 }
 
@@ -51,29 +41,17 @@ pub(crate) fn map_parts<T: Send, R: Send>(
     parts: Vec<T>,
     f: impl Fn(T) -> R + Sync + Send,
 ) -> Vec<R> {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        parts.into_par_iter().map(f).collect()
-    }
-    #[cfg(not(feature = "parallel"))]
-    parts.into_iter().map(f).collect()
+    parts.into_par_iter().map(f).collect()
 }
 
 /// Calls `f` with every element of `parts`.
 pub(crate) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync + Send) {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        parts.into_par_iter().for_each(f);
-    }
-    #[cfg(not(feature = "parallel"))]
-    parts.into_iter().for_each(f);
+    parts.into_par_iter().for_each(f);
 }
 
 /// Calls `f` with every item of a slice.
 pub(crate) fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync + Send) {
-    for_each(items.chunks_mut(CHUNK).collect(), |chunk| chunk.iter_mut().for_each(&f));
+    items.par_iter_mut().with_min_len(CHUNK).for_each(f);
 }
 
 /// Runs two tasks, at the same time if they are `large`.
@@ -82,12 +60,7 @@ pub(crate) fn both<A: Send, B: Send>(
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    #[cfg(feature = "parallel")]
-    if large {
-        return rayon::join(first, second);
-    }
-    let _ = large;
-    (first(), second())
+    if large { rayon::join(first, second) } else { (first(), second()) }
 }
 
 /// Splits `0..count` into ranges of at most `size`.

@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::pairs::pairs;
 use super::{AddError, Added, Base, Look, string};
-#[cfg(feature = "table")]
 use crate::load::{Covalent, covalent};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{listed, shortened};
@@ -62,19 +61,6 @@ const SPACING: f64 = 0.4;
 
 /// The most spheres that are added for each sphere, on average, and however few there are.
 const MOST_ADDED: [usize; 2] = [256, 1 << 16];
-
-#[cfg(not(feature = "table"))]
-#[derive(Clone, Copy, PartialEq)]
-struct Covalent {
-    radius: f64,
-    is_hydrogen: bool,
-}
-
-/// Without readers of atoms, nobody knows elements.
-#[cfg(not(feature = "table"))]
-fn covalent(_: &str) -> Option<Covalent> {
-    None
-}
 
 /// The factor by which bonds make a sphere of a species smaller.
 pub(super) fn radius_factor(species: Option<&str>) -> f64 {

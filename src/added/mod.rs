@@ -16,7 +16,6 @@ use std::collections::HashMap;
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::material::SurfaceProperties;
-#[cfg(feature = "scene-file")]
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors};
@@ -87,7 +86,6 @@ impl Additions {
     }
 
     /// The factor by which bonds make a sphere of a species smaller, if the user did not choose its radius.
-    #[cfg(feature = "scene-file")]
     pub(crate) fn radius_factor(&self, species: Option<&str>) -> f64 {
         match &self.bonds {
             Some(_) if !self.keeps_radii => bonds::radius_factor(species),
@@ -184,7 +182,6 @@ impl Added {
     }
 
     /// Adds the spheres to those that they were made for.
-    #[cfg(feature = "scene-file")]
     pub(crate) fn extend_spheres(&self, all: &mut Vec<Sphere>) {
         for ([x, y, z, radius], look) in self.spheres.iter().zip(self.looks()) {
             let like = match look {

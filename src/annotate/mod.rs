@@ -70,8 +70,8 @@ impl From<Label> for Annotation {
 }
 
 /// Whether a translucent panel lies behind an annotation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Panel {
     /// Where the picture behind it is too mixed for black or white text.

@@ -66,7 +66,7 @@ pub enum RenderError {
 /// Given a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
 /// [`SearchStructure`] and give a reference to it: the picture is the same, to the bit, and soon finished.
 ///
-/// Rows are rendered in parallel with the feature `parallel`; the picture does not depend on it.
+/// Rows are rendered on all cores; the picture does not depend on how many there are.
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.
@@ -233,13 +233,7 @@ fn for_rows(
     });
 }
 
-#[cfg(feature = "parallel")]
 fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>) + Sync) {
     use rayon::prelude::*;
     rows.into_par_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
-}
-
-#[cfg(not(feature = "parallel"))]
-fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>)) {
-    rows.into_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
 }

@@ -98,7 +98,7 @@ impl<'a> SearchPlan<'a> {
         }
     }
 
-    /// Builds the structure, on all cores with the feature `parallel`.
+    /// Builds the structure, on all cores.
     ///
     /// # Errors
     /// Returns an error if there is not enough memory for a copy of the spheres.

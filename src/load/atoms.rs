@@ -82,7 +82,6 @@ impl Atoms {
         }
     }
 
-    #[cfg(feature = "pdb")]
     pub(super) fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }

@@ -45,57 +45,45 @@ pub enum LoadError {
         frames: usize,
     },
     /// A line of values cannot be read.
-    #[cfg(feature = "table")]
     #[error(transparent)]
     Line(#[from] super::rows::LineError),
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
     /// A table of text cannot be read.
-    #[cfg(feature = "csv")]
     #[error(transparent)]
     Csv(#[from] super::csv::CsvError),
     /// A file of LAMMPS cannot be read.
-    #[cfg(feature = "lammps")]
     #[error(transparent)]
     Lammps(#[from] super::lammps::LammpsError),
     /// An mmCIF file cannot be read.
-    #[cfg(feature = "mmcif")]
     #[error(transparent)]
     MmCif(#[from] super::mmcif::MmCifError),
     /// A LAS file cannot be read.
-    #[cfg(feature = "las")]
     #[error(transparent)]
     Las(#[from] super::las::LasError),
     /// A binary trajectory cannot be read.
-    #[cfg(feature = "binary")]
     #[error(transparent)]
     Binary(#[from] super::binary::BinaryError),
     /// A trajectory does not go with its topology.
-    #[cfg(feature = "binary")]
     #[error(transparent)]
     Topology(#[from] super::topology::TopologyError),
     /// An `.npy` file cannot be read.
-    #[cfg(feature = "npy")]
     #[error(transparent)]
     Npy(#[from] super::npy::SpheresError),
     /// An `.npz` archive cannot be read.
-    #[cfg(feature = "npy")]
     #[error(transparent)]
     Npz(#[from] super::npz::NpzError),
     /// A PDB file cannot be read.
-    #[cfg(feature = "pdb")]
     #[error(transparent)]
     Pdb(#[from] super::pdb::PdbError),
     /// A PLY file cannot be read.
-    #[cfg(feature = "ply")]
     #[error(transparent)]
     Ply(#[from] super::ply::PlyError),
     /// Raw numbers cannot be read.
     #[error(transparent)]
     Raw(#[from] super::raw::RawError),
     /// A table of points does not make spheres.
-    #[cfg(feature = "table")]
     #[error(transparent)]
     Table(#[from] super::table::TableError),
     /// A VTK XML file cannot be read.
@@ -103,7 +91,6 @@ pub enum LoadError {
     #[error(transparent)]
     Vtk(#[from] super::vtk::VtkError),
     /// An XYZ file cannot be read.
-    #[cfg(feature = "xyz")]
     #[error(transparent)]
     Xyz(#[from] super::xyz::XyzError),
 }

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, OptionError};
 use super::formats::FORMATS;
-#[cfg(feature = "gzip")]
 use super::gzip;
 use super::loaded::Loaded;
 use super::source::{Source, without_gz};
@@ -154,7 +153,6 @@ impl Format {
     /// # Errors
     /// If the file cannot be read.
     pub fn extra_bytes(&self, bytes: &[u8]) -> Result<u64, LoadError> {
-        #[cfg(feature = "gzip")]
         if gzip::starts(bytes) {
             return Ok(gzip::size_hint(bytes));
         }
@@ -167,7 +165,6 @@ impl Format {
     /// If the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
         self.check(options)?;
-        #[cfg(feature = "gzip")]
         if gzip::starts(bytes) {
             return (self.reader)(&gzip::decompressed(bytes)?, options);
         }
@@ -240,14 +237,6 @@ mod tests {
         assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
-    #[cfg(all(
-        feature = "lammps",
-        feature = "mmcif",
-        feature = "npy",
-        feature = "pdb",
-        feature = "ply",
-        feature = "xyz"
-    ))]
     #[test]
     fn content_shows_the_format() {
         for (bytes, name) in [

@@ -9,7 +9,6 @@ use super::trajectory::read_from_memory;
 
 /// All formats that this build can read. No two of them share a name or an extension.
 pub static FORMATS: &[Format] = &[
-    #[cfg(feature = "xyz")]
     Format {
         name: "xyz",
         extensions: &["xyz"],
@@ -24,7 +23,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "xyz")]
     Format {
         name: "extxyz",
         extensions: &["extxyz"],
@@ -39,7 +37,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "pdb")]
     Format {
         name: "pdb",
         extensions: &["pdb", "ent"],
@@ -54,7 +51,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "lammps")]
     Format {
         name: "lammps-dump",
         extensions: &["lammpstrj", "dump"],
@@ -69,7 +65,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::lammps::dump::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "lammps")]
     Format {
         name: "lammps-data",
         extensions: &["data", "lmp"],
@@ -84,7 +79,6 @@ pub static FORMATS: &[Format] = &[
         reader: super::lammps::data::read,
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "mmcif")]
     Format {
         name: "mmcif",
         extensions: &["cif", "mmcif"],
@@ -99,7 +93,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::mmcif::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "las")]
     Format {
         name: "las",
         extensions: &["las"],
@@ -114,7 +107,6 @@ pub static FORMATS: &[Format] = &[
         reader: super::las::read,
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "gsd")]
     Format {
         name: "gsd",
         extensions: &["gsd"],
@@ -129,7 +121,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::gsd::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "dcd")]
     Format {
         name: "dcd",
         extensions: &["dcd"],
@@ -144,7 +135,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::dcd::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "gromacs")]
     Format {
         name: "trr",
         extensions: &["trr"],
@@ -159,7 +149,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::gromacs::TRR, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "gromacs")]
     Format {
         name: "xtc",
         extensions: &["xtc"],
@@ -174,7 +163,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::gromacs::XTC, options),
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "npy")]
     Format {
         name: "npy",
         extensions: &["npy"],
@@ -189,7 +177,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| Ok(super::npy::read(bytes, options.radius)?),
         extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
     },
-    #[cfg(feature = "npy")]
     Format {
         name: "npz",
         extensions: &["npz"],
@@ -204,7 +191,6 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| Ok(super::npz::read(bytes, options.radius)?),
         extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
     },
-    #[cfg(feature = "csv")]
     Format {
         name: "csv",
         extensions: &["csv", "tsv"],
@@ -219,7 +205,6 @@ pub static FORMATS: &[Format] = &[
         reader: super::csv::read,
         extra_bytes: no_extra_bytes,
     },
-    #[cfg(feature = "ply")]
     Format {
         name: "ply",
         extensions: &["ply"],

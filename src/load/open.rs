@@ -7,7 +7,6 @@ use super::error::LoadError;
 use super::format::{Format, Options};
 use super::loaded::Loaded;
 use super::source::Source;
-#[cfg(feature = "gzip")]
 use super::source::without_gz;
 use super::trajectory::Trajectory;
 
@@ -45,7 +44,6 @@ pub fn from_bytes(
 ) -> Result<Loaded, LoadError> {
     let format = match options.format {
         Some(format) => format,
-        #[cfg(feature = "gzip")]
         None if super::gzip::starts(bytes) => {
             let bytes = super::gzip::decompressed(bytes)?;
             return from_bytes(&bytes, without_gz(name.as_ref()), options);
@@ -67,7 +65,6 @@ mod tests {
         assert!(missing.starts_with("no/such/file.xyz: cannot be read: "), "{missing}");
     }
 
-    #[cfg(feature = "xyz")]
     #[test]
     fn the_content_decides_where_the_name_does_not() {
         let xyz = b"1\n\nO 0 0 0\n";

@@ -5,7 +5,6 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "gzip")]
 use super::gzip::{self, Gunzip};
 
 /// How much of a file is read at a time.
@@ -24,16 +23,13 @@ impl<T: BufRead + Seek> Bytes for T {}
 #[derive(Debug)]
 pub(super) enum Source {
     Plain(BufReader<File>),
-    #[cfg(feature = "gzip")]
     Gzip(BufReader<Gunzip<File>>),
 }
 
 impl Source {
     /// Opens a file. It is taken as compressed if its first bytes say so.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
-        #[cfg_attr(not(feature = "gzip"), allow(unused_mut, reason = "nothing is looked at"))]
         let mut plain = BufReader::with_capacity(PIECE, File::open(path)?);
-        #[cfg(feature = "gzip")]
         if gzip::starts(plain.fill_buf()?) {
             plain.rewind()?;
             let gunzip = Gunzip::new(plain.into_inner());
@@ -48,7 +44,6 @@ impl Source {
             Self::Plain(plain) => {
                 Self::Plain(BufReader::with_capacity(SMALL_PIECE, plain.into_inner()))
             }
-            #[cfg(feature = "gzip")]
             gzip => gzip,
         };
         source.rewind()?;
@@ -58,7 +53,6 @@ impl Source {
     fn inner(&mut self) -> &mut dyn Bytes {
         match self {
             Self::Plain(plain) => plain,
-            #[cfg(feature = "gzip")]
             Self::Gzip(gzip) => gzip,
         }
     }

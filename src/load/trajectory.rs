@@ -1,8 +1,4 @@
 //! Files with several frames, of which one at a time is in memory.
-#![cfg_attr(
-    not(all(feature = "gsd", feature = "pdb", feature = "xyz")),
-    allow(dead_code, reason = "some formats with frames are left out")
-)]
 
 use std::fmt;
 use std::io::{self, BufRead, Read as _, SeekFrom};
@@ -298,7 +294,6 @@ impl<'a> LineReader<'a> {
 
     /// Returns the next line without its line end; `None` at the end of the file. Of a line longer than 1 KiB only the
     /// start.
-    #[cfg(feature = "table")]
     pub(super) fn next(&mut self) -> io::Result<Option<&[u8]>> {
         const LONGEST: u64 = 1 << 10;
         self.text.clear();
@@ -327,7 +322,6 @@ impl<'a> LineReader<'a> {
     }
 
     /// Skips lines, and returns how many there were. The last may lack a line end.
-    #[cfg(feature = "table")]
     pub(super) fn skip(&mut self, lines: usize) -> io::Result<usize> {
         const BLOCK: usize = 1 << 13;
         let (mut found, mut is_within) = (0, false);

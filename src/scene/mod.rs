@@ -399,6 +399,7 @@ fn appearance_of(spheres: &[Sphere]) -> Appearance {
 
 impl Colors {
     /// The distinct colours, in the order of first use, and the index of each sphere's colour.
+    #[cfg(feature = "formats")]
     pub(crate) fn distinct(colors: &[LinearRgb]) -> Self {
         Self::of_palette(distinct(colors, |color| keyed(*color)))
     }

@@ -70,7 +70,7 @@ impl SphereArray {
     }
 
     /// A sphere: its centre and radius.
-    #[cfg(any(feature = "binary", feature = "color-by", feature = "table"))]
+    #[cfg(feature = "formats")]
     pub(crate) fn at(&self, index: usize) -> [f64; 4] {
         match self {
             Self::F32(spheres) => spheres[index].map(f64::from),

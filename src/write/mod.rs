@@ -2,7 +2,7 @@
 
 #[cfg(feature = "exr")]
 pub mod exr;
-#[cfg(feature = "npy")]
+#[cfg(feature = "formats")]
 pub mod npy;
 #[cfg(feature = "png")]
 pub mod png;

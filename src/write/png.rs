@@ -2,7 +2,7 @@
 
 use png::{BitDepth, ColorType, Compression, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
 
-#[cfg(feature = "annotate")]
+#[cfg(feature = "scene-file")]
 use crate::annotate::{Annotations, Canvas};
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
@@ -33,7 +33,7 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
 ///
 /// # Errors
 /// Returns the same errors as [`encode`].
-#[cfg(feature = "annotate")]
+#[cfg(feature = "scene-file")]
 pub fn encode_annotated(
     picture: &Image,
     encoding: &Encoding,
@@ -60,7 +60,7 @@ pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError
 ///
 /// # Errors
 /// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
-#[cfg(feature = "annotate")]
+#[cfg(feature = "scene-file")]
 pub fn samples_annotated(
     picture: &Image,
     encoding: &Encoding,

@@ -9,9 +9,7 @@ use std::io::{Cursor, Read, Seek, SeekFrom};
 
 use crate::light::environment::{Environment, EnvironmentError};
 
-#[cfg(feature = "exr")]
 mod exr;
-#[cfg(feature = "hdr")]
 mod hdr;
 
 /// The largest number of texels that a file may have: 16,384 × 8192.
@@ -24,16 +22,6 @@ pub enum EnvironmentFileError {
     /// The file begins with the signature of neither format.
     #[error("this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them")]
     Unknown,
-    /// This build cannot read the format of the file.
-    #[error(
-        "this file has the format {format}, which this build cannot read; build pinhole with the feature `{feature}`"
-    )]
-    NotBuilt {
-        /// Name of the format.
-        format: &'static str,
-        /// The feature of this crate that adds its reader.
-        feature: &'static str,
-    },
     /// The file ends before the image does.
     #[error("the {format} file is incomplete: it ends after {bytes} bytes, before its image does")]
     Truncated {
@@ -88,16 +76,10 @@ pub enum EnvironmentFileError {
 /// If the file has neither format, is damaged or too large, or if a texel is not a valid radiance.
 pub fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     if bytes.starts_with(b"#?") {
-        #[cfg(feature = "hdr")]
         return hdr::read(bytes);
-        #[cfg(not(feature = "hdr"))]
-        return Err(EnvironmentFileError::NotBuilt { format: "Radiance HDR", feature: "hdr" });
     }
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        #[cfg(feature = "exr")]
         return exr::read(bytes);
-        #[cfg(not(feature = "exr"))]
-        return Err(EnvironmentFileError::NotBuilt { format: "OpenEXR", feature: "exr" });
     }
     Err(EnvironmentFileError::Unknown)
 }

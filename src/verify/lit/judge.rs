@@ -163,7 +163,7 @@ pub(in crate::verify) fn along_choices(
     }
 }
 
-/// Judges the samples of all pixels, on all cores with the feature `parallel`. `judge` is called with the index of a pixel.
+/// Judges the samples of all pixels, on all cores. `judge` is called with the index of a pixel.
 pub(in crate::verify) fn judge_pixels(
     count: usize,
     judge: impl Fn(usize, &mut LitCertificate, &mut LegalHits) + Sync,
