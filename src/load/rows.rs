@@ -38,8 +38,6 @@ pub(super) struct Field {
 pub(super) enum Kind {
     Number,
     Text,
-    /// The values are not needed.
-    Skipped,
 }
 
 impl Field {
@@ -116,7 +114,6 @@ impl Rows<'_> {
         let columns = fields.iter().filter_map(|field| match field.kind {
             Kind::Number => Some(TableColumn::numbers(&field.name, numbers.next()?)),
             Kind::Text => Some(TableColumn::labels(&field.name, labels.next()?)),
-            Kind::Skipped => None,
         });
         Ok(columns.collect())
     }
@@ -190,7 +187,6 @@ impl Piece<'_> {
                         self.indices[next_text][row] = labels[next_text].index(value);
                         next_text += 1;
                     }
-                    Kind::Skipped => {}
                 }
             }
             if !self.may_be_longer && values.next().is_some() {
