@@ -29,7 +29,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
     let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
-    report.open_pixels = open_pixels(&checker, &run.recording, &certificate);
+    report.open = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;

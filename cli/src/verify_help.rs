@@ -10,8 +10,10 @@ pub(super) const AFTER_HELP: &str = "The check covers the data on the device and
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
-    wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
-    stages, rectangles (column, row, width and height of what was checked), open (the first stages that are open or \
+    wrong), `violations` (the first hundred: pixel, stage, message), `open` (the first three ties and the first three silhouettes: \
+    pixel, verdict, message), `paths` (only with the integrator `path`: paths, \
+    stages, rectangles (column, row, width and height of what was checked), judged (samples, of_samples, pixels, of_pixels: so many of \
+    so many in the picture, and fraction, of all its samples), open (the first stages that are open or \
     undecided: pixel, sample, surface, stage, is_undecided, legal: of an open search, up to four legal answers), upload, \
     violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
      stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \

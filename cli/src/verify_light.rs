@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::verify_report::LISTED;
-use pinhole::verify::{LitCertificate, LitOpen, LitViolation, StageCounts};
+use pinhole::verify::{LitCertificate, LitOpen, LitShare, LitViolation, StageCounts};
 
 /// The largest number of open searches in the table.
 const LINES: usize = 3;
@@ -21,6 +21,7 @@ pub(super) struct LightReport {
     pub(super) stages: BTreeMap<&'static str, Counts>,
     /// First column and row, width and height of the parts of the film in which samples were checked.
     pub(super) rectangles: Vec<[u32; 4]>,
+    pub(super) judged: Judged,
     pub(super) upload: Option<String>,
     pub(super) violation_count: u64,
     pub(super) violations: Vec<Listed>,
@@ -31,9 +32,6 @@ pub(super) struct LightReport {
     pub(super) line: String,
     /// The first stages with several legal results, and those of which the check says little.
     pub(super) open: Vec<ListedOpen>,
-    /// The stages in the order in which a sample passes through them.
-    #[serde(skip)]
-    pub(super) order: Vec<&'static str>,
 }
 
 impl LightReport {
@@ -48,9 +46,34 @@ impl LightReport {
     pub(super) fn is_without_fault(&self) -> bool {
         self.violation_count == 0 && self.upload.is_none()
     }
+}
 
-    pub(super) fn is_studio(&self) -> bool {
-        self.samples.is_some()
+/// How much of the picture was judged.
+#[derive(Serialize)]
+pub(super) struct Judged {
+    samples: u64,
+    of_samples: u64,
+    pixels: u64,
+    of_pixels: u64,
+    fraction: f64,
+}
+
+impl From<LitShare> for Judged {
+    fn from(share: LitShare) -> Self {
+        let LitShare { samples, of_samples, pixels, of_pixels, .. } = share;
+        Self { samples, of_samples, pixels, of_pixels, fraction: share.fraction() }
+    }
+}
+
+impl Judged {
+    /// The share in words.
+    pub(super) fn words(&self) -> String {
+        let Self { samples, of_samples, pixels, of_pixels, fraction } = self;
+        // Rounded down, so that nothing but all of them is called 100 %.
+        let percent = (fraction * 1e6).floor() / 1e4;
+        format!(
+            "{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)"
+        )
     }
 }
 
@@ -115,9 +138,9 @@ impl From<&LitCertificate> for LightReport {
         Self {
             paths: (!is_studio).then_some(paths),
             samples: is_studio.then_some(paths),
-            order: stages.iter().map(|(name, _)| *name).collect(),
             stages: stages.into_iter().map(|(name, counts)| (name, counts.into())).collect(),
             rectangles: certificate.rectangles.clone(),
+            judged: certificate.share().into(),
             open: certificate.open.iter().map(ListedOpen::from).collect(),
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violation_count: certificate.violation_count,

@@ -1,28 +1,11 @@
 //! The lit picture of a scene in the report of `pinhole verify`. It is not checked.
 
 use anyhow::Result;
-use serde::Serialize;
 
 use super::verify_pictures::{Window, encoded};
 use pinhole::LinearRgb;
 use pinhole::image::color::to_srgb8;
 use pinhole::verify::run_file::ShownPicture;
-
-/// What the page shows of it.
-#[derive(Serialize)]
-pub(super) struct LitFigure {
-    color: String,
-    samples: u32,
-    wanted: u32,
-}
-
-impl LitFigure {
-    /// Draws a part of the picture.
-    pub(super) fn new(shown: &ShownPicture, window: Window) -> Result<Self> {
-        let ShownPicture { samples, wanted, .. } = *shown;
-        Ok(Self { color: drawn(shown, window)?, samples, wanted })
-    }
-}
 
 /// Draws the mean colour of each block of pixels.
 pub(super) fn drawn(

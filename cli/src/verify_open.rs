@@ -1,4 +1,6 @@
-//! The first pixels of a picture by one ray in which several answers are legal, for the page.
+//! The first pixels of a picture by one ray in which several answers are legal.
+
+use serde::Serialize;
 
 use pinhole::verify::{Certificate, Checker, Recording, Verdict, ViolationKind};
 
@@ -6,9 +8,10 @@ use pinhole::verify::{Certificate, Checker, Recording, Verdict, ViolationKind};
 const SHOWN: usize = 3;
 
 /// A pixel with several legal answers.
+#[derive(Serialize)]
 pub(super) struct OpenPixel {
     pub(super) pixel: [u32; 2],
-    pub(super) verdict: Verdict,
+    pub(super) verdict: &'static str,
     /// The answer that was found, and the legal ones.
     pub(super) message: String,
 }
@@ -30,7 +33,7 @@ pub(super) fn open_pixels(
             let message = ViolationKind::Hit { id: pixel.id, t: pixel.t, legal }.to_string();
             // The sides of a film are u32.
             let pixel = [(index % width) as u32, (index / width) as u32];
-            Some(OpenPixel { pixel, verdict, message })
+            Some(OpenPixel { pixel, verdict: verdict.name(), message })
         })
     };
     of(Verdict::Tie).chain(of(Verdict::Silhouette)).collect()

@@ -1,4 +1,4 @@
-//! Draws the pictures of a report: colours, depths and verdicts of a recording, and the pixels around a violation.
+//! Draws the pictures of a report: colours, depths and verdicts of a recording.
 
 use anyhow::Result;
 
@@ -12,14 +12,11 @@ use rayon::prelude::*;
 /// Longest side of a picture in the report, in pixels.
 const LONGEST: u32 = 2048;
 
-/// Width and height of the part of the picture that is shown around a violation, in pixels.
-const CROP: u32 = 16;
-
 /// Colour of misses in the picture of depths.
-pub(super) const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
+const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
 
 /// Colour of pixels in which the hit of a sphere is the only legal answer.
-pub(super) const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
+const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
 /// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in
 /// greyscale and for people with red-green colour blindness (after Okabe and Ito).
@@ -50,15 +47,6 @@ impl Window {
     pub(super) fn whole(size: [u32; 2]) -> Self {
         let step = size[0].max(size[1]).div_ceil(LONGEST);
         Self { first: [0, 0], size, step }
-    }
-
-    /// Makes a window of the pixels around a pixel.
-    pub(super) fn around(pixel: [u32; 2], film: [u32; 2]) -> Self {
-        let size = film.map(|side| side.min(CROP));
-        let first = |axis: usize| {
-            pixel[axis].saturating_sub(CROP / 2).min(film[axis].saturating_sub(size[axis]))
-        };
-        Self { first: [first(0), first(1)], size, step: 1 }
     }
 
     /// Returns the width and height of the drawn picture.
@@ -146,7 +134,7 @@ impl<'a> Pictures<'a> {
 }
 
 /// Returns the colour of a depth from 0 (nearest, bright) to 1 (farthest, dark).
-pub(super) fn depth_color(part: f64) -> [u8; 3] {
+fn depth_color(part: f64) -> [u8; 3] {
     let color = colorous::VIRIDIS.eval_continuous(1.0 - part.clamp(0.0, 1.0));
     [color.r, color.g, color.b]
 }
@@ -189,18 +177,6 @@ pub(super) fn encoded(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_window_around_a_pixel_stays_within_the_film() {
-        let window = |pixel, film| {
-            let Window { first, size, .. } = Window::around(pixel, film);
-            (first, size)
-        };
-        assert_eq!(window([0, 99], [100, 100]), ([0, 84], [16, 16]));
-        assert_eq!(window([50, 50], [100, 100]), ([42, 42], [16, 16]));
-        assert_eq!(window([0, 0], [1, 1]), ([0, 0], [1, 1]));
-        assert_eq!(window([2, 19], [3, 20]), ([0, 4], [3, 16]));
-    }
 
     #[test]
     fn large_pictures_are_made_smaller() {

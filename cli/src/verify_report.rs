@@ -49,9 +49,8 @@ pub(super) struct Report {
     /// The certificate as a table of text.
     #[serde(skip)]
     table: String,
-    /// The first pixels with several legal answers, for the page.
-    #[serde(skip)]
-    pub(super) open_pixels: Vec<OpenPixel>,
+    /// The first pixels with several legal answers.
+    pub(super) open: Vec<OpenPixel>,
 }
 
 #[derive(Serialize)]
@@ -138,7 +137,7 @@ impl Report {
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
             table: certificate.to_string(),
-            open_pixels: Vec::new(),
+            open: Vec::new(),
         }
     }
 
@@ -150,18 +149,13 @@ impl Report {
     /// Returns the verdict on one line.
     pub(super) fn verdict(&self) -> String {
         match (self.legal, &self.upload, self.count(Verdict::Violation)) {
-            (true, ..) if self.paths.is_some() => {
-                "legal: every pixel by one ray, and every path, is as a conforming device may have made it"
-                    .to_owned()
-            }
-            (true, ..) if self.studio.is_some() => {
-                "legal: every pixel by one ray, and every sample of its light, is as a conforming device may have made \
-                 it"
-                    .to_owned()
-            }
-            (true, ..) => {
-                "legal: every pixel is as a conforming device may have made it".to_owned()
-            }
+            (true, ..) => match self.light() {
+                Some(light) => format!(
+                    "legal: every pixel by one ray, and {}, are as a conforming device may have made them",
+                    light.judged.words()
+                ),
+                None => "legal: every pixel is as a conforming device may have made it".to_owned(),
+            },
             (false, ..) if self.outcome == Outcome::Undecided.name() => {
                 "undecided: no violation was found, but too many answers could be others".to_owned()
             }

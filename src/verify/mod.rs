@@ -73,7 +73,8 @@ pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use lit::{
-    LitCertificate, LitInputs, LitOpen, LitStage, LitUploadError, LitViolation, StageCounts,
+    LitCertificate, LitInputs, LitOpen, LitShare, LitStage, LitUploadError, LitViolation,
+    StageCounts,
 };
 #[cfg(feature = "gpu")]
 pub(crate) use lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};

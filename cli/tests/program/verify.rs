@@ -42,7 +42,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
     let provenance = Provenance {
         version: text("0.1.0"),
         command: text("pinhole verify <b>.toml"),
-        adapter: text("By <i>hand</i> & \u{1b}[31m"),
+        adapter: text("By </script><i>hand</i> & \u{1b}[31m"),
         structure: text("list"),
         ..Provenance::default()
     };
@@ -76,7 +76,7 @@ fn a_replay_needs_no_adapter() {
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
     let table = String::from_utf8(run.stdout).unwrap();
     for line in [
-        "adapter: By <i>hand</i> & \\u{1b}[31m (, ), driver:",
+        "adapter: By </script><i>hand</i> & \\u{1b}[31m (, ), driver:",
         "scene: 0 spheres, 0 bytes, sha256 e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
         "picture: 3x2, orthographic camera",
         "structure: list",
@@ -89,7 +89,7 @@ fn a_replay_needs_no_adapter() {
 
     let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
     assert_eq!(json["version"], "0.1.0");
-    assert_eq!(json["adapter"]["name"], "By <i>hand</i> & \u{1b}[31m");
+    assert_eq!(json["adapter"]["name"], "By </script><i>hand</i> & \u{1b}[31m");
     assert_eq!(json["scene"]["spheres"], 0);
     assert_eq!(json["picture"]["width"], 3);
     assert_eq!(json["counts"]["decided"], 6);
@@ -102,17 +102,27 @@ fn a_replay_needs_no_adapter() {
     }
 }
 
+/// The data in a page.
+fn data_of(page: &str) -> serde_json::Value {
+    let (_, data) = page.split_once("type=\"application/json\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
+}
+
 #[test]
 fn the_page_needs_no_other_files_and_escapes_foreign_text() {
     let folder = folder();
     folder.run("verify --replay run --report a").succeeded();
     let page = String::from_utf8(folder.read("a/report.html")).unwrap();
-    assert!(page.contains("<h1>Legal</h1>"), "{page}");
-    assert!(page.contains("By &lt;i&gt;hand&lt;&#x2f;i&gt; &amp;"), "{page}");
-    assert!(page.contains("pinhole verify &lt;b&gt;.toml"), "{page}");
-    assert!(page.contains("pinhole verify --replay run"), "{page}");
-    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 3);
-    for outside in ["http:", "https:", "src=\"/", "url(", "@import", "<script", "<link"] {
+    let data = data_of(&page);
+    assert_eq!(data["verdict"], "legal: every pixel is as a conforming device may have made it");
+    assert_eq!(data["report"]["adapter"]["name"], "By </script><i>hand</i> & \u{1b}[31m");
+    assert_eq!(data["report"]["command"], "pinhole verify <b>.toml");
+    assert_eq!(data["run_file"], "run");
+    assert_eq!(page.matches("data:image/png;base64,").count(), 3);
+    // Two scripts, the data and what shows them, and no foreign text outside of the data.
+    assert_eq!(page.matches("<script").count(), 2);
+    assert_eq!(page.matches("</script").count(), 2);
+    for outside in ["http:", "https:", "src=", "url(", "@import", "<link", "innerHTML", "<i>"] {
         assert!(!page.contains(outside), "{outside}");
     }
     // The folder and the page exist already.
@@ -138,8 +148,8 @@ fn a_violation_gives_exit_code_3_and_all_files() {
     assert_eq!(violations[31]["stage"], "color");
     assert_eq!(violations[31]["message"], "red is 1.0; legal is 0.0");
     let page = String::from_utf8(folder.read("a/report.html")).unwrap();
-    assert!(page.contains("<h1>Not legal</h1>") && page.contains("The first 12 of 600"), "{page}");
-    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 3 + 2 * 12);
+    assert_eq!(data_of(&page)["report"], json);
+    assert_eq!(data_of(&page)["verdict"], "NOT legal: 600 violations");
 
     let run = folder.run("verify --replay other-view --json b.json --report b");
     assert_eq!(run.code, 3, "{}", run.stderr);
@@ -148,7 +158,8 @@ fn a_violation_gives_exit_code_3_and_all_files() {
     let json: serde_json::Value = serde_json::from_slice(&folder.read("b.json")).unwrap();
     assert!(json["upload"].as_str().unwrap().contains("vector right"));
     let page = String::from_utf8(folder.read("b/report.html")).unwrap();
-    assert!(page.contains("no pixel was judged"), "{page}");
+    let data = data_of(&page);
+    assert_eq!((&data["report"], &data["pictures"]["verdicts"]), (&json, &().into()));
 }
 
 #[track_caller]

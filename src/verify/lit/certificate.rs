@@ -166,6 +166,10 @@ pub struct LitCertificate {
     pub open: Vec<LitOpen>,
     /// First column and row, width and height of the rectangles of the film in which samples were taken.
     pub rectangles: Vec<[u32; 4]>,
+    /// The number of pixels of the film.
+    pub film_pixels: u64,
+    /// The number of samples of each pixel that the settings ask for.
+    pub film_samples: u32,
     /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
     pub upload: Option<LitUploadError>,
     /// How far the numbers of decided stages are from the middle of their bounds.
@@ -174,7 +178,64 @@ pub struct LitCertificate {
     pub is_studio: bool,
 }
 
+/// How much of a lit picture was judged: so many samples of so many of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LitShare {
+    /// The number of samples that were judged of each of the pixels.
+    pub samples: u64,
+    /// The number of samples of each pixel of the picture.
+    pub of_samples: u64,
+    /// The number of pixels of which samples were judged.
+    pub pixels: u64,
+    /// The number of pixels of the picture.
+    pub of_pixels: u64,
+}
+
+impl LitShare {
+    /// The fraction of the picture's samples that were judged, from 0 to 1.
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        let of = |part: u64, all: u64| part as f64 / all.max(1) as f64;
+        of(self.samples, self.of_samples) * of(self.pixels, self.of_pixels)
+    }
+}
+
+/// The number of pixels in rectangles that may overlap.
+fn covered(rectangles: &[[u32; 4]]) -> u64 {
+    let rows = rectangles.iter().flat_map(|[_, y, _, height]| *y..y.saturating_add(*height));
+    let rows: std::collections::BTreeSet<u32> = rows.collect();
+    let in_row = |row: u32| {
+        let here = rectangles.iter().filter(|[_, y, _, height]| row >= *y && row - y < *height);
+        let mut spans: Vec<_> =
+            here.map(|[x, _, width, _]| (*x, x.saturating_add(*width))).collect();
+        spans.sort_unstable();
+        let mut end = 0;
+        spans.into_iter().fold(0_u64, |sum, (first, last)| {
+            let new = last.saturating_sub(first.max(end));
+            end = end.max(last);
+            sum + u64::from(new)
+        })
+    };
+    rows.into_iter().map(in_row).sum()
+}
+
 impl LitCertificate {
+    /// How much of the picture was judged. Of each rectangle as many samples were recorded; more samples than the picture
+    /// has count as all of them.
+    #[must_use]
+    pub fn share(&self) -> LitShare {
+        let area = |[_, _, width, height]: &[u32; 4]| u64::from(*width) * u64::from(*height);
+        let recorded: u64 = self.rectangles.iter().map(area).sum();
+        let of_samples = u64::from(self.film_samples);
+        LitShare {
+            samples: (self.paths / recorded.max(1)).min(of_samples),
+            of_samples,
+            pixels: covered(&self.rectangles),
+            of_pixels: self.film_pixels,
+        }
+    }
+
     /// The sum of the counts of all stages.
     #[must_use]
     pub fn stages(&self) -> StageCounts {
@@ -256,5 +317,31 @@ impl fmt::Display for LitCertificate {
             write!(f, "; first: {first}")?;
         }
         self.deviations.biased().try_for_each(|biased| write!(f, "; biased: {biased}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_in_two_rectangles_count_once() {
+        assert_eq!(covered(&[[2, 1, 4, 3]]), 12);
+        assert_eq!(covered(&[[2, 1, 4, 3], [4, 2, 4, 3]]), 20);
+        assert_eq!(covered(&[[2, 1, 4, 3], [3, 1, 1, 1], [9, 9, 1, 1]]), 13);
+        let rectangles = vec![[2, 1, 4, 3], [4, 2, 4, 3]];
+        let certificate = LitCertificate {
+            paths: 48,
+            rectangles,
+            film_pixels: 100,
+            film_samples: 16,
+            ..LitCertificate::default()
+        };
+        let share = certificate.share();
+        assert_eq!((share.samples, share.pixels), (2, 20));
+        assert!((share.fraction() - 0.025).abs() < 1e-12, "{share:?}");
+        // More samples than the picture has.
+        let share = LitCertificate { paths: 4800, ..certificate }.share();
+        assert_eq!((share.samples, share.pixels), (16, 20));
     }
 }

@@ -66,6 +66,8 @@ impl LitCertificate {
         let new = part.rectangles.into_iter().filter(|new| !self.rectangles.contains(new));
         let new: Vec<_> = new.collect();
         self.rectangles.extend(new);
+        self.film_pixels = self.film_pixels.max(part.film_pixels);
+        self.film_samples = self.film_samples.max(part.film_samples);
         let room = KEPT.saturating_sub(self.violations.len());
         self.violations.extend(part.violations.into_iter().take(room));
     }

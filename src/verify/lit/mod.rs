@@ -23,6 +23,6 @@ pub(super) mod upload;
 pub(super) mod vertex;
 pub(super) mod warp;
 
-pub use certificate::{LitCertificate, LitOpen, LitStage, LitViolation, StageCounts};
+pub use certificate::{LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts};
 pub use recording::{LitInputs, PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
 pub use upload::LitUploadError;

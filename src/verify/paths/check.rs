@@ -35,6 +35,8 @@ impl Checker<'_> {
             .err();
         let mut certificate = LitCertificate {
             upload,
+            film_pixels: given.film.pixel_count(),
+            film_samples: given.settings.sampling.samples,
             rectangles: vec![given.rectangle()],
             ..LitCertificate::default()
         };

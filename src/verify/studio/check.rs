@@ -45,6 +45,8 @@ impl Checker<'_> {
             .err();
         let mut certificate = LitCertificate {
             upload,
+            film_pixels: given.film.pixel_count(),
+            film_samples: given.settings.sampling.samples,
             is_studio: true,
             rectangles: vec![given.rectangle()],
             ..LitCertificate::default()
