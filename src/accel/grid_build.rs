@@ -31,7 +31,12 @@ pub(crate) struct BuiltGrid {
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
 #[must_use]
-pub(crate) fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget: GridBudget) -> BuiltGrid {
+pub(crate) fn build_grid(
+    spheres: &[[f32; 4]],
+    ids: &[u32],
+    margin: f32,
+    budget: GridBudget,
+) -> BuiltGrid {
     let (own, (min, max)) = gather(spheres, ids, margin);
     let mut cells = first_level(&own, (min, max), budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.

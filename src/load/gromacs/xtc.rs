@@ -102,9 +102,7 @@ impl Header {
         };
         // Not even one bit for each atom: memory depends on their number.
         if atoms as u64 / 8 > bytes {
-            return Err(
-                wrong(offset, format!("{bytes} bytes are too few for {atoms} atoms"))
-            );
+            return Err(wrong(offset, format!("{bytes} bytes are too few for {atoms} atoms")));
         }
         Ok(Self { atoms, cell, packed: Some(packed), bytes: bytes.saturating_add(3) / 4 * 4 })
     }
