@@ -16,7 +16,7 @@ mod divide;
 mod divide_by_sample;
 mod extent;
 pub(crate) mod grid;
-pub(crate) mod grid_build;
+mod grid_build;
 mod grid_dense;
 mod grid_empty;
 mod grid_lists;

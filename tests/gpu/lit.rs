@@ -2,48 +2,23 @@
 
 use libtest_mimic::Failed;
 use pinhole::gpu::Headless;
-use pinhole::verify::{LitCertificate, LitStage, Outcome};
+use pinhole::verify::{LitCertificate, Outcome};
 
 use crate::light::scenes::LitView;
-use crate::planted::faulty;
-
-/// A shader edit that is a fault, with a view in which it is visible, and the stage in which it must be found.
-#[derive(Clone, Copy)]
-pub(crate) struct Fault {
-    pub(crate) name: &'static str,
-    stage: LitStage,
-    view: fn() -> LitView,
-    file: &'static str,
-    find: &'static str,
-    replace: &'static str,
-}
-
-/// A fault as a row of a table: its name, stage, view, file, and the text that is replaced by another.
-pub(crate) type Row =
-    (&'static str, LitStage, fn() -> LitView, &'static str, &'static str, &'static str);
-
-pub(crate) fn faults<'a>(tables: &'a [&'a [Row]]) -> impl Iterator<Item = Fault> + 'a {
-    tables.iter().copied().flatten().map(|&(name, stage, view, file, find, replace)| Fault {
-        name,
-        stage,
-        view,
-        file,
-        find,
-        replace,
-    })
-}
+use crate::planted::{Fault, named};
 
 /// Asserts that the fault is found in the stage in which it was inserted.
 pub(crate) fn is_found(
     fault: &Fault,
+    views: &[(&str, fn() -> LitView)],
     certify: impl Fn(&Headless, &LitView) -> Result<LitCertificate, Failed>,
 ) -> Result<(), Failed> {
-    let view = (fault.view)();
-    let certificate = certify(&faulty(fault.file, fault.find, fault.replace)?, &view)?;
+    let [view, stage] = fault.setup();
+    let certificate = certify(&fault.device()?, &named(views, view)())?;
     println!("{certificate}");
     match certificate.violations.first() {
         None => Err(format!("the fault was not found: {certificate}").into()),
-        Some(first) if first.stage != fault.stage => {
+        Some(first) if format!("{:?}", first.stage) != stage => {
             Err(format!("elsewhere: {certificate}").into())
         }
         Some(_) => Ok(()),

@@ -21,7 +21,6 @@ mod denoised;
 mod device;
 mod device_shape;
 mod embedding;
-mod faults;
 mod film_parts;
 mod host;
 mod lens;
@@ -69,6 +68,7 @@ fn main() {
             structures::trials(),
             studio::trials(),
             plan::trials(),
+            vec![planted::trial()],
             profile::trials(),
             ray_query::trials(),
             self_test::trials(),

@@ -1,7 +1,7 @@
 //! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::accel::{Accel, AccelPlan};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{Decision, Headless};
@@ -10,8 +10,7 @@ use pinhole::verify::conformance::{Answers, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
 use pinhole::{Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere};
 
-use crate::faults::{self, Fault, How, LIST};
-use crate::planted::faulty;
+use crate::planted::{self, Fault, named, planted};
 use crate::support::View;
 use crate::verify_views as views;
 use crate::{headless, scenes};
@@ -33,15 +32,9 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(format!("verify::certified::{name}"), move || certified(&view)));
     }
     trials.push(Trial::test("verify::faults::none_without_one", none_without_one));
-    for fault in faults::all() {
-        let name = format!("verify::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || is_found(&fault)));
-    }
-    for (name, view, replace) in RENDER_FAULTS {
-        trials.push(Trial::test(format!("verify::faults::render_{name}"), move || {
-            fault_of_render_is_found(*view, replace)
-        }));
-    }
+    trials.extend(planted::trials("verify::faults::", planted("primary"), is_found));
+    let group = "verify::faults::render_";
+    trials.extend(planted::trials(group, planted("render"), fault_of_render_is_found));
     for (name, spoil) in INPUT_FAULTS {
         trials.push(Trial::test(format!("verify::faults::input_{name}"), move || {
             input_fault_is_found(*spoil)
@@ -49,6 +42,27 @@ pub(crate) fn trials() -> Vec<Trial> {
     }
     trials
 }
+
+/// The structure in which a fault is tested.
+#[derive(Clone, Copy)]
+struct How {
+    choice: AccelChoice,
+    binding_bytes: u64,
+}
+
+const fn how(choice: AccelChoice) -> How {
+    How { choice, binding_bytes: 1 << 27 }
+}
+
+const LIST: How = how(AccelChoice::List);
+
+const STRUCTURES: &[(&str, How)] = &[
+    ("list", LIST),
+    ("grid", how(AccelChoice::Grid)),
+    ("tree", how(AccelChoice::Tree)),
+    // A size of bindings so small that there are several bricks.
+    ("bricks", How { binding_bytes: 16 * 100, ..LIST }),
+];
 
 /// Scenes in which rounding decides what many pixels show: cameras on a surface, and rays along surfaces.
 const UNDECIDED: [&str; 4] =
@@ -105,29 +119,34 @@ fn certify(view: &View, recording: &Recording) -> Certificate {
     Checker::new(&view.scene).unwrap().certify(recording)
 }
 
+/// The view in which a fault is visible, and the structure in which it is tested.
+fn view_of(fault: &Fault) -> (View, How) {
+    let [view, how] = fault.setup();
+    (named(views::ALL, view)(), named(STRUCTURES, how))
+}
+
 /// The views in which faults are inserted are legal without them.
 fn none_without_one() -> Result<(), Failed> {
-    let mut seen: Vec<(fn() -> View, How)> = Vec::new();
-    for Fault { view, how, name, .. } in faults::all() {
-        if seen.iter().any(|(v, h)| std::ptr::fn_addr_eq(*v, view) && *h == how) {
+    let mut seen = Vec::new();
+    for fault in planted("primary") {
+        if seen.contains(&fault.setup) {
             continue;
         }
-        seen.push((view, how));
-        let view = view();
+        let (view, how) = view_of(&fault);
         let certificate = certify(&view, &record(headless()?, &view, how)?);
         if !certificate.is_legal() {
-            return Err(format!("{name}, without the fault: {certificate}").into());
+            return Err(format!("{}, without the fault: {certificate}", fault.name).into());
         }
+        seen.push(fault.setup);
     }
     Ok(())
 }
 
 fn is_found(fault: &Fault) -> Result<(), Failed> {
-    let view = (fault.view)();
-    let faulty = faulty(fault.file, fault.find, fault.replace)?;
-    let certificate = certify(&view, &record(&faulty, &view, fault.how)?);
+    let (view, how) = view_of(fault);
+    let certificate = certify(&view, &record(&fault.device()?, &view, how)?);
     found(&certificate).map_err(|error| {
-        let structure = build(&view.scene, fault.how).structure().name();
+        let structure = build(&view.scene, how).structure().name();
         format!("in the structure {structure}: {error:?}").into()
     })
 }
@@ -139,34 +158,11 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A fault: its name, a view in which it is visible, and the replacement of a statement.
-pub(crate) type RenderFault = (&'static str, fn() -> View, &'static str);
-
-/// Faults that replace the statement `return make_entry(pixel_in_tile);` in kernels that keep no rays.
-pub(crate) const RENDER_FAULTS: &[RenderFault] = &[
-    ("shifted_by_a_pixel", views::balls, "return make_entry(pixel_in_tile + vec2u(1u, 0u));"),
-    (
-        "origin_off_by_a_hundred_thousandth",
-        views::inside,
-        "var entry = make_entry(pixel_in_tile); entry.ray.origin += vec3f(1e-5); return entry;",
-    ),
-    (
-        "distance_forgotten",
-        views::balls,
-        "var entry = make_entry(pixel_in_tile); entry.distance = 0.0; return entry;",
-    ),
-    (
-        "half_of_the_picture_empty",
-        views::balls,
-        "var entry = make_entry(pixel_in_tile); entry.is_inside = entry.is_inside && \
-         pixel_in_tile.x < 48u; return entry;",
-    ),
-];
-
 /// A fault that only affects pictures without a recording.
-fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Failed> {
-    let faulty = faulty("primary/entry.wgsl#made", "return make_entry(pixel_in_tile);", replace)?;
-    let view = view();
+fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
+    let faulty = fault.device()?;
+    let [view] = fault.setup();
+    let view = named(views::ALL, view)();
     let alone = certify(&view, &record(&faulty, &view, LIST)?);
     if !alone.is_legal() || alone.rendered_otherwise.is_some() {
         return Err(format!("the recording has the fault as well:\n{alone}").into());

@@ -8,6 +8,22 @@ use pinhole::{Appearance, Film, LinearRgb, Scene, Shading, Sphere, SphereArray};
 use crate::support::spheres;
 use crate::support::{View, shaded};
 
+pub(crate) const ALL: &[(&str, fn() -> View)] = &[
+    ("balls", balls),
+    ("own_colors", own_colors),
+    ("parallel", parallel),
+    ("lens", lens),
+    ("around", around),
+    ("disk", disk),
+    ("inside", inside),
+    ("behind", behind),
+    ("lattice", lattice),
+    ("clusters", clusters),
+    ("far_clusters", far_clusters),
+    ("copies", copies),
+    ("two_tiles", two_tiles),
+];
+
 fn colored(center: [f64; 3], radius: f64, i: usize) -> Sphere {
     let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
     let color = LinearRgb::new([level(3), level(5), level(7)]).unwrap();

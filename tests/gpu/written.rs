@@ -9,12 +9,10 @@ use pinhole::verify::{Checker, Outcome};
 use pinhole::write::png;
 use pinhole::{Encoding, Image, LayerSet, cpu};
 
-use crate::faults::Fault;
 use crate::light::scenes::{self as light, LitView};
-use crate::planted::faulty;
+use crate::planted::{self, Fault, named, planted};
 use crate::support::View;
-use crate::verify::RENDER_FAULTS;
-use crate::{faults, headless, scenes};
+use crate::{headless, scenes, verify_views};
 
 /// Faults of layers that are not in the picture.
 const OF_LAYERS: [&str; 5] = [
@@ -51,23 +49,16 @@ pub(crate) fn trials() -> Vec<Trial> {
             }
         }));
     }
-    for (name, view, replace) in RENDER_FAULTS.iter().filter(|fault| is_visible(fault.0)) {
-        let find = "return make_entry(pixel_in_tile);";
-        trials.push(Trial::test(format!("written::faults::render_{name}"), move || {
-            is_found(&faulty("primary/entry.wgsl#made", find, replace)?, &view())
-        }));
-    }
-    let of_color = |fault: &Fault| {
-        fault.file.starts_with("primary/shad")
-            && !fault.file.contains('#')
-            && is_visible(fault.name)
+    let is_seen = |fault: &Fault| is_visible(fault.name);
+    let is_of_color = |fault: &Fault| {
+        let file = &fault.edit.file;
+        file.starts_with("primary/shad") && !file.contains('#') && is_visible(fault.name)
     };
-    for fault in faults::all().into_iter().filter(of_color) {
-        trials.push(Trial::test(format!("written::faults::{}", fault.name), move || {
-            let Fault { file, find, replace, view, .. } = fault;
-            is_found(&faulty(file, find, replace)?, &view())
-        }));
-    }
+    let found =
+        |fault: &Fault| is_found(&fault.device()?, &named(verify_views::ALL, fault.setup[0])());
+    let (render, primary) = (planted("render"), planted("primary"));
+    trials.extend(planted::trials("written::faults::render_", render.filter(is_seen), found));
+    trials.extend(planted::trials("written::faults::", primary.filter(is_of_color), found));
     trials
 }
 

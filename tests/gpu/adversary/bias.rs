@@ -7,7 +7,7 @@ use pinhole::gpu::Headless;
 use pinhole::verify::{Deviations, LARGEST_MEAN};
 
 use super::{certify_lit_on, certify_on};
-use crate::planted::faulty;
+use crate::planted::Fault;
 use crate::{headless, scenes};
 
 /// The mean deviations of a device without a fault are below this, where there are this many results.
@@ -56,43 +56,14 @@ pub(super) fn clean() -> Result<(), Failed> {
     if failed.is_empty() { Ok(()) } else { Err(failed.join("\n").into()) }
 }
 
-/// A fault that is smaller than its bound, and whose quantity must be noted.
-type Small = (&'static str, &'static str, &'static str, &'static str, bool);
-
-pub(super) const SMALL: &[Small] = &[
-    (
-        "a_lobe_larger_by_a_part_in_5000",
-        "path/microfacet.wgsl",
-        "return both * ggx_density(alpha, half) / (4.0 * out.z);",
-        "return 1.0002 * both * ggx_density(alpha, half) / (4.0 * out.z);",
-        true,
-    ),
-    (
-        "colors_larger_by_a_part_in_4_million",
-        "primary/shading.wgsl",
-        "return color * abs(dot(normal, ray.direction));",
-        "return color * (abs(dot(normal, ray.direction)) * 1.00000024);",
-        false,
-    ),
-    (
-        "distances_16_ulp_longer",
-        "scene/sphere.wgsl",
-        "return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);",
-        "return SphereHit(select(NO_HIT, bitcast<f32>(bitcast<u32>(t) + 16u), is_hit), from_foot, foot_to_center);",
-        false,
-    ),
-    (
-        "radii_larger_by_a_part_in_two_million",
-        "scene/sphere.wgsl",
-        "let radius = sphere.w;",
-        "let radius = 1.0000005 * sphere.w;",
-        false,
-    ),
-];
-
-pub(super) fn is_noted(&(_, file, find, replace, is_lit): &Small) -> Result<(), Failed> {
-    let headless = faulty(file, find, replace)?;
-    let deviations = if is_lit { of_light(&headless)? } else { of_picture(&headless)? };
+/// A fault that is smaller than its bound is noted.
+pub(super) fn is_noted(fault: &Fault) -> Result<(), Failed> {
+    let headless = fault.device()?;
+    let deviations = match fault.setup() {
+        ["lit"] => of_light(&headless)?,
+        ["primary"] => of_picture(&headless)?,
+        other => return Err(format!("{other:?}").into()),
+    };
     let biased: Vec<_> = deviations.biased().map(ToString::to_string).collect();
     println!("{}", biased.join("\n"));
     if biased.is_empty() { Err("nothing is biased".into()) } else { Ok(()) }

@@ -14,6 +14,7 @@ use pinhole::verify::{Certificate, Checker, LitCertificate, LitRecording, Outcom
 use pinhole::{Film, LayerSet, Scene, View};
 
 use crate::any_rounding::{Adversary, Rounding};
+use crate::planted::{self, planted};
 use crate::support::effort::tries;
 use crate::support::random_light::{self, RandomView};
 use crate::{headless, light, paths, scenes, studio, support};
@@ -71,10 +72,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials.push(Trial::test("adversary::sixty_ulp_are_found", found));
     trials.push(Trial::test("adversary::structures_agree", structures::agree));
     trials.push(Trial::test("bias::none_without_a_fault", bias::clean));
-    for fault in bias::SMALL {
-        let name = format!("bias::{}", fault.0);
-        trials.push(Trial::test(name, || bias::is_noted(fault)));
-    }
+    trials.extend(planted::trials("bias::", planted("small"), bias::is_noted));
     trials
 }
 

@@ -2,11 +2,12 @@
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{Composite, CompositeOptions, Headless, wgpu};
-use pinhole::internals::{ShaderEdit, edited_composite};
+use pinhole::internals::edited_composite;
 use wgpu::TextureFormat;
 
 use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, begin_over, pixels};
 use crate::embedding::view_of;
+use crate::planted::planted;
 use crate::support::hosts::Convention;
 use crate::trial;
 
@@ -14,7 +15,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("host::blended::blends_and_has_the_depth_of_its_surroundings", right),
         trial("host::blended::faults_in_the_truth_are_found", faults),
-        trial("host::blended::faults_in_shaders_are_found", planted),
+        trial("host::blended::faults_in_shaders_are_found", faults_in_shaders),
     ]
 }
 
@@ -101,50 +102,6 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
     (!is_behind).then(|| depth.clamp(0.0, 1.0))
 }
 
-/// Faults in the shaders of composites: the file, a text in it, and what replaces it.
-const PLANTED: [[&str; 3]; 20] = [
-    ["host/composite.wgsl", "- view.first_pixel;", "- view.first_pixel + vec2f(1.0, 0.0);"],
-    ["host/composite.wgsl", "floor(covered.place.xy)", "floor(covered.place.yx)"],
-    ["host/composite.wgsl", "| is_behind(view, drawn.depth, view.far)", ""],
-    ["host/composite.wgsl", "| !drawn.is_drawn", ""],
-    [
-        "host/composite.wgsl",
-        "color_for_host(color.rgb), color.a)",
-        "color_for_host(color.rgb), 1.0)",
-    ],
-    ["host/composite.wgsl", "color_for_host(color.rgb), ", "color.a * color_for_host(color.rgb), "],
-    [
-        "host/composite.wgsl",
-        "clamp(drawn.depth, 0.0, 1.0)",
-        "clamp(1.00001 * drawn.depth, 0.0, 1.0)",
-    ],
-    ["host/cover.wgsl", "3.0, vertex == 1u", "0.9, vertex == 1u"],
-    ["host/cover.wgsl", "vec4f(view.film_depth, ", "vec4f(view.film_depth.yxz, "],
-    ["host/cover.wgsl", "vec4f(view.row, view.slope)", "vec4f(view.column, view.slope)"],
-    ["host/clip_depth.wgsl", "2.0 * pixel + (1.0 - view.size)", "2.0 * pixel - view.size"],
-    ["host/clip_depth.wgsl", "center.y * view.film_depth.y", "center.x * view.film_depth.y"],
-    [
-        "host/clip_depth.wgsl",
-        "length(center.x * view.column + center.y * view.row + view.forward)",
-        "length(view.forward)",
-    ],
-    [
-        "host/clip_depth.wgsl",
-        "(view.film_depth.z + change) + depth_aside(view, center)",
-        "view.film_depth.z + change",
-    ],
-    ["host/clip_depth.wgsl", "depth < other, view.far == 0.0", "depth > other, view.far == 0.0"],
-    ["host/picture_depth.wgsl#lit", "i < 9", "i < 8"],
-    ["host/picture_depth.wgsl#lit", "vec2f(vec2i(i % 3, i / 3) - 1)", "vec2f(vec2i(i % 3, i / 3))"],
-    [
-        "host/picture_depth.wgsl#lit",
-        "distance < 1e30 && all(abs(center) < view.size)",
-        "distance < 1e30",
-    ],
-    ["host/picture_depth.wgsl#lit", "is_behind(view, depth, here)", "is_behind(view, here, depth)"],
-    ["host/picture_depth.wgsl#lit", "alpha > 0.0);", "alpha > 0.01);"],
-];
-
 /// Number of pixels whose colour or depth is not what it must be.
 fn wrong(stage: &Stage, fault: Fault) -> usize {
     let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
@@ -230,19 +187,17 @@ fn faults(_: &'static Headless) {
     }
 }
 
-fn planted(_: &'static Headless) {
+fn faults_in_shaders(_: &'static Headless) {
     let stages = [Convention::Perspective, Convention::InfiniteReversed]
         .map(|convention| [Stage::new(convention), Stage::oblique(convention)]);
-    for fault in PLANTED {
-        let [file, find, replace] = fault.map(str::to_owned);
-        let edit = ShaderEdit { file, find, replace };
+    for fault in planted("composite") {
         let of = |stage: &Stage| {
             let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
             let device = &stage.host.device;
-            let composite = edited_composite(device, &options, vec![edit.clone()]).unwrap();
+            let composite = edited_composite(device, &options, vec![fault.edit.clone()]).unwrap();
             wrong_by(stage, &composite, Fault::None)
         };
         let found: usize = stages.iter().flatten().map(of).sum();
-        assert!(found > 0, "{fault:?}");
+        assert!(found > 0, "{}", fault.name);
     }
 }

@@ -14,6 +14,7 @@ use wgpu::TextureFormat;
 use super::depth_out::pixel_is_near_a_silhouette;
 use super::stage::{FIRST, Layers, SIZE, Stage, begin, settings};
 use crate::embedding::{Host, view_of};
+use crate::planted::planted;
 use crate::support::hosts::Convention;
 use crate::support::spheres::{self, Spheres};
 use crate::trial;
@@ -27,19 +28,12 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 /// A renderer whose rays end at the host's depth, or do not.
-fn renderer(stage: &Stage, is_limited: bool, edits: &[(&str, &str, &str)]) -> Renderer {
+fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Renderer {
     let options = RendererOptions {
         data_layers: true,
         cameras: vec![stage.camera.kind()],
         several_bricks: is_limited,
-        edits: edits
-            .iter()
-            .map(|(file, find, replace)| ShaderEdit {
-                file: (*file).to_owned(),
-                find: (*find).to_owned(),
-                replace: (*replace).to_owned(),
-            })
-            .collect(),
+        edits: edits.to_vec(),
         ..RendererOptions::default()
     };
     Renderer::new(&stage.host.device, &options).unwrap()
@@ -157,7 +151,7 @@ fn random_spheres(count: usize, seed: u64) -> Spheres {
 }
 
 /// The number of bytes that differ between the pictures with and without a limit, for one stage.
-fn different(stage: &Stage, seed: u64, edits: &[(&str, &str, &str)]) -> usize {
+fn different(stage: &Stage, seed: u64, edits: &[ShaderEdit]) -> usize {
     let [without, with] = [false, true]
         .map(|is_limited| renderer(stage, is_limited, if is_limited { edits } else { &[] }));
     let mut random = fastrand::Rng::with_seed(seed);
@@ -196,35 +190,32 @@ fn same(_: &'static Headless) {
 }
 
 fn faults(_: &'static Headless) {
-    let farthest = "host/farthest.wgsl";
-    let planted: [(&str, &str, &str, &[Convention]); 5] = [
-        (farthest, "(1.0 + 0x1p-16)", "0.999", &Convention::ALL),
-        (
-            "host/limit.wgsl",
-            "farthest - entry.distance",
-            "farthest - entry.distance * 1.001",
-            &[Convention::Perspective, Convention::OrthographicReversed],
-        ),
-        // Rays of perspective cameras do not end then.
-        (farthest, "sign(view.slope)", "1.0", &[Convention::OrthographicReversed]),
-        (farthest, "sign(view.slope)", "-1.0", &[Convention::Orthographic]),
-        ("host/hide.wgsl", "hit.id == NO_ID || ", "", &[Convention::Reversed]),
-    ];
-    for (file, find, replace, conventions) in planted {
-        for convention in conventions {
-            let found = different(&Stage::new(*convention), 1, &[(file, find, replace)]);
-            assert!(found > 0, "{convention:?}: {replace} in place of {find}");
+    for fault in planted("limit") {
+        for word in &fault.setup {
+            let stages: Vec<Stage> = match word.strip_prefix("Oblique") {
+                Some(word) => conventions(word).map(Stage::oblique).collect(),
+                None => conventions(word).map(Stage::new).collect(),
+            };
+            assert!(!stages.is_empty(), "{word}");
+            for stage in stages {
+                let found = different(&stage, 1, std::slice::from_ref(&fault.edit));
+                assert!(found > 0, "{:?}: {}", stage.convention, fault.name);
+            }
         }
     }
-    let oblique = Stage::oblique(Convention::Infinite);
-    assert!(different(&oblique, 1, &[(farthest, " - aside", "")]) > 0);
+}
+
+/// The convention of a name, or all.
+fn conventions(name: &str) -> impl Iterator<Item = Convention> {
+    let is_named = move |one: &Convention| name == "All" || name == format!("{one:?}");
+    Convention::ALL.into_iter().filter(is_named)
 }
 
 /// If `hide` leaves misses as they are, the depth layer shows where rays end, counted from the box of the scene.
 fn near(_: &'static Headless) {
     for stage in stages() {
-        let edits = [("host/hide.wgsl", "hit.id == NO_ID || ", "")];
-        let renderer = renderer(&stage, true, &edits);
+        let fault = planted("limit").find(|fault| fault.name == "misses_not_hidden").unwrap();
+        let renderer = renderer(&stage, true, &[fault.edit]);
         let scene = scene(&stage, &renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
         let [_, limits, _, ids] = picture(&stage, &renderer, &scene, &own_depth(&stage));
         let limits: Vec<f32> = bytemuck::pod_collect_to_vec(&limits);

@@ -10,6 +10,7 @@ use pinhole::{Film, View};
 use super::lit::{Show, named};
 use crate::embedding::Host;
 use crate::light::scenes::LitView;
+use crate::planted::planted;
 use crate::trial;
 
 pub(super) fn trials() -> Vec<Trial> {
@@ -153,63 +154,11 @@ fn at_rest(headless: &'static Headless) {
     assert!(part > 0.8, "{part}");
 }
 
-/// Each of these would go unseen in a still picture, or look plausible.
 fn faults(_: &'static Headless) {
-    let edit = |file: &str, find: &str, replace: &str| ShaderEdit {
-        file: file.to_owned(),
-        find: find.to_owned(),
-        replace: replace.to_owned(),
-    };
-    for (name, edit) in [
-        ("points are not moved", edit("live/reproject.wgsl", "+ view.shift", "")),
-        (
-            "stale: other surfaces are taken for the same",
-            edit("live/reproject.wgsl", "old.w == id && is_near", "true"),
-        ),
-        (
-            "frames are not counted",
-            edit("live/reproject.wgsl", "known.counts + 1u", "known.counts"),
-        ),
-        (
-            "old frames never fade",
-            edit("live/reproject.wgsl", "vec2u(view.most_lamps, view.most_open)", "vec2u(200u)"),
-        ),
-        (
-            "smooth beyond edges",
-            edit(
-                "live/show.wgsl",
-                "return select(0.0, clamp(4.0 * dot(normal, other_normal) - 3.0, 0.0, 1.0), is_near)",
-                "return 1.0",
-            ),
-        ),
-        (
-            "a row too far",
-            edit(
-                "live/view.wgsl",
-                "* 0.5 * vec2f(view.size)",
-                "* 0.5 * vec2f(view.size) + vec2f(0.0, 1.0)",
-            ),
-        ),
-        (
-            "shares are exchanged",
-            edit("live/show.wgsl", "shares.x * lamps + shares.y", "shares.y * lamps + shares.x"),
-        ),
-        (
-            "lamps are chosen equally",
-            edit("live/light.wgsl", "let share = weight / max(total, 1e-30)", "let share = 1.0"),
-        ),
-        (
-            "the last lamp is tested",
-            edit(
-                "live/light.wgsl",
-                "let takes = weight > 0.0 && choice.u < share",
-                "let takes = true",
-            ),
-        ),
-    ] {
-        let of = |studio: &str| Stage::new(studio, vec![edit.clone()]).worst(0);
+    for fault in planted("live") {
+        let of = |studio: &str| Stage::new(studio, vec![fault.edit.clone()]).worst(0);
         let worst = ["studio_near_occlusion", "studio_key_and_fill"].map(of);
-        assert!(worst.iter().any(|worst| *worst > FEW), "{name}: {worst:?}");
+        assert!(worst.iter().any(|worst| *worst > FEW), "{}: {worst:?}", fault.name);
     }
 }
 

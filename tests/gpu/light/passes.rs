@@ -10,7 +10,7 @@ use pinhole::verify::LitRecording;
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
 use super::scenes::{self, LitView};
-use crate::planted::faulty;
+use crate::planted::planted;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -105,31 +105,15 @@ fn one_pass(headless: &'static Headless) {
 
 /// The comparison with several passes is not blind.
 fn faults(headless: &'static Headless) {
-    const PATHS: &str = "path/whole_paths.wgsl";
-    for (scene, file, find, replace) in [
-        ("path_emissive_both", PATHS, "path.surface + 1u", "path.surface + 2u"),
-        ("path_emissive_both", PATHS, "path.surface == dispatch.surface", "path.surface > 0u"),
-        (
-            "path_emissive_both",
-            PATHS,
-            "// Only the ray to the light excludes the light.\n        Departure(vertex.id",
-            "Departure(NO_ID",
-        ),
-        ("path_sun_and_lamps", "path/seen_light.wgsl", "visibility = 0.0", "visibility = 1.0"),
-        (
-            "studio_ambient_occlusion",
-            "studio/ambient_light.wgsl",
-            "hidden += u32",
-            "hidden += 0u * u32",
-        ),
-    ] {
+    for fault in planted("one_pass") {
+        let [scene] = fault.setup();
         let mut view = named(scene);
         view.settings.sampling.samples = 6;
-        let faulty = faulty(file, find, replace).unwrap();
+        let faulty = fault.device().unwrap();
         let [right, wrong] = [headless, &faulty].map(|device| {
             device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
         });
-        assert!(right != wrong, "{scene}: {find}");
+        assert!(right != wrong, "{}", fault.name);
     }
 }
 

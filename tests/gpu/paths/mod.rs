@@ -1,6 +1,5 @@
 //! Tests that the checker accepts the paths of this device, and finds faults that are inserted.
 
-mod faults;
 mod inputs;
 mod random;
 pub(crate) mod scenes;
@@ -14,6 +13,7 @@ use pinhole::{Film, View};
 
 use crate::light::scenes::LitView;
 use crate::lit::{is_found, is_legal, is_violated};
+use crate::planted::{self, planted};
 use crate::{headless, replayed, trial};
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
@@ -39,20 +39,17 @@ pub(crate) fn trials() -> Vec<Trial> {
             is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
         }));
     }
-    for fault in faults::all() {
-        let name = format!("paths::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || {
-            is_found(&fault, |device, view| Ok(certify(view, &record(device, view)?)))
-        }));
-    }
-    for fault in faults::of_ids() {
-        let name = format!("paths::faults::{}", fault.name);
-        let found_in_bricks = |device: &Headless, view: &LitView| {
+    let group = "paths::faults::";
+    trials.extend(planted::trials(group, planted("paths"), |fault| {
+        let certify = |device: &_, view: &_| Ok(certify(view, &record(device, view)?));
+        is_found(fault, &scenes::of_faults(), certify)
+    }));
+    trials.extend(planted::trials(group, planted("paths_by_id"), |fault| {
+        is_found(fault, &[("thrice", scenes::thrice)], |device, view| {
             let accel = in_bricks(view, AccelChoice::Tree);
             Ok(certify(view, &record_in(device, view, accel)?))
-        };
-        trials.push(Trial::test(name, move || is_found(&fault, found_in_bricks)));
-    }
+        })
+    }));
     for (name, spoil) in inputs::ALL {
         let name = format!("paths::faults::input_{name}");
         trials.push(Trial::test(name, move || input_fault_is_found(*spoil)));

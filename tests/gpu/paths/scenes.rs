@@ -39,6 +39,11 @@ pub(crate) fn all() -> Vec<Named> {
     ]
 }
 
+/// All, and one more in which faults are visible.
+pub(crate) fn of_faults() -> Vec<Named> {
+    [all(), vec![("image_over_ground", image_over_ground)]].concat()
+}
+
 pub(crate) fn gray(level: f32) -> LinearRgb {
     LinearRgb::new([level; 3]).unwrap()
 }

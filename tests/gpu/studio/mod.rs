@@ -1,6 +1,5 @@
 //! Tests that the checker accepts the studios of this device, and finds faults that are inserted.
 
-mod faults;
 mod inputs;
 pub(crate) mod scenes;
 
@@ -13,6 +12,7 @@ use pinhole::verify::{Checker, LitCertificate, LitRecording, StudioRecording};
 use crate::headless;
 use crate::light::scenes::{LitView, studios};
 use crate::lit::{is_found, is_legal, is_violated};
+use crate::planted::{self, planted};
 use crate::replayed;
 use crate::support::effort::tries;
 use crate::support::random_light;
@@ -41,12 +41,10 @@ pub(crate) fn trials() -> Vec<Trial> {
     for seed in 0..u64::from(tries(SEEDS)) {
         trials.push(Trial::test(format!("studio::random::seed_{seed}"), move || random(seed)));
     }
-    for fault in faults::all() {
-        let name = format!("studio::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || {
-            is_found(&fault, |device, view| Ok(certify(view, &record(device, view)?)))
-        }));
-    }
+    trials.extend(planted::trials("studio::faults::", planted("studio"), |fault| {
+        let certify = |device: &_, view: &_| Ok(certify(view, &record(device, view)?));
+        is_found(fault, scenes::ALL, certify)
+    }));
     for (name, spoil) in inputs::ALL {
         let name = format!("studio::faults::input_{name}");
         trials.push(Trial::test(name, move || input_fault_is_found(*spoil)));
