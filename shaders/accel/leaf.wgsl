@@ -1,4 +1,4 @@
-// Testing the spheres of a leaf. Twin: src/accel/leaf.rs.
+// Testing the spheres of a leaf.
 // provides: any_in_leaf, offer_leaf
 // needs: NO_HIT, Nearest, Search, distance_within, offer
 

@@ -1,4 +1,4 @@
-// Search without a structure, which tests every sphere of the brick. Twin: src/accel/list.rs.
+// Search without a structure, which tests every sphere of the brick.
 // provides: find_any, find_nearest
 // needs: NO_HIT, Nearest, Search, brick, distance_within, offer
 

@@ -1,5 +1,4 @@
-// Traversal of a cell of the outer grid, whose lists have balls. ball_grid.wgsl explains the loops. Twin:
-// src/accel/grid_walk.rs.
+// Traversal of a cell of the outer grid, whose lists have balls. ball_grid.wgsl explains the loops.
 // provides: walk_cell
 // needs: Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, NO_LIST, NO_SHAPE, Search, cell_word,
 //   find_candidates, least, list_of, part_in_cell, spend, test_candidates

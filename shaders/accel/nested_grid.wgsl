@@ -1,4 +1,4 @@
-// Traversal of a grid with two levels, whose crowded cells contain inner grids. Twin: src/accel/grid_walk.rs.
+// Traversal of a grid with two levels, whose crowded cells contain inner grids.
 //
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
 // computed from the index of the plane instead of being accumulated, so that their error does not grow. The word of an

@@ -1,6 +1,5 @@
 // Search by ray queries: the driver has built a structure from boxes, in hardware or not, and says which of them a ray
 // may meet. What it may miss is unknown, so the boxes have margins, and the certificate says whether they suffice.
-// Twin: src/accel/list.rs, which finds the same sphere.
 // provides: find_any, find_nearest
 // needs: NO_HIT, Nearest, Search, distance_within, offer, spend
 

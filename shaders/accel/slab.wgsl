@@ -1,4 +1,5 @@
-// The ray in the form that box tests need. Twin: src/accel/slab.rs, which explains why the tests never miss a sphere.
+// The ray in the form that box tests need. src/accel/slab.rs explains why the tests never miss a
+// sphere.
 // provides: SlabRay
 
 struct SlabRay {

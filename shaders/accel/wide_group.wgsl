@@ -1,8 +1,8 @@
-// The set of a wide-tree node's children that are still to be visited, and their order. Twin: src/accel/wide_group.rs.
+// The set of a wide-tree node's children that are still to be visited, and their order.
 // provides: WIDE_ROOT, first_of_group, octant_of, octant_order, rest_of_group
 // needs: SlabRay
 
-// The octant of a ray's direction: bit i is set if the direction is negative along axis i. Twin: `SlabRay::octant`.
+// The octant of a ray's direction: bit i is set if the direction is negative along axis i.
 fn octant_of(ray: SlabRay) -> u32 {
     return dot(select(vec3u(0u), vec3u(1u, 2u, 4u), ray.inverse < vec3f(0.0)), vec3u(1u));
 }

@@ -47,7 +47,7 @@ fn four_hits(ray: QuantizedRay, near: vec3u, far: vec3u) -> u32 {
     return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), entry <= exit), vec4u(1u));
 }
 
-// Reads a node and tests all its boxes. Twin: `WideNode::hits`.
+// Reads a node and tests all its boxes.
 fn wide_node(ray: SlabRay, index: u32, t_max: f32) -> WideNode {
     let first = WIDE_NODE_VECTORS * index;
     let grid = nodes[first];

@@ -1,4 +1,4 @@
-// Traversal of the compressed 8-wide tree in octant order. Twin: src/accel/wide_tree_trace.rs.
+// Traversal of the compressed 8-wide tree in octant order.
 // provides: find_any, find_nearest
 // needs: LEAF_COUNT_SHIFT, LEAF_FIRST, Nearest, Search, SlabRay, WIDE_ROOT, WideNode, any_in_leaf, brick,
 //   first_of_group, octant_of, octant_order, offer_leaf, rest_of_group, spend, wide_node
@@ -8,7 +8,7 @@
 const WIDE_LEVELS: u32 = 16u;
 
 // By how much boxes are wider for a ray with this origin: errors grow with the distance to a sphere, and the spheres of a
-// crowd have a margin for rays that start near it. Twin: `NearRays::widening` in src/accel/outliers.rs.
+// crowd have a margin for rays that start near it.
 fn widening(origin: vec3f) -> f32 {
     let farthest = length(max(abs(origin - brick.crowd_min), abs(brick.crowd_max - origin)));
     return max(0x1p-17 * farthest - brick.crowd_margin, 0.0);

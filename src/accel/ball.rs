@@ -91,7 +91,8 @@ fn pack([x, y, z]: [u32; 3], radius: u32) -> u32 {
 
 /// The centre of a ball, counted from a cell's side before the corner, and the square of its radius, in quanta. The
 /// highest bit has no meaning here.
-pub(super) fn unpack(ball: u32) -> (Vec3, f32) {
+#[cfg(test)]
+fn unpack(ball: u32) -> (Vec3, f32) {
     let coordinate = |axis: u32| (ball >> (axis * COORDINATE_BITS) & 255) as f32;
     let squared = f32::from_bits((ball >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
     (Vec3::new(coordinate(0), coordinate(1), coordinate(2)), squared)
@@ -129,15 +130,6 @@ impl PartInCell {
             bits |= u32::from(is_met) << i;
         }
         bits
-    }
-
-    /// Whether the part meets a ball.
-    pub(super) fn meets(&self, ball: u32) -> bool {
-        let (center, squared_radius) = unpack(ball);
-        let v = center - self.origin;
-        let along = v.dot(self.direction);
-        let beyond = (along - self.length).max(-along).max(0.0);
-        (v.dot(v) - along * along) + beyond * beyond <= squared_radius
     }
 }
 

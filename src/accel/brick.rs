@@ -2,72 +2,11 @@
 
 use glam::Vec3;
 
+use super::extent::Item;
 use super::grid::Grid;
-use super::list;
-use super::plan::AccelChoice;
-use super::primitive::{BrickKind, Primitive};
-use super::query::{Nearest, RayF32};
-use super::query_boxes::QueryBoxes;
+use super::outliers::Margins;
+use super::structure::{BrickKind, Primitive, Structure};
 use super::wide_tree::WideTree;
-
-/// The acceleration structures, as kernels distinguish them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Structure {
-    /// No structure: every sphere is tested.
-    List,
-    /// One level of grid cells.
-    Grid,
-    /// Two levels of grid cells: crowded cells have grids of their own.
-    NestedGrid,
-    /// A compressed tree with eight children for each node.
-    WideTree,
-    /// A structure that the driver builds from boxes, and searches by ray queries; not all devices have these.
-    RayQuery,
-}
-
-impl Structure {
-    /// All structures for which there are kernels; the last needs more than any device has.
-    pub(crate) const WITH_KERNELS: &'static [Self] =
-        &[Self::List, Self::Grid, Self::NestedGrid, Self::WideTree, Self::RayQuery];
-
-    /// All structures that any device can search: not [`Structure::RayQuery`]. [`AccelChoice::Auto`] chooses among them.
-    pub const ALL: &'static [Self] = match Self::WITH_KERNELS {
-        [any @ .., Self::RayQuery] => any,
-        all => all,
-    };
-
-    /// The same structure, with nested grids if it is a grid and `is_nested`.
-    pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
-        match self {
-            Self::Grid if is_nested => Self::NestedGrid,
-            other => other,
-        }
-    }
-
-    /// The choice of a user that leads to this structure.
-    #[must_use]
-    pub const fn choice(self) -> AccelChoice {
-        match self {
-            Self::List => AccelChoice::List,
-            Self::Grid | Self::NestedGrid => AccelChoice::Grid,
-            Self::WideTree => AccelChoice::Tree,
-            Self::RayQuery => AccelChoice::RayQuery,
-        }
-    }
-
-    /// The name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::List => "list",
-            Self::Grid => "grid",
-            Self::NestedGrid => "nested grids",
-            Self::WideTree => "8-wide tree",
-            Self::RayQuery => "ray query",
-        }
-    }
-}
 
 /// The acceleration structure of a brick.
 #[derive(Clone, Debug)]
@@ -97,27 +36,6 @@ impl Brick {
     /// Whether the index is a grid of which some cells have grids of their own.
     pub(crate) fn is_nested(&self) -> bool {
         matches!(&self.index, Index::Grid(grid) if grid.is_nested())
-    }
-
-    /// Updates `nearest` with the nearest sphere of the brick.
-    pub fn find_nearest(&self, ray: &RayF32, nearest: &mut Nearest) {
-        let Self { index, spheres, ids } = self;
-        match index {
-            Index::List | Index::RayQuery(_) => list::find_nearest(spheres, ids, ray, nearest),
-            Index::Grid(grid) => grid.find_nearest(spheres, ids, ray, nearest),
-            Index::WideTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
-        }
-    }
-
-    /// Whether the ray hits a sphere of the brick before `t_max`.
-    #[must_use]
-    pub fn find_any(&self, ray: &RayF32, t_max: f32) -> bool {
-        let Self { index, spheres, .. } = self;
-        match index {
-            Index::List | Index::RayQuery(_) => list::find_any(spheres, ray, t_max),
-            Index::Grid(grid) => grid.find_any(spheres, ray, t_max),
-            Index::WideTree(tree) => tree.find_any(spheres, ray, t_max),
-        }
     }
 }
 
@@ -162,20 +80,34 @@ impl Accel {
     pub fn may_part_equals(&self) -> bool {
         self.may_part_equals
     }
+}
 
-    /// The nearest sphere hit by a ray, which must start inside the box of [`Accel::bounds`] or on its surface.
+/// A box for each sphere, in the order of a brick, from which a driver builds a structure of its own for ray queries. The
+/// kernels are in `shaders/accel/ray_query.wgsl`.
+///
+/// Vulkan says of a box only that it is reported if the ray meets it, not how the meeting is rounded. So each box holds
+/// its sphere and the margin of trees, which is more than the error of any arithmetic that rounds as WGSL allows
+/// (`slab.rs`); whether a driver's own arithmetic is as good is for the certificate to say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QueryBoxes {
+    boxes: Vec<[f32; 6]>,
+}
+
+impl QueryBoxes {
+    /// The boxes of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
     #[must_use]
-    pub fn find_nearest(&self, ray: &RayF32) -> Nearest {
-        let mut nearest = Nearest::NONE;
-        for brick in &self.bricks {
-            brick.find_nearest(ray, &mut nearest);
-        }
-        nearest
+    pub fn of(spheres: &[[f32; 4]], margin: f32) -> Self {
+        let items = Item::all(spheres, &Margins::one(margin));
+        let of_item = |item: &Item| {
+            let ([x, y, z], reach) = (item.center, item.reach);
+            [x - reach, y - reach, z - reach, x + reach, y + reach, z + reach]
+        };
+        Self { boxes: items.iter().map(of_item).collect() }
     }
 
-    /// Whether the ray hits any sphere before `t_max`.
+    /// The least coordinates and the greatest of each box.
     #[must_use]
-    pub fn find_any(&self, ray: &RayF32, t_max: f32) -> bool {
-        self.bricks.iter().any(|brick| brick.find_any(ray, t_max))
+    pub fn boxes(&self) -> &[[f32; 6]] {
+        &self.boxes
     }
 }

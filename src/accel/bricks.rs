@@ -5,14 +5,14 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::brick::{Accel, Brick, Index, Structure};
+use super::brick::{Accel, Brick, Index, QueryBoxes};
 #[cfg(feature = "gpu")]
 use super::brick_bounds::BrickBounds;
 use super::divide::divide;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::outliers::Margins;
 use super::plan::AccelPlan;
-use super::query_boxes::QueryBoxes;
+use super::structure::Structure;
 use super::wide_tree::WideTree;
 
 /// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are

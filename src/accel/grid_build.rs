@@ -4,34 +4,20 @@ use glam::Vec3;
 
 use super::ball::BallFrame;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{Grid, MAX_CELLS, word};
+use super::grid::{Grid, GridBudget, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
 use super::grid_lists::{BuiltLists, Flat};
 use super::grid_slabs::{Counted, Lists};
 use super::grid_sort::{CHUNK, sort_by_cell};
-use super::plan::MAX_FIRST_LEVEL;
 use crate::parallel::{for_each, map_parts, ranges};
-
-/// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
-/// the time hardly changes between eight and sixteen.
-pub(super) const STEP_COST: f32 = 12.0;
 
 /// The largest number of spheres whose radii the choice of the cell size looks at.
 const RADII: usize = 4096;
 
-/// Limits for the size of a grid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridBudget {
-    /// The largest total number of elements of all lists.
-    pub listed: usize,
-    /// The largest number of cells, of both levels together.
-    pub cells: usize,
-}
-
 /// A grid, with its spheres in the order that the grid refers to, and their ids.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BuiltGrid {
+pub(super) struct BuiltGrid {
     /// The cells.
     pub grid: Grid,
     /// Centre and radius.
@@ -45,7 +31,12 @@ pub struct BuiltGrid {
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
 #[must_use]
-pub fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget: GridBudget) -> BuiltGrid {
+pub(super) fn build_grid(
+    spheres: &[[f32; 4]],
+    ids: &[u32],
+    margin: f32,
+    budget: GridBudget,
+) -> BuiltGrid {
     let (own, (min, max)) = gather(spheres, ids, margin);
     let mut cells = first_level(&own, (min, max), budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.

@@ -4,8 +4,7 @@ use glam::Vec3;
 
 use super::ball::BALLS_PER_VECTOR;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{elements, word};
-use super::grid_build::{GridBudget, STEP_COST};
+use super::grid::{GridBudget, STEP_COST, elements, word};
 use crate::parallel::{map_parts, ranges};
 
 /// The length of a list from which a grid may be worthwhile: even the coarsest grid costs two steps.

@@ -5,9 +5,7 @@
 
 use std::ops::Range;
 
-use super::cell_octet::{Octet, Strides};
-use super::cell_vectors::CellVectors;
-use super::cells::Cells;
+use super::cells::{CellVectors, Cells, Octet, Strides};
 use super::grid::elements;
 use crate::parallel::{for_each, map_parts, ranges, split_mut};
 

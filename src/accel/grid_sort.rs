@@ -4,8 +4,7 @@
 //! time. Here spheres are first moved into buckets, of so few cells that the spheres of a bucket fit into a processor's
 //! L2 cache, and then sorted bucket by bucket. Both steps keep the order of ids.
 
-use super::cell_vectors::CellVectors;
-use super::cells::Cells;
+use super::cells::{CellVectors, Cells};
 use crate::parallel::{for_each, map_parts, ranges, split_mut};
 
 /// The number of spheres or cells that one task handles.

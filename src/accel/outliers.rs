@@ -3,11 +3,11 @@
 //! Outliers make the box of a scene large, and its margin with it: 2⁻¹⁷ of the diagonal is 8 % of a crowd beside which a
 //! sphere lies ten thousand times as far away. Rays that start near the crowd do not need so much for its spheres,
 //! because errors grow with the distance from a ray's origin to a centre (`slab.rs`). So a tree takes as margin of the
-//! crowd's spheres that of the crowd's box, and widens its boxes for rays that start farther away ([`Crowd::widening`]).
+//! crowd's spheres that of the crowd's box, and widens its boxes for rays that start farther away (`widening` in `shaders/accel/wide_tree.wgsl`).
 
 use glam::Vec3;
 
-use super::statistics::{MARGIN_PART, SceneStatistics, margin_of};
+use super::statistics::{SceneStatistics, margin_of};
 use crate::parallel::map_chunks;
 
 /// At most one sphere in so many is an outlier, and at most [`MOST`] in all.
@@ -134,13 +134,6 @@ pub(crate) struct NearRays {
 impl NearRays {
     /// All rays are near: no margin is too small for any.
     pub(crate) const ALL: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO, margin: 1e30 };
-
-    /// By how much the boxes are wider for a ray with this origin. The WGSL twin is `widening` in
-    /// `shaders/accel/wide_tree.wgsl`.
-    pub(super) fn widening(&self, origin: Vec3) -> f32 {
-        let farthest = (origin - self.min).abs().max((self.max - origin).abs()).length();
-        (MARGIN_PART * farthest - self.margin).max(0.0)
-    }
 }
 
 /// The margin of each sphere of a tree.
@@ -237,16 +230,5 @@ mod tests {
         assert_eq!(found(&with([3.0, 2.0, 1.0, 1e3])).map(|crowd| crowd.outliers), Some(1));
         let twice = [&equal[..], &vec![[1e3, 0.0, 0.0, 0.5]; 2_000]].concat();
         assert_eq!(found(&twice), None);
-    }
-
-    #[test]
-    fn boxes_are_wider_for_rays_from_afar() {
-        let near =
-            NearRays { min: Vec3::ZERO, max: Vec3::ONE, margin: margin_of(Vec3::ZERO, Vec3::ONE) };
-        assert!(near.widening(Vec3::splat(0.5)) <= 0.0);
-        assert!(near.widening(Vec3::ZERO) <= 0.0);
-        let wider = near.widening(Vec3::new(1e4, 0.0, 0.0));
-        assert!((wider + near.margin - 1e4 * MARGIN_PART).abs() < 1e-6);
-        assert!(NearRays::ALL.widening(Vec3::splat(2_f32.powi(59))) <= 0.0);
     }
 }

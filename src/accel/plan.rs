@@ -1,35 +1,14 @@
 //! Plans: which structure is built, why, and how large it may become. Plans are made before anything is allocated.
 
-use std::fmt;
-
 use glam::Vec3;
 
-use super::brick::Structure;
 use super::divide_by_sample::largest_part;
-use super::grid::MAX_CELLS;
-use super::grid_build::GridBudget;
+use super::grid::{GridBudget, MAX_FIRST_LEVEL};
 use super::outliers::Crowd;
 use super::statistics::SceneStatistics;
+use super::structure::{AccelChoice, Structure};
 use super::wide_node::WideNode;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
-
-/// The structure that a user chooses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum AccelChoice {
-    /// The structure that suits the scene.
-    #[default]
-    Auto,
-    /// A grid with one or two levels of cells.
-    Grid,
-    /// A tree with eight children for each node.
-    Tree,
-    /// No structure: every sphere is tested. Slow; serves as the reference for the others.
-    List,
-    /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
-    /// have them and are opened for it.
-    RayQuery,
-}
 
 /// The number of spheres up to which no structure is worth its cost.
 const FEW: usize = 32;
@@ -43,9 +22,6 @@ pub(crate) const LIST_LEN: usize = 3 << 14;
 
 /// The largest binding on most devices; larger lists could not be indexed with 30 bits.
 const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
-
-/// The largest number of cells of the first level of a grid; the others are left to the second level.
-pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
 
 /// The bytes of a box for ray queries.
 const BOX_BYTES: usize = size_of::<[f32; 6]>();
@@ -283,32 +259,6 @@ fn decide(
             ),
             None => (Structure::Grid, format!("{count} spheres")),
         },
-    }
-}
-
-impl Structure {
-    /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
-    /// spheres; `None` for the list, which always terminates.
-    #[must_use]
-    pub const fn instead(self) -> Option<AccelChoice> {
-        match self {
-            Self::List => None,
-            Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
-            Self::WideTree => Some(AccelChoice::List),
-            Self::RayQuery => Some(AccelChoice::Tree),
-        }
-    }
-}
-
-impl fmt::Display for AccelChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Auto => "auto",
-            Self::Grid => "grid",
-            Self::Tree => "tree",
-            Self::List => "list",
-            Self::RayQuery => "query",
-        })
     }
 }
 

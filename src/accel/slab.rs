@@ -1,4 +1,4 @@
-//! Rays prepared for box tests, and why no box test loses a sphere. The WGSL twin is `shaders/accel/slab.wgsl`.
+//! Why no box test loses a sphere, and the constants that this needs. The WGSL twin is `shaders/accel/slab.wgsl`.
 //!
 //! # The margin
 //! The result of a tree must equal that of testing every sphere, to the bit, although both the sphere test and the box
@@ -49,46 +49,9 @@
 //! are wider by [`NODE_PART`] W, which is more. Other spheres have the scene's margin, and all boxes around them contain
 //! it.
 
-use glam::Vec3;
-
-use super::outliers::NearRays;
-use super::query::RayF32;
-
 /// The smallest magnitude of a direction's component in box tests; smaller components are replaced by it, with their
 /// sign. WGSL has no infinities, and with lengths up to 2⁵⁹ the distance to a plane stays below 2¹⁰⁰.
 pub const SMALLEST_COMPONENT: f32 = 1.0 / (1_u64 << 40) as f32;
 
 /// By how much the box of a child is wider than what it contains, as a part of each side of its node's grid.
 pub(super) const NODE_PART: f64 = 1.0 / (1 << 19) as f64;
-
-/// The origin of a ray, and the reciprocals of its direction's components.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SlabRay {
-    pub(super) origin: Vec3,
-    pub(super) inverse: Vec3,
-    /// By how much boxes are wider for this ray than they are.
-    pub(super) wider: f32,
-}
-
-/// The reciprocal of each component of a direction. The WGSL twin is the function in `shaders/scene/enter.wgsl`.
-pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
-    let size = direction.abs().max(Vec3::splat(SMALLEST_COMPONENT));
-    1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size)
-}
-
-impl SlabRay {
-    pub(super) fn new(ray: &RayF32) -> Self {
-        Self { origin: ray.origin, inverse: inverse_direction(ray.direction), wider: 0.0 }
-    }
-
-    /// A ray for a tree whose margins may be smaller than that of the scene.
-    pub(super) fn for_tree(ray: &RayF32, near: &NearRays) -> Self {
-        Self { wider: near.widening(ray.origin), ..Self::new(ray) }
-    }
-
-    /// The octant of the direction: bit i is set if the direction is negative along axis i.
-    pub(super) fn octant(&self) -> u32 {
-        let bit = |axis: usize| u32::from(self.inverse[axis] < 0.0) << axis;
-        bit(0) | bit(1) | bit(2)
-    }
-}

@@ -76,7 +76,7 @@ impl SceneStatistics {
 }
 
 /// The margin as a part of a diagonal.
-pub(super) const MARGIN_PART: f32 = 1.0 / (1 << 17) as f32;
+const MARGIN_PART: f32 = 1.0 / (1 << 17) as f32;
 
 /// The margin of a scene with this box, as [`SceneStatistics::margin`] explains it.
 pub(crate) fn margin_of(min: Vec3, max: Vec3) -> f32 {

@@ -9,10 +9,14 @@
 use glam::Vec3A;
 
 use super::extent::Extent;
-use super::slab::{NODE_PART, SlabRay};
+use super::slab::NODE_PART;
 
 /// The largest number of spheres in a leaf.
-pub const WIDE_LEAF: usize = 3;
+pub(super) const WIDE_LEAF: usize = 3;
+
+/// The largest number of levels of a tree, and the size of the kernel's stack. `build` proves that no tree has more; a
+/// walk leaves at most one entry on the stack for each level except the first.
+pub(crate) const WIDE_LEVELS: u32 = 16;
 
 /// In the byte of a leaf: the mask of its first sphere, and the position of its count.
 pub(crate) const LEAF_FIRST: u32 = 31;
@@ -39,6 +43,7 @@ pub(crate) const LEAF_COUNT_SHIFT: u32 = 5;
 pub struct WideNode(pub [u32; 20]);
 
 /// The content of a slot.
+#[cfg(test)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     Empty,
@@ -114,6 +119,7 @@ impl WideNode {
     }
 
     /// The content of a slot, decoded as kernels do.
+    #[cfg(test)]
     pub(super) fn slot(&self, slot: usize) -> Slot {
         let mask = self.inner_mask();
         if mask >> slot & 1 == 1 {
@@ -153,32 +159,6 @@ impl WideNode {
                 f64::from(self.origin()[axis]) + cells * f64::from(self.cell()[axis])
             })
         })
-    }
-
-    /// A mask of the slots whose boxes the ray enters at or before `t_max`. The WGSL twin is `wide_node` in
-    /// `shaders/accel/wide_node.wgsl`.
-    #[inline]
-    pub(super) fn hits(&self, ray: &SlabRay, t_max: f32) -> u32 {
-        let mut entry = [0.0_f32; 8];
-        let mut exit = [t_max; 8];
-        for axis in 0..3 {
-            let inverse = ray.inverse[axis];
-            let step = self.cell()[axis] * inverse;
-            let start = (self.origin()[axis] - ray.origin[axis]) * inverse;
-            let (low, high) = (8 + 2 * axis, 14 + 2 * axis);
-            let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
-            let wider = ray.wider * inverse.abs();
-            let planes = |word: usize, start: f32| {
-                let bytes = u64::from(self.0[word + 1]) << 32 | u64::from(self.0[word]);
-                bytes.to_le_bytes().map(|cells| f32::from(cells) * step + start)
-            };
-            let (near, far) = (planes(near, start - wider), planes(far, start + wider));
-            for slot in 0..8 {
-                entry[slot] = entry[slot].max(near[slot]);
-                exit[slot] = exit[slot].min(far[slot]);
-            }
-        }
-        (0..8).fold(0, |mask, slot| mask | u32::from(entry[slot] <= exit[slot]) << slot)
     }
 }
 

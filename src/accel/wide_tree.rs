@@ -2,13 +2,8 @@
 
 use super::extent::Item;
 use super::outliers::{Margins, NearRays};
-use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
-use super::wide_node::{Slot, WIDE_LEAF, WideNode};
+use super::wide_node::WideNode;
 use super::wide_tree_build;
-
-/// The largest number of levels of a tree, and the size of the kernel's stack. `build` proves that no tree has more; a
-/// walk leaves at most one entry on the stack for each level except the first.
-pub const WIDE_LEVELS: u32 = 16;
 
 /// A tree whose nodes have up to eight children, and the order of the spheres in its leaves.
 ///
@@ -59,53 +54,9 @@ impl WideTree {
     }
 
     /// The number of nodes on the longest path from the root to the parent of a leaf, both included; at most
-    /// [`WIDE_LEVELS`].
+    /// `WIDE_LEVELS`.
     #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
-    }
-
-    /// Checks the tree against the spheres it was built from, which are in input order.
-    ///
-    /// # Errors
-    /// Returns an error if the tree is not valid; the error describes the first problem.
-    pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
-        tree_check::validate(self, spheres, &self.margins)
-    }
-
-    /// The size of the tree, and the expected cost of tracing a ray.
-    #[must_use]
-    pub fn statistics(&self) -> TreeStatistics {
-        tree_check::statistics(self)
-    }
-}
-
-impl Tree for WideTree {
-    const BYTES_PER_NODE: usize = size_of::<WideNode>();
-    const MAX_LEVELS: u32 = WIDE_LEVELS;
-    const MAX_IN_LEAF: u32 = WIDE_LEAF as u32;
-
-    fn node_count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    fn ids(&self) -> &[u32] {
-        &self.ids
-    }
-
-    fn levels(&self) -> u32 {
-        self.levels
-    }
-
-    fn children(&self, node: usize) -> impl Iterator<Item = Child> {
-        let node = self.nodes[node];
-        (0..8).filter_map(move |slot| {
-            let target = match node.slot(slot) {
-                Slot::Empty => return None,
-                Slot::Inner(index) => Target::Inner(index),
-                Slot::Leaf(first, count) => Target::Leaf(first, count),
-            };
-            Some(Child { slot: slot as u32, bounds: node.slot_box(slot), target })
-        })
     }
 }

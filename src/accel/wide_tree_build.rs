@@ -5,8 +5,7 @@
 
 use super::extent::{Extent, Item};
 use super::split::Cluster;
-use super::wide_node::{WIDE_LEAF, WideNode, octant_slots};
-use super::wide_tree::WIDE_LEVELS;
+use super::wide_node::{WIDE_LEAF, WIDE_LEVELS, WideNode, octant_slots};
 use crate::parallel::{both, map_parts};
 
 /// The number of spheres up to which a node has only leaves.

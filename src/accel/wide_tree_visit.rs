@@ -39,9 +39,8 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec4};
 
-use super::wide_group::octant_order;
-use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
-use super::wide_tree::{WIDE_LEVELS, WideTree};
+use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WIDE_LEVELS, WideNode};
+use super::wide_tree::WideTree;
 
 /// The margin relative to the longest vector, for a direction of exactly unit length.
 const BESIDE: f64 = 128.0 * f64::EPSILON;
@@ -211,5 +210,37 @@ impl WideNode {
         let [a, b, c, d] = first.to_array();
         let [e, f, g, h] = second.to_array();
         ([a, b, c, d, e, f, g, h], hits)
+    }
+}
+
+/// Moves bit s to bit `s ^ octant`: the lowest bit is then the child that a ray of this octant hits first. The WGSL
+/// twin is `octant_order` in `shaders/accel/wide_group.wgsl`.
+#[inline]
+fn octant_order(mask: u32, octant: u32) -> u32 {
+    let mut mask = mask;
+    if octant & 1 != 0 {
+        mask = (mask & 0x55) << 1 | mask >> 1 & 0x55;
+    }
+    if octant & 2 != 0 {
+        mask = (mask & 0x33) << 2 | mask >> 2 & 0x33;
+    }
+    if octant & 4 != 0 {
+        mask = (mask & 0x0f) << 4 | mask >> 4;
+    }
+    mask
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_move_to_where_the_octant_sends_them() {
+        for octant in 0..8 {
+            for mask in 0..256_u32 {
+                let expected = (0..8).fold(0, |m, s| m | (mask >> s & 1) << (s ^ octant));
+                assert_eq!(octant_order(mask, octant), expected);
+            }
+        }
     }
 }

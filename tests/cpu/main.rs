@@ -9,7 +9,6 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-mod accel_trees;
 mod added;
 mod annotate;
 mod appearance;
@@ -38,7 +37,6 @@ mod film_parts;
 mod framing;
 mod fuzz;
 mod generate;
-mod grid_check;
 mod host_camera;
 mod hostile_rays;
 mod least_errors;
@@ -55,7 +53,6 @@ mod outlined;
 mod pages;
 mod perspective;
 mod pictures;
-mod rays;
 mod reference;
 mod round_cameras;
 mod run_file;

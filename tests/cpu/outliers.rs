@@ -1,11 +1,8 @@
-//! Scenes with outliers: the plan knows them, and the tree with margins of their own loses no sphere, wherever rays start.
+//! Scenes with outliers: the plan knows them, and what is built has every sphere and keeps to the plan. `structures::outliers`
+//! of `tests/gpu` sees that no sphere is lost from near and from afar.
 
-use fastrand::Rng;
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::glam::Vec3;
-use pinhole::internals::{NO_HIT, RayF32};
 
-use crate::rays::{assert_same, brute};
 use crate::support::spheres::{self, Spheres, crowd_and_outliers};
 
 const ROOMY: u64 = 1 << 30;
@@ -13,23 +10,7 @@ const ROOMY: u64 = 1 << 30;
 /// Bindings for about a thousand spheres.
 const TINY: u64 = 1 << 14;
 
-fn unit(rng: &mut Rng) -> Vec3 {
-    Vec3::from_array([(); 3].map(|()| rng.f32() - 0.5)).normalize_or(Vec3::X)
-}
-
-/// Rays at a sphere or past its rim as near as f32 says, from distances of all magnitudes.
-fn grazing(rng: &mut Rng, spheres: &Spheres, (low, high): (Vec3, Vec3), far: f32) -> RayF32 {
-    let [x, y, z, radius] = spheres[rng.usize(..spheres.len())];
-    let center = Vec3::new(x, y, z);
-    let away = 0.01 * (100.0 * far).powf(rng.f32());
-    let origin = (center + unit(rng) * away).clamp(low, high);
-    let beside = unit(rng).cross(center - origin).normalize_or(Vec3::X);
-    let rim = center + beside * (radius * (1.0 + 1e-6 * (rng.f32() - 0.5)));
-    let target = if rng.u32(..4) == 0 { center } else { rim };
-    RayF32 { origin, direction: (target - origin).normalize_or(Vec3::Z) }
-}
-
-fn check(name: &str, spheres: &Spheres, far: f32, count: usize) {
+fn check(name: &str, spheres: &Spheres) {
     let build = |choice, bytes| {
         let plan = AccelPlan::new(spheres, choice, bytes);
         let accel = plan.build(spheres);
@@ -55,31 +36,17 @@ fn check(name: &str, spheres: &Spheres, far: f32, count: usize) {
         });
         assert!(held + nodes.sum::<u64>() <= plan.device_bytes(), "{name}");
     }
-    let bounds = built[0].2.bounds();
-    let mut rng = Rng::with_seed(30);
-    let mut hits = 0;
-    for _ in 0..count {
-        let ray = grazing(&mut rng, spheres, bounds, far);
-        let expected = brute(spheres, &ray);
-        hits += u32::from(expected.t < NO_HIT);
-        for (name, _, accel) in &built {
-            assert_same(accel.find_nearest(&ray), expected, name, &ray);
-            assert_eq!(accel.find_any(&ray, NO_HIT), expected.t < NO_HIT, "{name}: {ray:?}");
-            assert!(!accel.find_any(&ray, expected.t), "{name}: {ray:?}");
-        }
-    }
-    assert!(hits as usize > count / 3, "{name}: {hits} rays hit");
 }
 
 #[test]
-fn no_sphere_is_lost_wherever_rays_start() {
+fn outliers_at_all_distances() {
     for (outliers, far) in [(1, 1e2), (1, 1e4), (4, 1e6), (3, 1e3), (4, 1e9)] {
         for is_in_line in [false, true] {
             let spheres = crowd_and_outliers(4_000, outliers, far, is_in_line);
-            check(&format!("{outliers} at {far}, {is_in_line}"), &spheres, far, 3_000);
+            check(&format!("{outliers} at {far}, {is_in_line}"), &spheres);
         }
     }
-    check("none", &crowd_and_outliers(4_000, 0, 1.0, false), 1.0, 2_000);
+    check("none", &crowd_and_outliers(4_000, 0, 1.0, false));
 }
 
 /// Beside a crowd of equal spheres, and beside one that is far from the origin of the frame.
@@ -87,15 +54,15 @@ fn no_sphere_is_lost_wherever_rays_start() {
 fn crowds_of_equal_spheres_and_crowds_elsewhere() {
     let mut equal: Spheres = vec![[0.25, 0.5, 0.75, 0.02]; 3_000];
     equal.push([1e4, 0.0, 0.0, 0.02]);
-    check("equal", &equal, 1e4, 1_000);
+    check("equal", &equal);
     let moved = |[x, y, z, radius]: [f32; 4]| [x + 1e4, y, z - 3e3, radius];
     let elsewhere: Spheres =
         crowd_and_outliers(4_000, 4, 1e4, false).into_iter().map(moved).collect();
-    check("elsewhere", &elsewhere, 1e4, 1_000);
+    check("elsewhere", &elsewhere);
     let outliers = vec![[-1e4, 1e4, 1e4, 0.5]; 4];
     let mut same = spheres::random(4_000, 31, |_| 0.01);
     same.extend(outliers);
-    check("equal outliers", &same, 1e4, 1_000);
+    check("equal outliers", &same);
 }
 
 /// The plan says what it knows, and takes a tree where a grid's margin would be too large.
@@ -104,7 +71,7 @@ fn plans_know_outliers() {
     let plan = |spheres: &Spheres, choice| AccelPlan::new(spheres, choice, ROOMY);
     let none = plan(&crowd_and_outliers(20_000, 0, 1.0, false), AccelChoice::Auto);
     assert_eq!(none.crowd, None);
-    assert!(matches!(none.structure, Structure::Grid), "{}", none.reason);
+    assert!(none.structure == Structure::Grid, "{}", none.reason);
     for outliers in [1, 20] {
         let spheres = crowd_and_outliers(20_000, outliers, 1e4, false);
         let auto = plan(&spheres, AccelChoice::Auto);
@@ -112,7 +79,7 @@ fn plans_know_outliers() {
         assert_eq!(auto.structure, Structure::WideTree);
         let says = format!("{outliers} of {} spheres lie far away", spheres.len());
         assert!(auto.reason.contains(&says), "{}", auto.reason);
-        assert!(matches!(plan(&spheres, AccelChoice::Grid).structure, Structure::Grid));
+        assert_eq!(plan(&spheres, AccelChoice::Grid).structure, Structure::Grid);
         // One brick, as for any tree of so many.
         assert_eq!(auto.build(&spheres).bricks().len(), 1);
     }

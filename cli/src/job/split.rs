@@ -18,7 +18,6 @@ use crate::input::Input;
 use crate::output::{name_all, unnamed};
 use crate::speak::tell;
 use crate::{progress, threads};
-use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::image::{Layer, LayerSet};
 use pinhole::render::{Integrator, RenderSettings};
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Expression, Handle, Literal, Module};
 
 use super::all_kernels;
-use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, PACKED_ROOT, word};
+use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, word};
 use crate::accel::wide_node::WideNode;
 use crate::accel::{self};
 use crate::gpu::passes::{emitter_table, lit, tiles};
@@ -41,7 +41,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("RADIUS_TO_FLOAT", accel::ball::RADIUS_TO_FLOAT),
         ("LEAF_FIRST", LEAF_FIRST),
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
-        ("WIDE_LEVELS", accel::wide_tree::WIDE_LEVELS),
+        ("WIDE_LEVELS", accel::wide_node::WIDE_LEVELS),
         ("WIDE_NODE_VECTORS", vectors(size_of::<WideNode>())),
         ("LIGHTING_TRANSPARENT", codes::lighting::TRANSPARENT),
         ("LIGHTING_SKY_SEEN", codes::lighting::SKY_SEEN),
@@ -75,9 +75,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("ENERGIES", crate::light::energy::ENTRIES as u32),
     ];
     let floats = [
-        // Two modules of the host define this constant.
         ("NO_HIT", records::NO_HIT),
-        ("NO_HIT", accel::query::NO_HIT),
         ("SMALLEST_COMPONENT", accel::slab::SMALLEST_COMPONENT),
         ("PI", std::f32::consts::PI),
         ("QUANTA", accel::ball::QUANTA),
@@ -86,16 +84,14 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         .into_iter()
         .chain(floats.map(|(name, value)| (name, value.to_bits())))
         .map(|(name, bits)| (name, vec![bits]))
-        .chain([
-            ("WIDE_ROOT", PACKED_ROOT.to_vec()),
-            ("LUMINANCE", LUMINANCE.map(|weight| (weight as f32).to_bits()).to_vec()),
-        ])
+        .chain([("LUMINANCE", LUMINANCE.map(|weight| (weight as f32).to_bits()).to_vec())])
         .collect()
 }
 
 /// Constants that only kernels use, and the shadings, which a test of `records.rs` compares.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_SHAPE",
+    "WIDE_ROOT",
     "NO_LIST",
     "AT_ONCE",
     "COORDINATE",
