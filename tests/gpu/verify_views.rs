@@ -8,7 +8,10 @@ use pinhole::{Appearance, Film, LinearRgb, Scene, Shading, Sphere, SphereArray};
 use crate::support::spheres;
 use crate::support::{View, shaded};
 
-pub(crate) const ALL: &[(&str, fn() -> View)] = &[
+/// Makes a view.
+type Make = fn() -> View;
+
+pub(crate) const ALL: &[(&str, Make)] = &[
     ("balls", balls),
     ("own_colors", own_colors),
     ("parallel", parallel),
