@@ -147,7 +147,8 @@ fn lost_part(headless: &'static Headless) {
 
         // The first part is there, and the second was lost: only that is rendered again.
         fs::remove_file(at("job/parts/000001.part")).unwrap();
-        let fault = format!("{kind}={}", lost_in(0));
+        // How many submissions a unit takes depends on its speed, so it is lost well before the last.
+        let fault = format!("{kind}={}", lost_in(0) / 2);
         let output = run(command(&folder, "job part job 1 -q"), &fault);
         assert_fails(&output, 5, &fault, LOST);
         succeed(&mut command(&folder, "job part job 0-1 -q"));
