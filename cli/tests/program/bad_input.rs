@@ -47,6 +47,14 @@ fn a_folder_that_cannot_be_written() {
     refused(&[], arguments, 1, &["/proc/out.png: cannot be written"]);
 }
 
+/// The folder of the snapshots has a scene of the demo that was changed.
+#[test]
+#[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
+fn a_demo_on_an_unknown_adapter() {
+    let arguments = "demo --adapter no-such-adapter";
+    refused(&[], arguments, 2, &["no-such-adapter", "adapter"]);
+}
+
 #[test]
 #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
 fn an_unknown_backend_is_named() {
