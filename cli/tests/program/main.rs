@@ -3,6 +3,8 @@
 //! No adapter is needed: the tests render on the CPU reference, or hide the drivers of the machine.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+#[path = "../../../tests/support/cases.rs"]
+mod cases;
 #[path = "../../../tests/support/arrays.rs"]
 mod npy_files;
 

@@ -1,0 +1,73 @@
+//! Cases in text files: the files that a command reads, the command, and what it answers.
+//!
+//! ```text
+//! $ cat short.xyz
+//! 4
+//!
+//! O 0 0 0
+//! $ pinhole render short.xyz -o out.png
+//! error: short.xyz: line 1: frame 0 declares 4 atoms, but the file ends after 1
+//! ```
+//!
+//! Below `$ cat NAME` stands the text of a file, up to the next line that starts with `$ `. Below `$ printf NAME` it stands
+//! with escapes (`\n`, `\r`, `\t`, `\\`, `\xff`), and the end of its last line is not part of it. Below `$ pinhole` stands the
+//! answer. An empty line separates cases.
+
+/// A command line, and the files that belong to it.
+#[derive(Default)]
+pub(crate) struct Case<'a> {
+    pub(crate) files: Vec<(&'a str, Vec<u8>)>,
+    pub(crate) arguments: &'a str,
+}
+
+/// Returns the text of a file of cases with what `answer` returns below each command.
+pub(crate) fn answered(text: &str, mut answer: impl FnMut(&Case<'_>) -> String) -> String {
+    let starts = text.match_indices("$ ").map(|(at, _)| at);
+    let starts = starts.filter(|at| *at == 0 || text[..*at].ends_with('\n'));
+    let bounds: Vec<usize> = starts.chain([text.len()]).collect();
+    let mut found = String::new();
+    let mut case = Case::default();
+    for bound in bounds.windows(2) {
+        let block = &text[bound[0]..bound[1]];
+        let (command, body) = block.split_once('\n').unwrap();
+        if let Some(arguments) = command.strip_prefix("$ pinhole ") {
+            case.arguments = arguments;
+            let end = if bound[1] == text.len() { "" } else { "\n" };
+            found += &format!("{command}\n{}{end}", answer(&std::mem::take(&mut case)));
+            continue;
+        }
+        found += block;
+        case.files.push(match command.strip_prefix("$ cat ") {
+            Some(name) => (name, body.as_bytes().to_vec()),
+            None => {
+                (command.strip_prefix("$ printf ").unwrap(), bytes(body.trim_end_matches('\n')))
+            }
+        });
+    }
+    assert!(case.files.is_empty(), "the last file belongs to no command");
+    found
+}
+
+/// The bytes that a text with escapes stands for.
+fn bytes(text: &str) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut letters = text.bytes();
+    while let Some(letter) = letters.next() {
+        let mut next = || letters.next().unwrap();
+        bytes.push(match letter {
+            b'\\' => match next() {
+                b'n' => b'\n',
+                b'r' => b'\r',
+                b't' => b'\t',
+                b'\\' => b'\\',
+                b'x' => {
+                    let digits = String::from_iter([next(), next()].map(char::from));
+                    u8::from_str_radix(&digits, 16).unwrap()
+                }
+                other => panic!("\\{} is not an escape", char::from(other)),
+            },
+            letter => letter,
+        });
+    }
+    bytes
+}
