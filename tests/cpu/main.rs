@@ -17,6 +17,8 @@ mod appearance;
 mod arrays;
 #[path = "../support/binary_files/mod.rs"]
 mod binary_files;
+#[path = "../support/cases.rs"]
+mod cases;
 #[path = "../support/damage.rs"]
 mod damage;
 #[path = "../support/seeds/mod.rs"]
@@ -57,6 +59,7 @@ mod perspective;
 mod pictures;
 mod rays;
 mod reference;
+mod refused;
 mod round_cameras;
 mod run_file;
 mod run_file_light;

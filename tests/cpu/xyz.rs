@@ -27,10 +27,6 @@ fn read(bytes: &[u8], frame: usize) -> Result<Atoms, LoadError> {
     })
 }
 
-fn message(text: &str) -> String {
-    read(text.as_bytes(), 0).unwrap_err().to_string()
-}
-
 #[test]
 fn a_molecule() {
     let frame = read(WATER.as_bytes(), 0).unwrap();
@@ -48,8 +44,6 @@ fn frames_of_a_trajectory() {
     let text = format!("{WATER}1\nlone\nHe 1 2 3\n\n2\n\nNa 0 0 0\nCl 2.8 0 0\n\n");
     let atoms = |frame| read(text.as_bytes(), frame).map(|f| f.spheres.len());
     assert_eq!([0, 1, 2].map(|frame| atoms(frame).unwrap()), [3, 1, 2]);
-    let missing = atoms(3).unwrap_err().to_string();
-    assert_eq!(missing, "there is no frame 3; the file has 3 frames, counted from 0");
 }
 
 #[test]
@@ -94,48 +88,6 @@ fn unknown_species_are_reported_once_each() {
     assert!(frame.notes[0].contains("not chemical elements: A; "), "{:?}", frame.notes);
 }
 
-#[test]
-fn errors_name_line_and_remedy() {
-    for (text, expected) in [
-        ("", "the file is empty; an XYZ file starts with the number of its atoms"),
-        ("\n \n", "the file is empty; an XYZ file starts with the number of its atoms"),
-        ("three\n", "line 1: `three` is not a valid number of atoms, which must begin a frame"),
-        ("-1\n\n", "line 1: `-1` is not a valid number of atoms, which must begin a frame"),
-        ("3\n\nO 0 0 0\nH 0 0 1\n", "line 1: frame 0 declares 3 atoms, but the file ends after 2"),
-        ("3\n", "line 1: frame 0 declares 3 atoms, but the file ends after 0"),
-        (
-            "1\n\nO 0 0 0\nH 0 0 1\n",
-            "line 4: `H 0 0 1` is not a valid number of atoms, which must begin a frame; \
-             frame 0 before it declares 1 atom on line 1",
-        ),
-        ("1\n\nO 0 zero 0\n", "line 3, column 3: y is `zero`, which is not a number"),
-        ("1\n\nO 0 0 nan\n", "line 3: z is NaN; a position must be finite"),
-        ("1\n\nO inf 0 0\n", "line 3: x is inf; a position must be finite"),
-        ("1\n\nO 0 0\n", "line 3: z, which is column 4, is missing; the line has 3 columns"),
-        ("1\n\n\n", "line 3: species, which is column 1, is missing; the line has 0 columns"),
-        (
-            "1\nProperties=species:S:1\nO\n",
-            "line 2: Properties has no pos:R:3, which must name the positions; its columns are species",
-        ),
-        (
-            "1\nProperties=species:S\nO 0 0 0\n",
-            "line 2: Properties=species:S is not a list of name:type:columns triples",
-        ),
-    ] {
-        assert_eq!(message(text), expected);
-    }
-    let binary = read(b"1\n\nO \xff 0 0\n", 0).unwrap_err().to_string();
-    assert_eq!(binary, "line 3: this line is not UTF-8 text, as it must be");
-}
-
-#[test]
-fn atoms_out_of_range_are_named_by_line() {
-    let with_radius = "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n";
-    assert!(message(with_radius).starts_with("line 3: radius is -2; "));
-    let far = "2\n\nO 0 0 0\nO 0 1e30 0\n";
-    assert!(message(far).starts_with("line 4: its center is [0.0, 1e30, 0.0]"), "{}", message(far));
-}
-
 /// The time must not grow with the square of the number of names.
 #[test]
 fn many_unknown_species() {
@@ -143,13 +95,6 @@ fn many_unknown_species() {
     let frame = read(format!("50001\n\n{text}O 0 0 0").as_bytes(), 0).unwrap();
     assert_eq!(frame.species.len(), 50_001);
     assert!(frame.notes[0].contains("and 49995 more"), "{:?}", frame.notes);
-}
-
-/// A number of atoms for which there is no memory must not be trusted.
-#[test]
-fn an_absurd_count_is_only_a_wrong_count() {
-    let text = format!("{}\n\nO 0 0 0\n", u64::MAX);
-    assert!(message(&text).contains("the file ends after 1"), "{}", message(&text));
 }
 
 #[test]
@@ -198,33 +143,6 @@ fn every_declared_column_and_the_cell_are_kept() {
     assert_eq!(numbers("q.3"), [4.0, 8.0]);
     assert_eq!(loaded.labels("site").unwrap().names, ["top", "hollow"]);
     assert_eq!(loaded.labels("fixed").unwrap().indices, [0, 1]);
-}
-
-#[test]
-fn a_bad_column_or_cell_is_named() {
-    let one = |comment: &str, values: &str| message(&format!("1\n{comment}\n{values}\n"));
-    let declared = "Properties=species:S:1:pos:R:3:charge:R:1";
-    assert_eq!(
-        one(declared, "H 0 0 0"),
-        "line 3: charge, which is column 5, is missing; the line has 4 columns"
-    );
-    assert_eq!(
-        one(declared, "H 0 0 0 x"),
-        "line 3, column 5: charge is `x`, which is not a number"
-    );
-    assert_eq!(
-        one(declared, "H 0 0 0 1 2"),
-        "line 3: this line has 6 columns, but only 5 have names"
-    );
-    let unknown = one("Properties=species:S:1:pos:R:3:charge:Q:1", "H 0 0 0 1");
-    assert!(
-        unknown.contains("line 2: Properties: charge has the type `Q`, which is none of"),
-        "{unknown}"
-    );
-    let many = one("Properties=species:S:1:pos:R:3:charge:R:99999999", "H 0 0 0 1");
-    assert!(many.contains("more columns than 1024"), "{many}");
-    let cell = one("Lattice=\"1 2 3\"", "H 0 0 0");
-    assert!(cell.contains("line 2: Lattice=1 2 3 is not a list of nine finite numbers"), "{cell}");
 }
 
 /// Names mean what they mean in all tables, and what is not used is said.

@@ -19,13 +19,19 @@ use crate::cases::{Case, answered};
 
 mod files;
 
+const SNAPSHOTS: &str = "tests/program/snapshots";
+
 const UPDATE: &str = "PINHOLE_UPDATE_SNAPSHOTS";
 
-/// Compares the files in `snapshots/` that a test is about with what `find` returns for their names and texts, or writes
+/// Compares the files in a folder that a test is about with what `find` returns for their names and texts, or writes
 /// them.
 #[track_caller]
-fn compare(is_about: impl Fn(&str) -> bool, find: impl Fn(&str, &str) -> String + Sync) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/snapshots");
+fn compare(
+    folder: &str,
+    is_about: impl Fn(&str) -> bool,
+    find: impl Fn(&str, &str) -> String + Sync,
+) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let compared = |name: &str| {
         let file = folder.join(name).with_extension("txt");
         // On Windows, Git may have written \r\n.
@@ -49,7 +55,7 @@ fn compare(is_about: impl Fn(&str) -> bool, find: impl Fn(&str, &str) -> String 
     });
     assert!(
         differences.is_empty(),
-        "what the program says differs from cli/tests/program/snapshots:\n\n{differences}\n\
+        "what the program says differs from the text files:\n\n{differences}\n\
          if the change is intended, rewrite the files:\n    \
          {UPDATE}=1 cargo test -p pinhole-cli --test program snapshots\n"
     );
@@ -60,6 +66,7 @@ fn compare(is_about: impl Fn(&str) -> bool, find: impl Fn(&str, &str) -> String 
 fn help() {
     let folder = crate::support::Folder::new();
     compare(
+        SNAPSHOTS,
         |name| name.starts_with("help"),
         |name, _| {
             let command = name["help".len()..].replace('-', " ");
@@ -76,9 +83,16 @@ fn help() {
 fn errors() {
     let other_build = if cfg!(feature = "gpu") { "without_gpu" } else { "devices" };
     compare(
+        SNAPSHOTS,
         |name| !name.starts_with("help") && ![other_build, "kernels"].contains(&name),
         |_, text| answered(text, refused),
     );
+}
+
+/// Files that the readers refuse; `tests/cpu/refused.rs` reads them too.
+#[test]
+fn refused_files() {
+    compare("../tests/files/refused", |_| true, |_, text| answered(text, refused));
 }
 
 /// Runs a command in a new folder and returns its exit code and its error.

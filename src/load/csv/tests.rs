@@ -11,10 +11,6 @@ fn loaded(text: &str) -> Loaded {
     read(text, &Options::default()).unwrap()
 }
 
-fn error(text: &str) -> String {
-    read(text, &Options::default()).unwrap_err()
-}
-
 fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
     match &loaded.spheres {
         SphereArray::F64(spheres) => spheres,
@@ -71,53 +67,6 @@ fn texts_and_missing_values() {
     assert!(q.iter().all(|q| q.is_nan()));
     // Atomic numbers are elements too.
     assert_eq!(spheres(&loaded("x y z element\n0 0 0 8\n"))[0][3], 1.5);
-}
-
-#[test]
-fn bad_tables() {
-    for (text, wanted) in [
-        ("", "there are no rows; a table has one on each line"),
-        ("# x y z\n", "there are no rows; a table has one on each line"),
-        (
-            "1,2,3\n",
-            "line 1: the table has no header; name its 3 columns in their order, such as with --columns x,y,z",
-        ),
-        ("a,b\n1,2\n", "there are no columns x, y and z; the columns are a, b"),
-        ("x,y,z\n1,2,3\n1,2\n", "line 3: z, which is column 3, is missing; the line has 2 columns"),
-        (
-            "x y z\n1 2 3\n\n# a\n1 2 3 4\n",
-            "line 5: this line has 4 columns, but only 3 have names",
-        ),
-        ("x,y,z\n1,north,3\n", "line 2, column 2: y is `north`, which is not a number"),
-        ("t,x,y,z\n\"a\nb\",1,2,3\nc,1,,3\n", "line 4: y is NaN; a position must be finite"),
-        (
-            "# a\n\nx;y;z;radius\n1;2;3;1\n1;2;3;0\n",
-            "line 5: radius is 0; a radius must be finite and greater than 0",
-        ),
-        ("x;y;z\n1,5;2;3\n", "line 2, column 1: x is `1,5`, which is not a number"),
-    ] {
-        assert_eq!(error(text), wanted, "{text:?}");
-    }
-    let named = |names: &[&str], text: &str| {
-        read(text, &Options::default().with_columns(names.iter().copied())).unwrap_err()
-    };
-    assert_eq!(
-        named(&["x", "y"], "1,2,3\n"),
-        "line 1: there are 2 names of columns, but this row has 3 values"
-    );
-    assert_eq!(
-        named(&["x", "y", "z"], "x,y,z\n1,2,3\n"),
-        "line 1: the table has a header here; remove the names of columns that are given"
-    );
-    assert_eq!(
-        named(&["x", "y", "w"], "1,2,3\n"),
-        "there are no columns x, y and z; the columns are x, y, w"
-    );
-    let binary = load::from_bytes(b"name,x,y,z\n\xff,1,2,3\n", "a.csv", &Options::default());
-    assert_eq!(
-        binary.unwrap_err().to_string(),
-        "line 2: this line is not UTF-8 text, as it must be"
-    );
 }
 
 #[test]

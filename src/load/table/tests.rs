@@ -88,36 +88,6 @@ fn what_is_not_used_is_said() {
     assert_eq!(loaded.columns.len(), 5);
 }
 
-#[test]
-fn bad_tables() {
-    let refused =
-        |table: Table, options: &Options| table.into_loaded(options).unwrap_err().to_string();
-    let plain = Options::default();
-    assert_eq!(
-        refused(table(&[("x", &[0.0]), ("Y", &[0.0]), ("w", &[0.0])]), &plain),
-        "there are no columns x, y and z; the columns are x, Y, w"
-    );
-    let nan = table(&[("x", &[0.0, f64::NAN]), ("y", &[0.0, 0.0]), ("z", &[0.0, 0.0])]);
-    assert_eq!(refused(nan, &plain), "row 1: x is NaN; a position must be finite");
-    let radii = || table(&[("x", &[0.0]), ("y", &[0.0]), ("z", &[0.0]), ("radius", &[-1.0])]);
-    assert_eq!(
-        refused(radii(), &plain),
-        "row 0: radius is -1; a radius must be finite and greater than 0"
-    );
-    let mut one = radii();
-    one.columns[3] = TableColumn::numbers("radius", vec![1.0]);
-    assert_eq!(
-        refused(one, &plain.clone().with_radius(2.0)),
-        "the column radius has radii; remove the radius that is given for all spheres"
-    );
-    let mut text = radii();
-    text.columns[1] = labels("y", &["north"], &[0]);
-    assert_eq!(
-        refused(text, &plain),
-        "the column y has text, such as `north`, where numbers must be"
-    );
-}
-
 #[cfg(feature = "scene-file")]
 #[test]
 fn colors_may_have_names() {

@@ -49,6 +49,7 @@ pub(super) fn folder() -> Folder {
         ("format.las", las(1, |bytes| bytes[104] = 11)),
         ("length.las", las(1, |bytes| bytes[105] = 20)),
         ("compressed.las", las(1, |bytes| bytes[104] |= 0x80)),
+        ("start.las", las(1, |bytes| bytes[99] = 0xff)),
         ("cut.las", las(2, |bytes| bytes.truncate(250))),
         ("nan-scale.las", las(1, |bytes| bytes[131..139].fill(0xff))),
         ("binary.toml", vec![0xff, 0xfe, 0x00]),
