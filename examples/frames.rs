@@ -4,7 +4,7 @@
 
 use std::io::Write as _;
 
-use pinhole::load::{self, Column, ColumnValues, Loaded, Options, Trajectory};
+use pinhole::load::{self, Column, ColumnValues, LoadErrorKind, Loaded, Options, Trajectory};
 use pinhole::{LinearRgb, SphereArray};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -25,7 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 writeln!(out, "problem\t{problem}")?;
             }
         }
-        Err(load::LoadError::NoFrames { .. }) => print(&mut out, 0, &load::open(&file, &options)?)?,
+        Err(error) if error.kind == LoadErrorKind::NoFrames => {
+            print(&mut out, 0, &load::open(&file, &options)?)?;
+        }
         Err(error) => return Err(error.into()),
     }
     Ok(())

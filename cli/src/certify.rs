@@ -14,7 +14,8 @@ use super::output::{check_not_inputs, check_writable, name_all, unnamed};
 use super::speak::{answer, tell};
 use super::{progress, threads};
 use pinhole::geometry::ray::Ray;
-use pinhole::load::npy::pixels::{self, Pixels, PixelsError};
+use pinhole::load::LoadError;
+use pinhole::load::npy::pixels::{self, Pixels};
 use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays};
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 
@@ -138,7 +139,7 @@ fn check(args: &CertifyArgs) -> Result<(), Failure> {
 /// Reads an array.
 fn array<T>(
     path: &Path,
-    decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, PixelsError>,
+    decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, LoadError>,
 ) -> Result<Pixels<T>, Failure> {
     progress::stage(format!("reading {}", path.display()));
     let bytes = read(path)?;

@@ -5,10 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
-use pinhole::load::npy::SpheresError;
-use pinhole::load::npz::NpzError;
 use pinhole::load::{
-    FORMATS, Format, LoadError, Loaded, Options, TableError, TopologyError, Trajectory,
+    FORMATS, Format, LoadError, LoadErrorKind, Loaded, Options, Place, Trajectory,
 };
 
 use super::failure::Failure;
@@ -144,11 +142,10 @@ fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
 
 /// An error of reading a file, with its path in front.
 pub(super) fn named(path: &Path, error: LoadError) -> Error {
-    match error {
-        LoadError::File { error, .. } => {
-            Error::new(error).context(format!("{}: cannot be read", path.display()))
-        }
-        other => Error::new(other).context(path.display().to_string()),
+    match error.place {
+        // The error has it.
+        Place::File(_) => Error::new(error),
+        _ => Error::new(error).context(path.display().to_string()),
     }
 }
 
@@ -165,28 +162,11 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
 
 /// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
-    match error.downcast_ref::<LoadError>() {
-        Some(LoadError::Topology(TopologyError::Missing { .. })) => {
-            return Failure::usage(format!("{error:#} (add --topology FILE)"));
+    match error.downcast_ref::<LoadError>().map(|error| error.kind) {
+        Some(LoadErrorKind::NoTopology) => {
+            Failure::usage(format!("{error:#} (add --topology FILE)"))
         }
-        Some(LoadError::Table(TableError::TwoRadii { .. })) => {
-            return Failure::usage(format!("{error:#}"));
-        }
-        _ => {}
-    }
-    let of_array = match error.downcast_ref::<LoadError>() {
-        Some(LoadError::Npy(error) | LoadError::Npz(NpzError::Spheres { error, .. })) => {
-            Some(error)
-        }
-        _ => None,
-    };
-    let loading = error.downcast_ref::<LoadError>();
-    let has_two_radii = matches!(loading, Some(LoadError::Table(TableError::TwoRadii { .. })));
-    match of_array {
-        Some(SpheresError::TwoRadii { .. } | SpheresError::Table(TableError::TwoRadii { .. })) => {
-            Failure::usage(format!("{error:#}"))
-        }
-        None if has_two_radii => Failure::usage(format!("{error:#}")),
+        Some(LoadErrorKind::TwoRadii) => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }
 }

@@ -1,7 +1,7 @@
 //! What may go wrong, and the Python exceptions that say so.
 
 use pinhole::gpu::GpuError;
-use pinhole::load::LoadError;
+use pinhole::load::{LoadError, Place};
 use pyo3::prelude::*;
 
 /// A failure, by the kind of exception that it becomes.
@@ -33,8 +33,8 @@ impl Fault {
 
     /// An error of reading the file at `path`.
     pub(crate) fn reading(path: &str, error: &LoadError) -> Self {
-        match error {
-            LoadError::File { .. } => Self::File(error.to_string()),
+        match error.place {
+            Place::File(_) => Self::File(error.to_string()),
             _ => Self::Input(format!("{path}: {error}")),
         }
     }

@@ -117,10 +117,7 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
             let found = Format::of_path(path.as_ref());
             let found =
                 found.map_err(|error| Fault::File(format!("{path}: cannot be read: {error}")))?;
-            found.ok_or_else(|| {
-                let error = LoadError::UnknownFormat { formats: names() };
-                Fault::Input(format!("{path}: {error}"))
-            })
+            found.ok_or_else(|| Fault::Input(format!("{path}: {}", Format::unknown())))
         }
     }
 }

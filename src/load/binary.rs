@@ -3,66 +3,27 @@
 
 use std::io::{self, SeekFrom};
 
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind};
 use super::source::Bytes;
 use crate::text::{one_line, shortened};
 
-/// An error of reading a binary file. Offsets are in bytes from the start of the file.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BinaryError {
-    /// The file does not start as a file of its format does.
-    #[error("this is not a {format} file: {message}")]
-    Start {
-        /// Name of the format.
-        format: &'static str,
-        /// What is wrong with the first bytes.
-        message: String,
-    },
-    /// The file ends before something does.
-    #[error(
-        "byte {offset}: {what} takes {wanted} bytes, but the file ends after {left}; it is cut off or still being written"
-    )]
-    CutOff {
-        /// Where it begins.
-        offset: u64,
-        /// What is cut off.
-        what: String,
-        /// How many bytes it takes.
-        wanted: u64,
-        /// How many bytes the file has from there on.
-        left: u64,
-    },
-    /// A value cannot be right.
-    #[error("byte {offset}: {message}")]
-    Value {
-        /// Where the value is.
-        offset: u64,
-        /// What is wrong with it.
-        message: String,
-    },
-    /// A position is not finite.
-    #[error(
-        "byte {offset}: frame {frame}: the {axis} coordinate of atom {atom} is {found}; a position must be finite"
-    )]
-    Position {
-        /// Where the coordinate is, or where the positions begin if they are compressed.
-        offset: u64,
-        /// Index of the frame, from 0.
-        frame: usize,
-        /// Index of the atom, from 0.
-        atom: usize,
-        /// Name of the axis.
-        axis: char,
-        /// The value.
-        found: f64,
-    },
+/// The file does not start as a file of its format does.
+pub(super) fn wrong_start(format: &str, message: impl std::fmt::Display) -> LoadError {
+    LoadError::new(format!("this is not a {format} file: {message}"))
 }
 
-impl BinaryError {
-    pub(super) fn value(offset: u64, message: impl Into<String>) -> Self {
-        Self::Value { offset, message: message.into() }
-    }
+/// A position is not finite. `byte` is where the coordinate is, or where the positions begin if they are compressed.
+pub(super) fn wrong_position(
+    byte: u64,
+    frame: usize,
+    atom: usize,
+    axis: char,
+    found: f64,
+) -> LoadError {
+    let message = format!(
+        "frame {frame}: the {axis} coordinate of atom {atom} is {found}; a position must be finite"
+    );
+    LoadError::byte(byte, message)
 }
 
 /// The order of the bytes of numbers.
@@ -136,12 +97,16 @@ impl<'a> Reader<'a> {
     }
 
     /// Checks that `wanted` bytes follow.
-    pub(super) fn check(&self, wanted: u64, what: impl Into<String>) -> Result<(), BinaryError> {
+    pub(super) fn check(&self, wanted: u64, what: impl Into<String>) -> Result<(), LoadError> {
         let (offset, left) = (self.offset, self.left());
         if wanted <= left {
             return Ok(());
         }
-        Err(BinaryError::CutOff { offset, what: what.into(), wanted, left })
+        let what: String = what.into();
+        let message = format!(
+            "{what} takes {wanted} bytes, but the file ends after {left}; it is cut off or still being written"
+        );
+        Err(LoadError::byte(offset, message).of_kind(LoadErrorKind::CutOff))
     }
 
     /// Reads bytes, which the file must have.

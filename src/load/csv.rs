@@ -4,13 +4,11 @@
 //! are comments, and the last comment before the first row may have the names of the columns. What the names mean is the
 //! same as in all tables. A value that is missing (empty, `NaN`, `NA`, `null`) is NaN.
 
-mod error;
 mod first;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod tests;
 
-pub use error::CsvError;
 use first::First;
 pub(super) use first::starts;
 
@@ -18,9 +16,9 @@ use super::error::LoadError;
 use super::format::Options;
 use super::labels::LabelsBuilder;
 use super::loaded::{ColumnValues, Loaded};
-use super::rows::{self, LineError, Lines, Values, number};
+use super::rows::{self, Lines, Values, number};
 use super::table::{self, Table, TableColumn};
-use crate::text::{shortened, without_byte_order_mark};
+use crate::text::without_byte_order_mark;
 
 /// What separates the values of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +84,7 @@ impl Building {
 }
 
 /// Reads all rows. Returns whether a column has turned out to be of text, so that its values are not whole.
-fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LineError> {
+fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LoadError> {
     let declared = columns.len();
     let mut is_new_text = false;
     first.each_row(|line, values| {
@@ -102,23 +100,20 @@ fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LineEr
                     continue;
                 }
                 if table::must_be_numbers(&first.names[column]) {
-                    let found = shortened(&String::from_utf8_lossy(value));
-                    let what = shortened(&first.names[column]);
-                    return Err(LineError::Number { line, column: column + 1, what, found });
+                    return Err(rows::not_a_number(value, line, column, &first.names[column]));
                 }
                 (building.is_text, is_new_text) = (true, true);
             }
             if !value.is_ascii() && std::str::from_utf8(value).is_err() {
-                return Err(LineError::NotText { line });
+                return Err(rows::not_text(line));
             }
             building.labels.push(value);
         }
         if found < declared {
-            let what = shortened(&first.names[found]);
-            return Err(LineError::Missing { line, column: found + 1, what, columns: found });
+            return Err(rows::missing(line, &first.names[found], found, found));
         }
         if found > declared {
-            return Err(LineError::TooMany { line, columns: found, declared });
+            return Err(rows::too_many(line, found, declared));
         }
         Ok(())
     })?;
@@ -136,8 +131,8 @@ impl First<'_> {
     /// Calls a function with the line of each row and its values.
     fn each_row(
         &self,
-        mut each: impl FnMut(usize, &mut dyn Iterator<Item = &[u8]>) -> Result<(), LineError>,
-    ) -> Result<(), LineError> {
+        mut each: impl FnMut(usize, &mut dyn Iterator<Item = &[u8]>) -> Result<(), LoadError>,
+    ) -> Result<(), LoadError> {
         let separator = match self.separator {
             Separator::Byte(separator) => separator,
             Separator::Blank => {
@@ -163,9 +158,7 @@ impl First<'_> {
             match reader.read_byte_record(&mut record) {
                 Ok(true) => {}
                 Ok(false) => return Ok(()),
-                Err(_) => {
-                    return Err(LineError::NotText { line: self.lines_before + before });
-                }
+                Err(_) => return Err(rows::not_text(self.lines_before + before)),
             }
             let line = record.position().map_or(before, |position| position.line() as usize);
             // A line with nothing but white space is not a row.

@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(super) use header::starts;
 use header::{CELL_BYTES, Header};
 
-use super::binary::{BinaryError, Reader, numbers};
+use super::binary::{Reader, numbers, wrong_position};
 use super::error::LoadError;
 use super::format::Options;
 use super::loaded::Loaded;
@@ -49,7 +49,7 @@ fn find(
     reader.seek(end)?;
     let problem = match reader.left() {
         0 => None,
-        _ => reader.check(others, format!("frame {count}")).err().map(LoadError::from),
+        _ => reader.check(others, format!("frame {count}")).err(),
     };
     let mut notes = Vec::new();
     if problem.is_none() && u64::from(header.frames) > count {
@@ -120,9 +120,8 @@ impl Dcd {
             for (value, number) in cell.iter_mut().zip(numbers(&bytes, header.order)) {
                 *value = number;
             }
-            positions.cell = cell::edges(cell).map_err(|message| {
-                BinaryError::value(offset, format!("frame {frame}: {message}"))
-            })?;
+            positions.cell = cell::edges(cell)
+                .map_err(|message| LoadError::byte(offset, format!("frame {frame}: {message}")))?;
         }
         let moving = header.moving(frame);
         positions.centers.resize(header.atoms, [0.0; 3]);
@@ -136,7 +135,7 @@ impl Dcd {
                 let found = f64::from(number);
                 if !found.is_finite() {
                     let offset = start + 4 * index as u64;
-                    return Err(BinaryError::Position { offset, frame, atom, axis, found }.into());
+                    return Err(wrong_position(offset, frame, atom, axis, found));
                 }
                 positions.centers[atom][component] = found;
             }

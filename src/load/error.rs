@@ -1,119 +1,154 @@
-//! Errors of loading spheres.
+//! The error of reading files.
 
+use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// An error of loading spheres. Messages from a reader name the line, column or byte but not the file, which the
-/// caller knows.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LoadError {
-    /// The file cannot be read.
-    #[error("{}: cannot be read: {error}", path.display())]
-    File {
-        /// The path of the file.
-        path: PathBuf,
-        /// The error of the operating system.
-        error: io::Error,
-    },
-    /// The bytes of a file cannot be read; [`LoadError::File`] has its path as well.
-    #[error("the file cannot be read: {0}")]
-    Io(#[from] io::Error),
-    /// Neither the name nor the content of the file shows its format.
-    #[error(
-        "neither the name nor the content of this file shows its format; choose one of {formats}"
-    )]
-    UnknownFormat {
-        /// The names of all formats.
-        formats: String,
-    },
-    /// The format has no frames.
-    #[error("a file of the format {format} has no frames; read it as a whole")]
-    NoFrames {
-        /// Name of the format.
-        format: &'static str,
-    },
-    /// The file has fewer frames.
-    #[error(
-        "there is no frame {wanted}; the file has {frames} {}, counted from 0",
-        if *frames == 1 { "frame" } else { "frames" }
-    )]
-    NoSuchFrame {
-        /// The frame that was asked for.
-        wanted: usize,
-        /// Number of frames in the file.
-        frames: usize,
-    },
-    /// A line of values cannot be read.
-    #[cfg(feature = "table")]
-    #[error(transparent)]
-    Line(#[from] super::rows::LineError),
-    /// An option does not apply to the format.
-    #[error(transparent)]
-    Option(#[from] OptionError),
-    /// A table of text cannot be read.
-    #[cfg(feature = "csv")]
-    #[error(transparent)]
-    Csv(#[from] super::csv::CsvError),
-    /// A file of LAMMPS cannot be read.
-    #[cfg(feature = "lammps")]
-    #[error(transparent)]
-    Lammps(#[from] super::lammps::LammpsError),
-    /// An mmCIF file cannot be read.
-    #[cfg(feature = "mmcif")]
-    #[error(transparent)]
-    MmCif(#[from] super::mmcif::MmCifError),
-    /// A LAS file cannot be read.
-    #[cfg(feature = "las")]
-    #[error(transparent)]
-    Las(#[from] super::las::LasError),
-    /// A binary trajectory cannot be read.
-    #[cfg(feature = "binary")]
-    #[error(transparent)]
-    Binary(#[from] super::binary::BinaryError),
-    /// A trajectory does not go with its topology.
-    #[cfg(feature = "binary")]
-    #[error(transparent)]
-    Topology(#[from] super::topology::TopologyError),
-    /// An `.npy` file cannot be read.
-    #[cfg(feature = "npy")]
-    #[error(transparent)]
-    Npy(#[from] super::npy::SpheresError),
-    /// An `.npz` archive cannot be read.
-    #[cfg(feature = "npy")]
-    #[error(transparent)]
-    Npz(#[from] super::npz::NpzError),
-    /// A PDB file cannot be read.
-    #[cfg(feature = "pdb")]
-    #[error(transparent)]
-    Pdb(#[from] super::pdb::PdbError),
-    /// A PLY file cannot be read.
-    #[cfg(feature = "ply")]
-    #[error(transparent)]
-    Ply(#[from] super::ply::PlyError),
-    /// Raw numbers cannot be read.
-    #[error(transparent)]
-    Raw(#[from] super::raw::RawError),
-    /// A table of points does not make spheres.
-    #[cfg(feature = "table")]
-    #[error(transparent)]
-    Table(#[from] super::table::TableError),
-    /// A VTK XML file cannot be read.
-    #[cfg(feature = "vtk")]
-    #[error(transparent)]
-    Vtk(#[from] super::vtk::VtkError),
-    /// An XYZ file cannot be read.
-    #[cfg(feature = "xyz")]
-    #[error(transparent)]
-    Xyz(#[from] super::xyz::XyzError),
+/// An error of reading a file: what is wrong, and where. Its text has one line, which names the line, column or byte but
+/// not the file, which the caller knows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadError {
+    /// What a program may want to tell apart.
+    pub kind: LoadErrorKind,
+    /// Where it is wrong.
+    pub place: Place,
+    /// What is wrong, and often what to do about it.
+    pub message: String,
 }
 
-/// The error of an option that does not apply to the format of a file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{option} applies only to {what}; remove it")]
-pub struct OptionError {
-    /// Name of the option, such as `frame`.
-    pub option: &'static str,
-    /// The kind of file that the option applies to, with its extensions.
-    pub what: String,
+/// Kinds of errors that programs answer in their own ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LoadErrorKind {
+    /// The operating system does not give the bytes; the message is its own.
+    Io,
+    /// The file ends too early.
+    CutOff,
+    /// The format has no frames, so the file must be read as a whole.
+    NoFrames,
+    /// Positions come without what they belong to; a topology must be given.
+    NoTopology,
+    /// No columns are positions.
+    NoPositions,
+    /// The file has radii, and a radius was given as well.
+    TwoRadii,
+    /// The file is wrong in another way.
+    Other,
+}
+
+/// A place in a file. Lines and columns are counted from 1; bytes, rows and pieces from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// The file as a whole, or its end.
+    Whole,
+    /// The file with this path.
+    File(PathBuf),
+    /// A line.
+    Line(usize),
+    /// A column of a line: a letter or a value.
+    Column {
+        /// The line.
+        line: usize,
+        /// The column.
+        column: usize,
+    },
+    /// Several columns of a line, which are letters.
+    Columns {
+        /// The line.
+        line: usize,
+        /// The first column.
+        first: usize,
+        /// The last column.
+        last: usize,
+    },
+    /// A byte.
+    Byte(u64),
+    /// A row of a table or an array.
+    Row(usize),
+    /// A piece of a VTK file.
+    Piece(usize),
+    /// An array of an archive.
+    Array(String),
+}
+
+impl LoadError {
+    /// An error that concerns the whole file.
+    pub(crate) fn new(message: impl Into<String>) -> Self {
+        Self::at(Place::Whole, message)
+    }
+
+    /// An error at a place.
+    pub(crate) fn at(place: Place, message: impl Into<String>) -> Self {
+        Self { kind: LoadErrorKind::Other, place, message: message.into() }
+    }
+
+    /// An error in a line.
+    #[allow(dead_code, reason = "not every build has a format of lines")]
+    pub(crate) fn line(line: usize, message: impl Into<String>) -> Self {
+        Self::at(Place::Line(line), message)
+    }
+
+    /// An error at a byte.
+    #[allow(dead_code, reason = "not every build has a binary format")]
+    pub(crate) fn byte(byte: u64, message: impl Into<String>) -> Self {
+        Self::at(Place::Byte(byte), message)
+    }
+
+    /// The same error with another kind.
+    pub(crate) fn of_kind(self, kind: LoadErrorKind) -> Self {
+        Self { kind, ..self }
+    }
+
+    pub(crate) fn no_such_frame(wanted: usize, frames: usize) -> Self {
+        let name = if frames == 1 { "frame" } else { "frames" };
+        let have = format!("the file has {frames} {name}, counted from 0");
+        Self::new(format!("there is no frame {wanted}; {have}"))
+    }
+
+    /// Puts the path into an error of the operating system.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        match self.kind {
+            LoadErrorKind::Io => Self { place: Place::File(path.to_path_buf()), ..self },
+            _ => self,
+        }
+    }
+}
+
+impl From<io::Error> for LoadError {
+    fn from(error: io::Error) -> Self {
+        Self::new(error.to_string()).of_kind(LoadErrorKind::Io)
+    }
+}
+
+impl std::error::Error for LoadError {}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, place, message } = self;
+        match (kind, place) {
+            (LoadErrorKind::Io, Place::Whole) => write!(f, "the file cannot be read: {message}"),
+            (LoadErrorKind::Io, place) => write!(f, "{place}cannot be read: {message}"),
+            _ => write!(f, "{place}{message}"),
+        }
+    }
+}
+
+/// What stands before a message.
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::File(path) => write!(f, "{}: ", path.display()),
+            Self::Line(line) => write!(f, "line {line}: "),
+            Self::Column { line, column } => write!(f, "line {line}, column {column}: "),
+            Self::Columns { line, first, last } => {
+                write!(f, "line {line}, columns {first}-{last}: ")
+            }
+            Self::Byte(byte) => write!(f, "byte {byte}: "),
+            Self::Row(row) => write!(f, "row {row}: "),
+            Self::Piece(piece) => write!(f, "piece {piece}: "),
+            Self::Array(name) => write!(f, "array `{name}`: "),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use super::error::{LoadError, OptionError};
+use super::error::LoadError;
 use super::formats::FORMATS;
 #[cfg(feature = "gzip")]
 use super::gzip;
@@ -106,10 +106,17 @@ impl Format {
     /// Returns the format of a file by its extension or else by its first bytes.
     pub(super) fn of_file(path: &Path, first: &[u8]) -> Result<&'static Self, LoadError> {
         let format = Self::of_file_name(path).or_else(|| Self::of_content(first));
-        format.ok_or_else(|| {
-            let names = FORMATS.iter().map(|format| format.name);
-            LoadError::UnknownFormat { formats: names.collect::<Vec<_>>().join(", ") }
-        })
+        format.ok_or_else(Self::unknown)
+    }
+
+    /// The error of a file of which neither the name nor the content shows the format.
+    #[must_use]
+    pub fn unknown() -> LoadError {
+        let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+        LoadError::new(format!(
+            "neither the name nor the content of this file shows its format; choose one of {}",
+            names.join(", ")
+        ))
     }
 
     /// Lists the extensions of all formats for which `is_wanted` returns true, such as `.npy, .npz`.
@@ -124,27 +131,30 @@ impl Format {
     ///
     /// # Errors
     /// Returns the first option that does not apply.
-    pub fn check(&self, options: &Options) -> Result<(), OptionError> {
+    pub fn check(&self, options: &Options) -> Result<(), LoadError> {
+        let refused = |option, what: String| {
+            Err(LoadError::new(format!("{option} applies only to {what}; remove it")))
+        };
         if options.frame.is_some() && !self.has_frames() {
             let what =
                 format!("trajectories ({})", Self::extensions_of(|format| format.has_frames()));
-            return Err(OptionError { option: "frame", what });
+            return refused("frame", what);
         }
         if options.radius.is_some() && !self.may_lack_radii {
             let files = Self::extensions_of(|format| format.may_lack_radii);
             let what = format!("data that can lack radii ({files})");
-            return Err(OptionError { option: "radius", what });
+            return refused("radius", what);
         }
         if options.topology.is_some() && !self.needs_topology {
             let what = format!(
                 "trajectories of positions alone ({})",
                 Self::extensions_of(|format| format.needs_topology)
             );
-            return Err(OptionError { option: "topology", what });
+            return refused("topology", what);
         }
         if !options.columns.is_empty() && !self.may_lack_names {
             let files = Self::extensions_of(|format| format.may_lack_names);
-            return Err(OptionError { option: "columns", what: format!("tables ({files})") });
+            return refused("columns", format!("tables ({files})"));
         }
         Ok(())
     }

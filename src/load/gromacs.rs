@@ -6,8 +6,8 @@ mod trr;
 mod unpack;
 mod xtc;
 
-use super::binary::{BinaryError, Reader};
-use super::error::LoadError;
+use super::binary::Reader;
+use super::error::{LoadError, LoadErrorKind};
 use super::trajectory::{FrameIndex, FrameSpan};
 
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
@@ -44,7 +44,7 @@ fn find_frames(
                 }
                 reader.seek(end)?;
             }
-            Err(LoadError::Io(error)) => return Err(error.into()),
+            Err(error) if error.kind == LoadErrorKind::Io => return Err(error),
             Err(problem) => {
                 found.problem = Some(problem);
                 break;
@@ -56,20 +56,16 @@ fn find_frames(
     }
     if found.frames.is_empty() && found.problem.is_none() {
         let message = "no frame has positions";
-        found.problem = Some(BinaryError::value(0, message).into());
+        found.problem = Some(LoadError::byte(0, message));
     }
     Ok(found)
 }
 
 /// The edges of a cell, in nm; `None` if they are 0, as where there is no cell.
-fn cell_of(
-    edges: [f64; 9],
-    offset: u64,
-    frame: usize,
-) -> Result<Option<[[f64; 3]; 3]>, BinaryError> {
+fn cell_of(edges: [f64; 9], offset: u64, frame: usize) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
     if edges.iter().any(|value| !value.is_finite()) {
         let message = format!("frame {frame}: the cell has a number that is not finite");
-        return Err(BinaryError::value(offset, message));
+        return Err(LoadError::byte(offset, message));
     }
     let [a, b, c, d, e, f, g, h, i] = edges.map(|edge| edge * ANGSTROMS);
     Ok(edges.iter().any(|edge| *edge != 0.0).then_some([[a, b, c], [d, e, f], [g, h, i]]))

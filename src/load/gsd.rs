@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use index::{Chunk, Index};
 
-use super::binary::{BinaryError, Order, Reader, component_names, shown};
+use super::binary::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::elements::appearance;
 use super::error::LoadError;
 use super::format::Options;
@@ -53,8 +53,7 @@ fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIn
     let frames: Vec<_> = (0..index.frames()).map(span).collect();
     let problem = index.problem.take();
     if frames.is_empty() && problem.is_none() {
-        let message = "the file has no frames".to_owned();
-        return Err(BinaryError::Start { format: "gsd", message }.into());
+        return Err(wrong_start("gsd", "the file has no frames"));
     }
     let is_whole = problem.is_none();
     Ok(FrameIndex {
@@ -166,13 +165,13 @@ impl Frame<'_> {
     }
 
     /// The same, for one that has a row for each particle.
-    fn particle_chunk(&self, name: &str) -> Result<Option<Chunk>, BinaryError> {
+    fn particle_chunk(&self, name: &str) -> Result<Option<Chunk>, LoadError> {
         let own = self.index.chunk(self.frame, name);
         let inherited = || self.index.chunk(0, name).filter(|_| self.is_like_first);
         Ok(own.or_else(inherited))
     }
 
-    fn expect(&self, chunk: Chunk, name: &str, components: u32) -> Result<(), BinaryError> {
+    fn expect(&self, chunk: Chunk, name: &str, components: u32) -> Result<(), LoadError> {
         if chunk.rows == self.count && chunk.columns == components {
             return Ok(());
         }
@@ -180,7 +179,7 @@ impl Frame<'_> {
             "frame {}: the chunk {name} has {} × {} numbers, but must have {} × {components}",
             self.frame, chunk.rows, chunk.columns, self.count
         );
-        Err(BinaryError::value(chunk.location, message))
+        Err(LoadError::byte(chunk.location, message))
     }
 
     fn numbers(&mut self, chunk: Chunk, name: &str) -> Result<Vec<f64>, LoadError> {
@@ -188,7 +187,7 @@ impl Frame<'_> {
         self.left = self.left.checked_sub(bytes).ok_or_else(|| {
             let message =
                 format!("frame {}: its chunks take more bytes than the file has", self.frame);
-            BinaryError::value(chunk.location, message)
+            LoadError::byte(chunk.location, message)
         })?;
         chunk.numbers(&mut self.reader, name)
     }
@@ -217,7 +216,7 @@ impl Frame<'_> {
                 "frame {} declares {} particles, but has no {NAME}",
                 self.frame, self.count
             );
-            return Err(BinaryError::value(0, message).into());
+            return Err(LoadError::byte(0, message));
         };
         self.expect(chunk, NAME, 3)?;
         let columns = self.columns(chunk, NAME, "position")?;
@@ -225,14 +224,9 @@ impl Frame<'_> {
         for (axis, column) in columns.iter().enumerate() {
             let ColumnValues::Numbers(numbers) = &column.values else { continue };
             if let Some(atom) = numbers.iter().position(|number| !number.is_finite()) {
-                return Err(BinaryError::Position {
-                    offset: chunk.location + (3 * atom + axis) as u64 * width,
-                    frame: self.frame as usize,
-                    atom,
-                    axis: ['x', 'y', 'z'][axis],
-                    found: numbers[atom],
-                }
-                .into());
+                let byte = chunk.location + (3 * atom + axis) as u64 * width;
+                let (axis, found) = (['x', 'y', 'z'][axis], numbers[atom]);
+                return Err(wrong_position(byte, self.frame as usize, atom, axis, found));
             }
         }
         Ok(columns)
@@ -260,7 +254,7 @@ impl Frame<'_> {
                 ids[particle],
                 names.len()
             );
-            return Err(BinaryError::value(chunk.location, message).into());
+            return Err(LoadError::byte(chunk.location, message));
         }
         Ok(Labels { names, indices: ids.into_iter().map(|id| id as u32).collect() })
     }
@@ -320,7 +314,7 @@ impl Frame<'_> {
             }
             _ => {
                 let message = format!("frame {}: the box is not six finite numbers", self.frame);
-                Err(BinaryError::value(chunk.location, message).into())
+                Err(LoadError::byte(chunk.location, message))
             }
         }
     }

@@ -10,12 +10,22 @@ pub(super) mod data;
 mod data_tests;
 pub(super) mod dump;
 mod elements;
-mod error;
 mod order;
 mod styles;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod tests;
 
-pub use cell::Shape;
-pub use error::LammpsError;
+use super::error::LoadError;
+use crate::text::shortened;
+
+/// Text of the file that stands in the wrong place or cannot be read, with what is wrong about it.
+fn wrong_text(line: usize, text: &[u8], what: &str) -> LoadError {
+    let text = shortened(&String::from_utf8_lossy(text.trim_ascii()));
+    LoadError::line(line, format!("`{text}` {what}"))
+}
+
+fn too_few_atoms(line: usize, declared: usize, found: usize) -> LoadError {
+    let message = format!("{declared} atoms are declared, but the file ends after {found}");
+    LoadError::line(line, message)
+}

@@ -4,69 +4,11 @@
 //! compressed, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes asks for
 //! 50 GB of memory, which ends the program.
 
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::table::{Table, TableColumn};
 use crate::parallel;
-
-/// An error of reading a LAS file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LasError {
-    /// The file does not start as LAS.
-    #[error("this is not a LAS file: it does not start with LASF")]
-    NoLas,
-    /// The file ends within its header.
-    #[error("the header is cut off: the file has {found} bytes, but a header has 227 or more")]
-    Header {
-        /// Number of bytes in the file.
-        found: usize,
-    },
-    /// The points are compressed.
-    #[error(
-        "the points are compressed (LAZ), which is not read; decompress the file, such as with `laszip -i a.laz -o \
-         a.las` or `pdal translate a.laz a.las`"
-    )]
-    Compressed,
-    /// The format of the points is not known.
-    #[error("byte 104: the point format is {found}, but those of LAS are 0 to 10")]
-    Format {
-        /// The number that was found.
-        found: u8,
-    },
-    /// Points are shorter than their format needs.
-    #[error("byte 105: a point has {found} bytes, but point format {format} takes {least}")]
-    Length {
-        /// The point format.
-        format: u8,
-        /// Number of bytes by the file.
-        found: usize,
-        /// Number of bytes of the format.
-        least: usize,
-    },
-    /// The file has fewer points than its header says.
-    #[error(
-        "byte {start}: the header declares {wanted} points of {length} bytes, but only {found} bytes follow; the file is \
-         cut off"
-    )]
-    CutOff {
-        /// Where the points start.
-        start: u64,
-        /// Number of points by the header.
-        wanted: u64,
-        /// Bytes of a point.
-        length: usize,
-        /// Number of bytes after the start.
-        found: usize,
-    },
-    /// There is not enough memory for the points.
-    #[error("there is not enough memory for {count} points")]
-    Memory {
-        /// Number of points.
-        count: u64,
-    },
-}
 
 /// Bytes of a point of each format, by the specification of LAS 1.4 (R15, tables 7 to 17).
 const LENGTHS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
@@ -100,24 +42,38 @@ struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    fn new(bytes: &'a [u8]) -> Result<Self, LasError> {
+    fn new(bytes: &'a [u8]) -> Result<Self, LoadError> {
         if !starts(bytes) {
-            return Err(LasError::NoLas);
+            return Err(LoadError::new("this is not a LAS file: it does not start with LASF"));
         }
         if bytes.len() < 227 {
-            return Err(LasError::Header { found: bytes.len() });
+            let message = format!(
+                "the header is cut off: the file has {} bytes, but a header has 227 or more",
+                bytes.len()
+            );
+            return Err(LoadError::new(message).of_kind(LoadErrorKind::CutOff));
         }
         let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
         let format = byte(104);
         // Compressors set the highest bits.
         if format & 0xc0 != 0 {
-            return Err(LasError::Compressed);
+            return Err(LoadError::new(
+                "the points are compressed (LAZ), which is not read; decompress the file, such as with `laszip -i a.laz -o \
+                 a.las` or `pdal translate a.laz a.las`",
+            ));
         }
         let least = LENGTHS.get(usize::from(format)).copied();
-        let least = least.ok_or(LasError::Format { found: format })?;
+        let least = least.ok_or_else(|| {
+            LoadError::byte(
+                104,
+                format!("the point format is {format}, but those of LAS are 0 to 10"),
+            )
+        })?;
         let length = usize::from(u16::from_le_bytes(chunk(bytes, 105)));
         if length < least {
-            return Err(LasError::Length { format, found: length, least });
+            let message =
+                format!("a point has {length} bytes, but point format {format} takes {least}");
+            return Err(LoadError::byte(105, message));
         }
         let start = u64::from(u32::from_le_bytes(chunk(bytes, 96)));
         let header = u16::from_le_bytes(chunk(bytes, 94));
@@ -128,14 +84,18 @@ impl<'a> Points<'a> {
         let data = usize::try_from(start).ok().and_then(|start| bytes.get(start..));
         let data = data.unwrap_or_default();
         if wanted > (data.len() / length) as u64 {
-            return Err(LasError::CutOff { start, wanted, length, found: data.len() });
+            let message = format!(
+                "the header declares {wanted} points of {length} bytes, but only {} bytes follow; the file is cut off",
+                data.len()
+            );
+            return Err(LoadError::byte(start, message).of_kind(LoadErrorKind::CutOff));
         }
         let three = |at: usize| [0, 8, 16].map(|axis| f64::from_le_bytes(chunk(bytes, at + axis)));
         let (scale, offset) = (three(131), three(155));
         Ok(Self { bytes: data, count: wanted as usize, length, format, scale, offset })
     }
 
-    fn columns(&self, notes: &mut Vec<String>) -> Result<Vec<TableColumn>, LasError> {
+    fn columns(&self, notes: &mut Vec<String>) -> Result<Vec<TableColumn>, LoadError> {
         let is_new = self.format >= 6;
         let mut columns = Vec::new();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -198,10 +158,12 @@ impl<'a> Points<'a> {
         &self,
         name: &str,
         number: impl Fn(&[u8]) -> f64 + Sync + Send,
-    ) -> Result<TableColumn, LasError> {
+    ) -> Result<TableColumn, LoadError> {
         let of_row = |row: usize| number(&self.bytes[row * self.length..]);
         let numbers = parallel::try_map(self.count, of_row);
-        let numbers = numbers.map_err(|_| LasError::Memory { count: self.count as u64 })?;
+        let numbers = numbers.map_err(|_| {
+            LoadError::new(format!("there is not enough memory for {} points", self.count))
+        })?;
         Ok(TableColumn::numbers(name, numbers))
     }
 }

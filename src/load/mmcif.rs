@@ -7,7 +7,6 @@
 //!
 //! Positions that are fractions of the cell give the atoms that the file lists; its symmetry is not applied.
 
-mod error;
 mod header;
 mod models;
 #[cfg(test)]
@@ -16,7 +15,6 @@ mod tokens;
 
 use std::io::SeekFrom;
 
-pub use error::MmCifError;
 use header::{Columns, Header, SLOTS, decimal, is_unknown};
 use tokens::{Place, Token, Tokens};
 
@@ -52,8 +50,7 @@ fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIn
             lines_before: model.lines_before,
         })
         .collect();
-    let none = frames.is_empty().then_some(MmCifError::NoAtoms);
-    let problem = problem.or(none).map(LoadError::from);
+    let problem = problem.or_else(|| frames.is_empty().then(no_atoms));
     let reader =
         MmCif { models: frames.clone(), end: text.len() as u64, is_whole: problem.is_none() };
     Ok(FrameIndex {
@@ -105,7 +102,7 @@ impl FrameReader for MmCif {
             header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
         }
         let cell = header.cell()?;
-        let columns = header.columns.ok_or(MmCifError::NoAtoms)?;
+        let columns = header.columns.ok_or_else(no_atoms)?;
         let text = bytes(source, rows)?;
         let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
         loaded.cell = cell;
@@ -118,6 +115,27 @@ impl FrameReader for MmCif {
     }
 }
 
+fn no_atoms() -> LoadError {
+    LoadError::new(
+        "there are no atoms: no loop_ has _atom_site.Cartn_x, _atom_site.Cartn_y and _atom_site.Cartn_z, or \
+         _atom_site_fract_x, _y and _z, with rows below",
+    )
+}
+
+/// The last row of the loop has too few values.
+fn cut_row(place: Place, values: usize, columns: usize) -> LoadError {
+    let message = format!(
+        "the row of _atom_site that begins here has {values} values, but the loop names {columns} columns; a value is \
+         missing in this row or in one before it, or the file is cut off"
+    );
+    LoadError::line(place.lines_before + 1, message)
+}
+
+fn not_a_number(text: &[u8], place: Place, what: &str) -> LoadError {
+    let found = shortened(&String::from_utf8_lossy(text));
+    LoadError::at(place.of_error(), format!("{what} is `{found}`, which is not a finite number"))
+}
+
 /// Where a value begins, and the value.
 type Values<'a> = [(Place, &'a [u8]); SLOTS.len()];
 
@@ -126,7 +144,7 @@ fn read_rows(
     lines_before: usize,
     columns: &Columns,
     cell: Option<[[f64; 3]; 3]>,
-) -> Result<Loaded, MmCifError> {
+) -> Result<Loaded, LoadError> {
     let mut tokens = Tokens::new(text, lines_before);
     // Rows are hardly ever shorter.
     let mut atoms = Atoms::with_capacity(text.len() / 80);
@@ -140,8 +158,7 @@ fn read_rows(
                 if column == 0 {
                     return Ok(atoms.into_loaded());
                 }
-                let line = row.lines_before + 1;
-                return Err(MmCifError::CutRow { line, values: column, columns: columns.count });
+                return Err(cut_row(row, column, columns.count));
             };
             if let Some(slot) = slot {
                 values[*slot] = (place, value);
@@ -157,15 +174,10 @@ fn push(
     values: &Values<'_>,
     columns: &Columns,
     cell: Option<[[f64; 3]; 3]>,
-) -> Result<(), MmCifError> {
+) -> Result<(), LoadError> {
     let number = |slot: usize, what| {
         let (place, text): (Place, &[u8]) = values[slot];
-        decimal(text).ok_or_else(|| MmCifError::Number {
-            line: place.lines_before + 1,
-            column: place.column + 1,
-            what,
-            found: shortened(&String::from_utf8_lossy(text)),
-        })
+        decimal(text).ok_or_else(|| not_a_number(text, place, what))
     };
     let number_or = |slot: usize, absent, what| {
         if is_unknown(values[slot].1) { Ok(absent) } else { number(slot, what) }
@@ -175,7 +187,13 @@ fn push(
     let place = if columns.is_fractional {
         let [u, v, w] = [number(3, "fract_x")?, number(4, "fract_y")?, number(5, "fract_z")?];
         let line = values[3].0.lines_before + 1;
-        let [a, b, c] = cell.ok_or(MmCifError::NoCell { line })?;
+        let [a, b, c] = cell.ok_or_else(|| {
+            LoadError::line(
+                line,
+                "the positions are fractions of the cell, but there are no _cell_length_a, _b, _c and _cell_angle_alpha, \
+                 _beta, _gamma",
+            )
+        })?;
         [0, 1, 2].map(|axis| u * a[axis] + v * b[axis] + w * c[axis])
     } else {
         [number(0, "Cartn_x")?, number(1, "Cartn_y")?, number(2, "Cartn_z")?]

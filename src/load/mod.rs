@@ -84,25 +84,11 @@ mod vtk;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
-#[cfg(feature = "binary")]
-pub use binary::BinaryError;
 #[cfg(all(feature = "color-by", feature = "table"))]
 pub(crate) use covalent::{Covalent, covalent};
-pub use error::{LoadError, OptionError};
+pub use error::{LoadError, LoadErrorKind, Place};
 pub use format::{Format, Options};
 pub use formats::FORMATS;
-#[cfg(feature = "las")]
-pub use las::LasError;
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
-#[cfg(feature = "ply")]
-pub use ply::PlyError;
-#[cfg(feature = "table")]
-pub use rows::LineError;
-#[cfg(feature = "table")]
-pub use table::TableError;
-#[cfg(feature = "binary")]
-pub use topology::TopologyError;
 pub use trajectory::Trajectory;
-#[cfg(feature = "vtk")]
-pub use vtk::VtkError;

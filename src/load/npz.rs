@@ -9,9 +9,10 @@ use flate2::bufread::DeflateDecoder;
 use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
+use super::error::{LoadError, Place};
 use super::format::Options;
 use super::loaded::Loaded;
-use super::npy::{Array, Spheres, SpheresError};
+use super::npy::{Array, Spheres};
 use super::table::Table;
 use crate::text::{one_line, shortened};
 
@@ -34,69 +35,17 @@ const MAX_ARRAYS: usize = 1024;
 /// The most bytes that one byte of deflate can expand to (zlib's technical details: 258 bytes from two bits).
 const MAX_RATIO: u64 = 1032;
 
-/// An error of reading spheres from an `.npz` archive.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NpzError {
-    /// The file is not a zip archive, or is damaged.
-    #[error("this is not a complete .npz file: {message}")]
-    Archive {
-        /// What is wrong with the archive.
-        message: String,
-    },
-    /// The archive has no array.
-    #[error("the archive has no array; save the spheres with numpy.savez")]
-    Empty,
-    /// The archive has several arrays, and no name says which has the positions.
-    #[error(
-        "the archive has the arrays {}; name the one with the centers `positions`, or `spheres` if it has radii as well",
-        listed(names)
-    )]
-    Ambiguous {
-        /// Names of the arrays.
-        names: Vec<String>,
-    },
-    /// The archive lacks an array.
-    #[error("the archive has no array `{wanted}`, but {}; save it with numpy.savez", listed(names))]
-    Missing {
-        /// Name of the array.
-        wanted: &'static str,
-        /// Names of the arrays.
-        names: Vec<String>,
-    },
-    /// The array cannot be extracted.
-    #[error("array `{name}`: {message}")]
-    Entry {
-        /// Name of the array.
-        name: String,
-        /// Why the array cannot be extracted.
-        message: String,
-    },
-    /// The array is not a list of spheres.
-    #[error("array `{name}`: {error}")]
-    Spheres {
-        /// Name of the array.
-        name: String,
-        /// What is wrong with the array.
-        error: SpheresError,
-    },
-}
-
 /// Reads spheres from the array called `spheres` or `positions`, or from the only one, as [`super::npy::read`] does; or
 /// from `x`, `y` and `z`. Other arrays with a row for each sphere are radii, colours, opacities or columns, by their
 /// names. A note lists arrays that are not used.
 ///
 /// # Errors
 /// If no array has positions, an array is damaged, or they do not make spheres.
-pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, NpzError> {
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
     let main = main_array(&entries)?;
     let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
-    let of_array = |name: &str| {
-        let name = shortened(&one_line(name));
-        move |error| NpzError::Spheres { name: name.clone(), error }
-    };
     let first = &entries[main.index];
     let data = first.contents(&archive)?;
     let array = Array::open(&data).map_err(of_array(&first.name))?;
@@ -131,7 +80,7 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, NpzError> {
         Some((spheres, have_radii)) => table.dress(spheres, have_radii, &options),
         None => table.into_loaded(&options),
     };
-    let mut loaded = loaded.map_err(|error| of_array(&first.name)(error.into()))?;
+    let mut loaded = loaded.map_err(of_array(&first.name))?;
     loaded.notes.append(&mut notes);
     if !unused.is_empty() {
         let more = unused.len().saturating_sub(NAMED);
@@ -150,7 +99,7 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, NpzError> {
 ///
 /// # Errors
 /// If no array has positions.
-pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
+pub fn array_bytes(bytes: &[u8]) -> Result<u64, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
     main_array(&entries)?;
@@ -159,14 +108,15 @@ pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
 }
 
 /// Returns the `.npy` file of the array with this name.
-pub(super) fn array_of(bytes: &[u8], wanted: &'static str) -> Result<Vec<u8>, NpzError> {
+pub(super) fn array_of(bytes: &[u8], wanted: &'static str) -> Result<Vec<u8>, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
     match entries.iter().find(|entry| entry.name == wanted) {
         Some(entry) => Ok(entry.contents(&archive)?.into_owned()),
-        None => {
-            Err(NpzError::Missing { wanted, names: entries.into_iter().map(|e| e.name).collect() })
-        }
+        None => Err(LoadError::new(format!(
+            "the archive has no array `{wanted}`, but {}; save it with numpy.savez",
+            listed(&entries)
+        ))),
     }
 }
 
@@ -181,15 +131,14 @@ impl Entry {
     fn contents<'a>(
         &self,
         archive: &'a ZipSliceArchive<&[u8]>,
-    ) -> Result<std::borrow::Cow<'a, [u8]>, NpzError> {
-        let name = || shortened(&one_line(&self.name));
+    ) -> Result<std::borrow::Cow<'a, [u8]>, LoadError> {
         contents(archive, self.wayfinder, self.method)
-            .map_err(|message| NpzError::Entry { name: name(), message: one_line(&message) })
+            .map_err(|message| of_array(&self.name)(LoadError::new(one_line(&message))))
     }
 }
 
 /// Lists the arrays of an archive. If two have the same name, the later one counts, as in NumPy.
-fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, NpzError> {
+fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, LoadError> {
     let mut entries: Vec<Entry> = Vec::new();
     let mut compressed = 0_u64;
     for entry in archive.entries() {
@@ -202,7 +151,7 @@ fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, Np
         if entries.len() == MAX_ARRAYS || compressed > size {
             let message =
                 format!("it has more than {MAX_ARRAYS} arrays, or arrays that lie over each other");
-            return Err(NpzError::Archive { message });
+            return Err(broken(&message));
         }
         entries.retain(|known| known.name != name);
         entries.push(Entry { name, wayfinder, method: entry.compression_method() });
@@ -217,19 +166,23 @@ struct Main {
     is_alone: bool,
 }
 
-fn main_array(entries: &[Entry]) -> Result<Main, NpzError> {
+fn main_array(entries: &[Entry]) -> Result<Main, LoadError> {
     let named =
         |wanted: &str| entries.iter().position(|entry| entry.name.eq_ignore_ascii_case(wanted));
     let is_alone = true;
     match (entries.len(), NAMES.into_iter().find_map(named)) {
-        (0, _) => Err(NpzError::Empty),
+        (0, _) => {
+            Err(LoadError::new("the archive has no array; save the spheres with numpy.savez"))
+        }
         (_, Some(index)) => Ok(Main { index, is_alone }),
         (1, None) => Ok(Main { index: 0, is_alone }),
         _ => match ["x", "y", "z"].map(named) {
             [Some(index), Some(_), Some(_)] => Ok(Main { index, is_alone: false }),
-            _ => Err(NpzError::Ambiguous {
-                names: entries.iter().map(|entry| entry.name.clone()).collect(),
-            }),
+            _ => Err(LoadError::new(format!(
+                "the archive has the arrays {}; name the one with the centers `positions`, or `spheres` if it has radii as \
+                 well",
+                listed(entries)
+            ))),
         },
     }
 }
@@ -285,17 +238,29 @@ fn contents<'a>(
     }
 }
 
-fn broken(error: &rawzip::Error) -> NpzError {
-    NpzError::Archive { message: one_line(&error.to_string()) }
+/// The file is not a zip archive, or is damaged.
+fn broken(error: &impl ToString) -> LoadError {
+    LoadError::new(format!("this is not a complete .npz file: {}", one_line(&error.to_string())))
+}
+
+/// Puts the name of an array before what is wrong with it.
+pub(super) fn of_array(name: &str) -> impl Fn(LoadError) -> LoadError {
+    let name = shortened(&one_line(name));
+    move |error| LoadError {
+        place: Place::Array(name.clone()),
+        message: error.to_string(),
+        ..error
+    }
 }
 
 /// How many names a message lists.
 const NAMED: usize = 5;
 
-/// Lists names on one line, however many there are.
-fn listed(names: &[String]) -> String {
-    let named = names.iter().take(NAMED).map(|name| format!("`{}`", shortened(&one_line(name))));
-    let more = match names.len().saturating_sub(NAMED) {
+/// Lists the names of arrays on one line, however many there are.
+fn listed(entries: &[Entry]) -> String {
+    let named = entries.iter().take(NAMED);
+    let named = named.map(|entry| format!("`{}`", shortened(&one_line(&entry.name))));
+    let more = match entries.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };

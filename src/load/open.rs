@@ -1,6 +1,6 @@
 //! Opens files of spheres, and chooses their format.
 
-use std::io::Read as _;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use super::error::LoadError;
@@ -18,7 +18,7 @@ use super::trajectory::Trajectory;
 /// If the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
-    let failed = |error| LoadError::File { path: path.to_path_buf(), error };
+    let failed = |error: io::Error| LoadError::from(error).in_file(path);
     let format = match options.format {
         Some(format) => Some(format),
         None => Format::of_path(path).map_err(failed)?,

@@ -11,7 +11,6 @@
 //! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
 
 mod cell;
-mod error;
 mod hybrid36;
 mod record;
 #[cfg(test)]
@@ -19,12 +18,11 @@ mod tests;
 
 use std::io;
 
-pub use error::PdbError;
 use record::{Kind, Lines, Record};
 
 use super::Loaded;
 use super::atoms::{Atom, Atoms};
-use super::error::LoadError;
+use super::error::{LoadError, Place};
 use super::format::Options;
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::text::without_byte_order_mark;
@@ -36,13 +34,16 @@ use crate::text::without_byte_order_mark;
 ///
 /// # Errors
 /// If the text is not a valid PDB file, or has no such frame.
-pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
+pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
     let bytes = without_byte_order_mark(bytes);
     let mut reader = Reader { frame, ..Reader::default() };
     for (line, text) in Lines::new(bytes) {
         reader.take(line, text)?;
     }
-    reader.finish()
+    if reader.first_atom.is_none() {
+        return Err(no_atoms());
+    }
+    reader.finish(frame)
 }
 
 /// How frames are found and read one by one.
@@ -60,7 +61,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
         let text = if lines_before == 0 { without_byte_order_mark(text) } else { text };
         let models = reader.models;
         if let Err(problem) = reader.take(lines_before + 1, text) {
-            found.problem = Some(problem.into());
+            found.problem = Some(problem);
             found.frames.pop();
             return Ok(found);
         }
@@ -79,7 +80,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
     }
     if reader.first_atom.is_none() {
         found.frames.clear();
-        found.problem = Some(PdbError::NoAtoms.into());
+        found.problem = Some(no_atoms());
     }
     Ok(found)
 }
@@ -94,11 +95,7 @@ fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
     for (line, text) in Lines::new(head).chain(text) {
         reader.take(line, text)?;
     }
-    let loaded = reader.finish().map_err(|error| match error {
-        PdbError::EmptyFrame { line, .. } => PdbError::EmptyFrame { frame: frame.index, line },
-        other => other,
-    });
-    Ok(loaded?)
+    reader.finish(frame.index)
 }
 
 /// Whether the first line is one of those that PDB files start with.
@@ -136,7 +133,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn take(&mut self, line: usize, text: &[u8]) -> Result<(), PdbError> {
+    fn take(&mut self, line: usize, text: &[u8]) -> Result<(), LoadError> {
         if !self.begun {
             self.begin(text)?;
         }
@@ -156,17 +153,17 @@ impl Reader {
                 }
                 Ok(())
             }
-            Kind::AtomSite if self.first_atom.is_none() => Err(PdbError::MmCif),
+            Kind::AtomSite if self.first_atom.is_none() => Err(mmcif()),
             _ => Ok(()),
         }
     }
 
     /// Refuses mmCIF by the first line that is neither blank nor a comment of that format.
-    fn begin(&mut self, text: &[u8]) -> Result<(), PdbError> {
+    fn begin(&mut self, text: &[u8]) -> Result<(), LoadError> {
         let text = text.trim_ascii_start();
         self.begun = !(text.is_empty() || text.starts_with(b"#"));
         match text.first_chunk::<5>() {
-            Some(start) if start.eq_ignore_ascii_case(b"data_") => Err(PdbError::MmCif),
+            Some(start) if start.eq_ignore_ascii_case(b"data_") => Err(mmcif()),
             _ => Ok(()),
         }
     }
@@ -180,10 +177,10 @@ impl Reader {
         }
     }
 
-    fn atom(&mut self, line: usize, text: &[u8], record: &'static str) -> Result<(), PdbError> {
+    fn atom(&mut self, line: usize, text: &[u8], record: &'static str) -> Result<(), LoadError> {
         self.first_atom.get_or_insert(line);
         if self.models > 0 && self.open.is_none() {
-            return Err(PdbError::AtomOutsideModel { line, model_line: self.first_model });
+            return Err(outside_model(line, self.first_model));
         }
         if self.ended {
             self.after_end.get_or_insert(line);
@@ -195,14 +192,18 @@ impl Reader {
         push(&mut self.atoms, &Record::new(line, text, record)?)
     }
 
-    fn model(&mut self, line: usize) -> Result<(), PdbError> {
+    fn model(&mut self, line: usize) -> Result<(), LoadError> {
         if let Some(outer_line) = self.open {
-            return Err(PdbError::ModelInsideModel { line, outer_line });
+            let message = format!(
+                "mixed models: this MODEL record is inside the model that begins on line {outer_line}; ENDMDL must end a \
+                 model before another begins"
+            );
+            return Err(LoadError::line(line, message));
         }
         if self.models == 0 {
             self.first_model = line;
             if let Some(atom_line) = self.first_atom {
-                return Err(PdbError::AtomOutsideModel { line: atom_line, model_line: line });
+                return Err(outside_model(atom_line, line));
             }
         }
         if self.models == self.frame {
@@ -213,17 +214,17 @@ impl Reader {
         Ok(())
     }
 
-    fn finish(self) -> Result<Loaded, PdbError> {
-        let Self { frame, wanted, .. } = self;
-        if self.first_atom.is_none() {
-            return Err(PdbError::NoAtoms);
-        }
+    /// Returns the atoms of the frame, which is the one with this index in the file.
+    fn finish(self, index: usize) -> Result<Loaded, LoadError> {
         let frames = self.models.max(1);
-        if frame >= frames {
-            return Err(PdbError::NoSuchFrame { wanted: frame, frames });
+        if self.frame >= frames {
+            return Err(LoadError::no_such_frame(self.frame, frames));
         }
         if self.atoms.is_empty() {
-            return Err(PdbError::EmptyFrame { frame, line: wanted });
+            let message = format!(
+                "frame {index} is the model that begins here, which has no ATOM or HETATM records; choose another frame"
+            );
+            return Err(LoadError::line(self.wanted, message));
         }
         let mut loaded = self.atoms.into_loaded();
         loaded.cell = self.cell;
@@ -238,6 +239,25 @@ impl Reader {
     }
 }
 
+fn no_atoms() -> LoadError {
+    LoadError::new("there are no ATOM or HETATM records; a PDB file has one for each atom")
+}
+
+/// The file is of the successor of PDB.
+fn mmcif() -> LoadError {
+    LoadError::new(
+        "this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif",
+    )
+}
+
+fn outside_model(line: usize, model_line: usize) -> LoadError {
+    let message = format!(
+        "mixed models: this atom does not belong to a model, although the file has MODEL records (the first on line \
+         {model_line}); every atom must then stand between MODEL and ENDMDL"
+    );
+    LoadError::line(line, message)
+}
+
 /// Fields that an atom must have, each with its first and last column.
 const NEEDED: [(&str, usize, usize); 6] = [
     ("atom name", 13, 16),
@@ -249,12 +269,16 @@ const NEEDED: [(&str, usize, usize); 6] = [
 ];
 
 /// Appends the atom of an ATOM or HETATM record.
-fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), PdbError> {
+fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
     record.must_have(&NEEDED)?;
     let text = record.text(23, 26);
-    let number = hybrid36::decode(text).ok_or_else(|| PdbError::ResidueNumber {
-        line: record.line,
-        found: record::escaped(text),
+    let number = hybrid36::decode(text).ok_or_else(|| {
+        let found = record::not_valid(text, "a valid residue number");
+        let place = Place::Columns { line: record.line, first: 23, last: 26 };
+        let message = format!(
+            "the residue number is {found}; a number such as 142, or a hybrid-36 number such as A000, belongs there"
+        );
+        LoadError::at(place, message)
     })?;
     let place = [
         record.number("x coordinate", 31, 38)?,

@@ -6,6 +6,7 @@ mod exr;
 #[cfg(feature = "png")]
 mod png;
 
+use super::error::LoadError;
 use crate::image::encoding::Bits;
 use crate::text::one_line;
 
@@ -37,56 +38,28 @@ pub enum FileSamples {
     Linear(Vec<[f32; 4]>),
 }
 
-/// Why a file is not a picture that can be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PictureFileError {
-    /// The file has another format.
-    #[error("this is neither a PNG nor an OpenEXR file; pictures of `pinhole render` are")]
-    Format,
-    /// The file is damaged.
-    #[error("the {format} file cannot be read: {message}")]
-    Damaged {
-        /// Name of the format.
-        format: &'static str,
-        /// What is wrong.
-        message: String,
-    },
-    /// The picture is not one that this crate writes.
-    #[error("the {format} file has {found}; this crate writes {written}")]
-    Kind {
-        /// Name of the format.
-        format: &'static str,
-        /// What was found.
-        found: String,
-        /// What would be right.
-        written: &'static str,
-    },
-    /// There is not enough memory.
-    #[error("there is not enough memory for a picture of {width}x{height} pixels")]
-    Memory {
-        /// Width in pixels.
-        width: u64,
-        /// Height in pixels.
-        height: u64,
-    },
-}
-
 /// Reads a picture from the bytes of its file.
 ///
 /// # Errors
 /// Returns an error if the file is neither a PNG nor an OpenEXR file, is damaged, or is of a kind that this crate does
 /// not write.
-pub fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
+pub fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     match bytes {
         #[cfg(feature = "png")]
         [0x89, b'P', b'N', b'G', ..] => png::read(bytes),
         #[cfg(feature = "exr")]
         [0x76, 0x2f, 0x31, 0x01, ..] => exr::read(bytes),
-        _ => Err(PictureFileError::Format),
+        _ => Err(LoadError::new(
+            "this is neither a PNG nor an OpenEXR file; pictures of `pinhole render` are",
+        )),
     }
 }
 
-fn damaged(format: &'static str, error: &impl ToString) -> PictureFileError {
-    PictureFileError::Damaged { format, message: one_line(&error.to_string()) }
+fn damaged(format: &str, error: &impl ToString) -> LoadError {
+    let message = one_line(&error.to_string());
+    LoadError::new(format!("the {format} file cannot be read: {message}"))
+}
+
+fn no_memory(width: usize, height: usize) -> LoadError {
+    LoadError::new(format!("there is not enough memory for a picture of {width}x{height} pixels"))
 }

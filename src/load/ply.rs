@@ -5,16 +5,14 @@
 //! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
 //! one by one, such as the crate ply-rs-bw, would take more memory and time.
 
-mod error;
 mod header;
 #[cfg(test)]
 mod tests;
 
-pub use error::PlyError;
 use header::{Element, Encoding, Header};
 
 use super::binary::Order;
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::table::{Table, TableColumn};
@@ -34,7 +32,9 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
     let Some(vertex) = vertex else {
         let found: Vec<_> = header.elements.iter().take(8).map(|e| e.name.as_str()).collect();
         let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
-        return Err(PlyError::NoVertices { found }.into());
+        return Err(LoadError::new(format!(
+            "the header declares no `element vertex`, which has the positions; its elements are {found}"
+        )));
     };
     let columns = match header.encoding {
         Encoding::Ascii => of_text(data, &header, vertex)?,
@@ -67,28 +67,28 @@ fn columns(element: &Element, values: Vec<Option<Vec<f64>>>) -> Vec<TableColumn>
 }
 
 /// Reads the vertices of a text file, each from a line of its own.
-fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, PlyError> {
+fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, LoadError> {
     let lines = data.split(|byte| *byte == b'\n').zip(header.lines + 1..);
     let mut lines = lines.filter(|(line, _)| !line.trim_ascii().is_empty());
-    for Element { name, count, .. } in &header.elements[..vertex] {
-        for found in 0..*count {
-            let too_few = || PlyError::TooFewLines { element: name.clone(), wanted: *count, found };
-            lines.next().ok_or_else(too_few)?;
+    for element in &header.elements[..vertex] {
+        for found in 0..element.count {
+            lines.next().ok_or_else(|| too_few_lines(element, found))?;
         }
     }
     let element = &header.elements[vertex];
-    let (name, wanted) = (element.name.clone(), element.count);
     let mut values: Vec<_> =
         element.properties.iter().map(|p| p.list.is_none().then(Vec::new)).collect();
-    for found in 0..wanted {
-        let too_few = || PlyError::TooFewLines { element: name.clone(), wanted, found };
-        let (text, line) = lines.next().ok_or_else(too_few)?;
+    for found in 0..element.count {
+        let (text, line) = lines.next().ok_or_else(|| too_few_lines(element, found))?;
         let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         for (property, values) in element.properties.iter().zip(&mut values) {
-            let refused = |found: Option<&[u8]>| PlyError::Value {
-                line,
-                property: shortened(&property.name),
-                found: found.map(|found| shortened(&one_line(&String::from_utf8_lossy(found)))),
+            let refused = |found: Option<&[u8]>| {
+                let what = found.map_or_else(
+                    || "is missing; a vertex has one value for each property".to_owned(),
+                    |found| format!("is `{}`, which is not a number", shown(found)),
+                );
+                let property = shortened(&property.name);
+                LoadError::line(line, format!("the property {property} {what}"))
             };
             let mut number = || {
                 let word = words.next().ok_or_else(|| refused(None))?;
@@ -107,24 +107,24 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
             }
         }
         if let Some(word) = words.next() {
-            return Err(PlyError::TooManyValues {
-                line,
-                properties: element.properties.len(),
-                found: shortened(&one_line(&String::from_utf8_lossy(word))),
-            });
+            let message = format!(
+                "there are more values than the {} that the header declares; the first is `{}`",
+                element.properties.len(),
+                shown(word)
+            );
+            return Err(LoadError::line(line, message));
         }
     }
     if header.elements.len() == vertex + 1
         && let Some((_, line)) = lines.next()
     {
-        let place = format!("line {line}");
-        return Err(PlyError::TooMany { place, element: name, wanted });
+        return Err(too_many(Place::Line(line), element));
     }
     Ok(columns(element, values))
 }
 
 /// Reads the vertices of a binary file.
-fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, PlyError> {
+fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, LoadError> {
     let is_little = header.encoding == Encoding::LittleEndian;
     let order = if is_little { Order::Little } else { Order::Big };
     let mut rest = data;
@@ -135,7 +135,8 @@ fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableCol
             .map_err(|index| too_few_bytes(at(before), element, index))?;
     }
     let element = &header.elements[vertex];
-    let memory = |_| PlyError::Memory { count: element.count };
+    let memory =
+        |_| LoadError::new(format!("there is not enough memory for {} vertices", element.count));
     let too_few = |index| too_few_bytes(at(rest), element, index);
     let mut values = Vec::with_capacity(element.properties.len());
     let rest = if let Some(size) = element.size().filter(|size| *size > 0) {
@@ -162,14 +163,34 @@ fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableCol
         .map_err(too_few)?
     };
     if header.elements.len() == vertex + 1 && !rest.is_empty() {
-        let (place, element_name) = (format!("byte {}", at(rest)), element.name.clone());
-        return Err(PlyError::TooMany { place, element: element_name, wanted: element.count });
+        return Err(too_many(Place::Byte(at(rest) as u64), element));
     }
     Ok(columns(element, values))
 }
 
-fn too_few_bytes(byte: usize, element: &Element, index: u64) -> PlyError {
-    PlyError::TooFewBytes { byte, element: element.name.clone(), wanted: element.count, index }
+fn shown(value: &[u8]) -> String {
+    shortened(&one_line(&String::from_utf8_lossy(value)))
+}
+
+fn too_few_lines(Element { name, count, .. }: &Element, found: u64) -> LoadError {
+    let declared = format!("the header declares `element {name} {count}`");
+    let message = format!("{declared}, but the file ends after {found} of them; it is cut off");
+    LoadError::new(message).of_kind(LoadErrorKind::CutOff)
+}
+
+fn too_few_bytes(byte: usize, Element { name, count, .. }: &Element, index: u64) -> LoadError {
+    let message = format!(
+        "the header declares `element {name} {count}`, which begin here, but the file ends within number {index}, counted \
+         from 0; it is cut off"
+    );
+    LoadError::byte(byte as u64, message).of_kind(LoadErrorKind::CutOff)
+}
+
+fn too_many(place: Place, Element { name, count, .. }: &Element) -> LoadError {
+    let message = format!(
+        "there are more data after those of `element {name} {count}`, the last that the header declares"
+    );
+    LoadError::at(place, message)
 }
 
 /// Goes through elements, hands over every number that is not in a list with the index of its property, and returns what

@@ -3,21 +3,19 @@
 //! The text is cut into pieces at the ends of lines. The lines of every piece are counted, so that columns are allocated
 //! once and every piece writes into its own part of them; the result is the same on any number of cores.
 
-mod error;
 mod number;
 #[cfg(test)]
 mod tests;
 
 use memchr::{memchr, memchr_iter};
 
-pub use error::LineError;
 pub(super) use number::number;
 
-use super::error::LoadError;
+use super::error::{LoadError, Place};
 use super::format::Options;
 use super::labels::LabelsBuilder;
 use super::loaded::{Labels, Loaded};
-use super::table::{Table, TableColumn, TableError};
+use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::scene::sphere::check;
 use crate::scene::sphere_array::SphereArray;
@@ -61,11 +59,11 @@ pub(super) struct Rows<'a> {
 
 impl Rows<'_> {
     /// Reads a column for each field that is not skipped.
-    pub(super) fn read(self, fields: &[Field]) -> Result<Vec<TableColumn>, LineError> {
+    pub(super) fn read(self, fields: &[Field]) -> Result<Vec<TableColumn>, LoadError> {
         self.read_in_pieces(fields, PIECE)
     }
 
-    fn read_in_pieces(self, fields: &[Field], size: usize) -> Result<Vec<TableColumn>, LineError> {
+    fn read_in_pieces(self, fields: &[Field], size: usize) -> Result<Vec<TableColumn>, LoadError> {
         let texts = pieces(self.text, size);
         let counts = parallel::map_parts(texts.clone(), count_lines);
         let ends: Vec<usize> = counts
@@ -122,11 +120,12 @@ impl Rows<'_> {
     }
 
     /// Refuses the first row that has too few values.
-    fn check_lengths(self, fields: &[Field]) -> Result<(), LineError> {
+    fn check_lengths(self, fields: &[Field]) -> Result<(), LoadError> {
         for (row, line) in Lines::new(self.text).enumerate() {
             let found = Values { rest: line }.take(fields.len()).count();
             if let Some(field) = fields.get(found) {
-                return Err(missing(line, self.lines_before + row + 1, found, &field.name));
+                let columns = Values { rest: line }.count();
+                return Err(missing(self.lines_before + row + 1, &field.name, found, columns));
             }
         }
         Ok(())
@@ -164,7 +163,7 @@ struct Piece<'a> {
 
 impl Piece<'_> {
     /// Reads all lines, and returns the different texts of each column of text, whose indices count from 0 in every piece.
-    fn read(mut self, fields: &[Field]) -> Result<Vec<Vec<String>>, LineError> {
+    fn read(mut self, fields: &[Field]) -> Result<Vec<Vec<String>>, LoadError> {
         let mut labels: Vec<LabelsBuilder> =
             self.indices.iter().map(|_| LabelsBuilder::default()).collect();
         for (row, line) in Lines::new(self.text).enumerate() {
@@ -173,7 +172,8 @@ impl Piece<'_> {
             let (mut next_number, mut next_text) = (0, 0);
             for (column, field) in fields.iter().enumerate() {
                 let Some(value) = values.next() else {
-                    return Err(missing(line, number, column, &field.name));
+                    let columns = Values { rest: line }.count();
+                    return Err(missing(number, &field.name, column, columns));
                 };
                 match field.kind {
                     Kind::Number => {
@@ -185,7 +185,7 @@ impl Piece<'_> {
                     }
                     Kind::Text => {
                         if !value.is_ascii() && std::str::from_utf8(value).is_err() {
-                            return Err(LineError::NotText { line: number });
+                            return Err(not_text(number));
                         }
                         self.indices[next_text][row] = labels[next_text].index(value);
                         next_text += 1;
@@ -195,26 +195,37 @@ impl Piece<'_> {
             }
             if !self.may_be_longer && values.next().is_some() {
                 let columns = Values { rest: line }.count();
-                return Err(LineError::TooMany { line: number, columns, declared: fields.len() });
+                return Err(too_many(number, columns, fields.len()));
             }
         }
         Ok(labels.into_iter().map(|labels| labels.names).collect())
     }
 }
 
-fn missing(text: &[u8], line: usize, column: usize, name: &str) -> LineError {
-    let columns = Values { rest: text }.count();
-    LineError::Missing { line, column: column + 1, what: shortened(name), columns }
+/// A line has `columns` values, so that the one at the index `column` is missing.
+pub(super) fn missing(line: usize, name: &str, column: usize, columns: usize) -> LoadError {
+    let (what, column) = (shortened(name), column + 1);
+    let values = if columns == 1 { "column" } else { "columns" };
+    let message =
+        format!("{what}, which is column {column}, is missing; the line has {columns} {values}");
+    LoadError::line(line, message)
 }
 
-fn not_a_number(value: &[u8], line: usize, column: usize, name: &str) -> LineError {
-    match std::str::from_utf8(value) {
-        Ok(found) => {
-            let found = shortened(found);
-            LineError::Number { line, column: column + 1, what: shortened(name), found }
-        }
-        Err(_) => LineError::NotText { line },
-    }
+pub(super) fn too_many(line: usize, columns: usize, declared: usize) -> LoadError {
+    let message = format!("this line has {columns} columns, but only {declared} have names");
+    LoadError::line(line, message)
+}
+
+pub(super) fn not_text(line: usize) -> LoadError {
+    LoadError::line(line, "this line is not UTF-8 text, as it must be")
+}
+
+/// The value at the index `column` is not a number.
+pub(super) fn not_a_number(value: &[u8], line: usize, column: usize, name: &str) -> LoadError {
+    let Ok(found) = std::str::from_utf8(value) else { return not_text(line) };
+    let (what, found) = (shortened(name), shortened(found));
+    let place = Place::Column { line, column: column + 1 };
+    LoadError::at(place, format!("{what} is `{found}`, which is not a number"))
 }
 
 /// Joins the texts of all pieces, and renumbers the indices.
@@ -291,18 +302,13 @@ pub(super) fn into_loaded(
     options: &Options,
     line_of: impl Fn(usize) -> usize,
 ) -> Result<Loaded, LoadError> {
-    let loaded = table.into_loaded(options).map_err(|error| match error {
-        TableError::Position { row, column, found } => {
-            LoadError::Line(LineError::Position { line: line_of(row), what: column, found })
-        }
-        TableError::Radius { row, column, found } => {
-            LoadError::Line(LineError::Radius { line: line_of(row), what: column, found })
-        }
-        other => LoadError::Table(other),
+    let loaded = table.into_loaded(options).map_err(|error| match error.place {
+        Place::Row(row) => LoadError { place: Place::Line(line_of(row)), ..error },
+        _ => error,
     })?;
     let SphereArray::F64(spheres) = &loaded.spheres else { return Ok(loaded) };
     match spheres.iter().enumerate().find_map(|(row, sphere)| Some((row, check(*sphere).err()?))) {
-        Some((row, error)) => Err(LineError::Sphere { line: line_of(row), error }.into()),
+        Some((row, error)) => Err(LoadError::line(line_of(row), error.to_string())),
         None => Ok(loaded),
     }
 }

@@ -12,6 +12,7 @@ use names::{
 pub(super) use names::{has_positions, is_element, must_be_numbers};
 
 use super::elements::appearance;
+use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
@@ -36,52 +37,6 @@ pub(super) struct TableColumn {
     pub(super) full: Option<f64>,
 }
 
-/// Why a table does not make spheres.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TableError {
-    /// No columns are positions.
-    #[error("there are no columns x, y and z; the columns are {columns}")]
-    NoPositions {
-        /// Names of the columns.
-        columns: String,
-    },
-    /// A column that must have numbers has text.
-    #[error("the column {column} has text, such as `{found}`, where numbers must be")]
-    Text {
-        /// Name of the column.
-        column: String,
-        /// The first text.
-        found: String,
-    },
-    /// A position is not a finite number.
-    #[error("row {row}: {column} is {found}; a position must be finite")]
-    Position {
-        /// Index of the row, from 0.
-        row: usize,
-        /// Name of the column.
-        column: String,
-        /// The value.
-        found: f64,
-    },
-    /// A radius is not finite or not greater than 0.
-    #[error("row {row}: {column} is {found}; a radius must be finite and greater than 0")]
-    Radius {
-        /// Index of the row, from 0.
-        row: usize,
-        /// Name of the column.
-        column: String,
-        /// The value.
-        found: f64,
-    },
-    /// The table has radii, and a radius was given as well.
-    #[error("the column {column} has radii; remove the radius that is given for all spheres")]
-    TwoRadii {
-        /// Name of the column.
-        column: String,
-    },
-}
-
 impl TableColumn {
     pub(super) fn numbers(name: impl Into<String>, numbers: Vec<f64>) -> Self {
         Self { name: name.into(), values: ColumnValues::Numbers(numbers), full: None }
@@ -102,15 +57,16 @@ impl TableColumn {
 impl Table {
     /// Makes spheres of the table. Columns that are not needed for them become columns of the result. Radii are those of
     /// a column, or the one in the options, or those of chemical elements, or else follow from the spacing of the points.
-    pub(super) fn into_loaded(mut self, options: &Options) -> Result<Loaded, TableError> {
+    pub(super) fn into_loaded(mut self, options: &Options) -> Result<Loaded, LoadError> {
         let positions = self.take_set(POSITIONS).ok_or_else(|| self.no_positions())?;
         let names = positions.each_ref().map(|column| column.name.clone());
         let [x, y, z] = positions.map(numbers_of);
         let (x, y, z) = (x?, y?, z?);
         for (name, values) in names.iter().zip([&x, &y, &z]) {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-                let column = shortened(name);
-                return Err(TableError::Position { row, column, found: values[row] });
+                let (column, found) = (shortened(name), values[row]);
+                let message = format!("{column} is {found}; a position must be finite");
+                return Err(LoadError::at(Place::Row(row), message));
             }
         }
         let centers = x.iter().zip(&y).zip(&z);
@@ -126,7 +82,7 @@ impl Table {
         mut spheres: SphereArray,
         have_radii: bool,
         options: &Options,
-    ) -> Result<Loaded, TableError> {
+    ) -> Result<Loaded, LoadError> {
         let mut notes = Vec::new();
         let (colors, opacities) = (self.colors(&mut notes), self.opacities(&mut notes));
         let found_radii = if have_radii { None } else { self.radii()? };
@@ -143,7 +99,12 @@ impl Table {
             .zip(elements.as_ref())
             .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
         match (found_radii, options.radius, &element_of) {
-            (Some((column, _)), Some(_), _) => return Err(TableError::TwoRadii { column }),
+            (Some((column, _)), Some(_), _) => {
+                let message = format!(
+                    "the column {column} has radii; remove the radius that is given for all spheres"
+                );
+                return Err(LoadError::new(message).of_kind(LoadErrorKind::TwoRadii));
+            }
             (Some((_, radii)), None, _) => set_radii(&mut spheres, |row| radii[row]),
             (None, _, _) if have_radii => {}
             (None, Some(radius), _) => set_radii(&mut spheres, |_| radius),
@@ -180,9 +141,14 @@ impl Table {
         Ok(loaded)
     }
 
-    fn no_positions(&self) -> TableError {
-        let names = self.columns.iter().map(|column| shortened(&column.name));
-        TableError::NoPositions { columns: listed(names, 16) }
+    fn no_positions(&self) -> LoadError {
+        let message = format!("there are no columns x, y and z; the columns are {}", self.names());
+        LoadError::new(message).of_kind(LoadErrorKind::NoPositions)
+    }
+
+    /// The names of the columns, for messages.
+    pub(super) fn names(&self) -> String {
+        listed(self.columns.iter().map(|column| shortened(&column.name)), 16)
     }
 
     fn position(&self, names: &[&str]) -> Option<usize> {
@@ -205,7 +171,7 @@ impl Table {
     }
 
     /// Takes the radii, with the name of their column.
-    fn radii(&mut self) -> Result<Option<(String, Vec<f64>)>, TableError> {
+    fn radii(&mut self) -> Result<Option<(String, Vec<f64>)>, LoadError> {
         let (column, factor) = match (self.take(RADII), self.position(DIAMETERS)) {
             (Some(column), _) => (column, 1.0),
             (None, Some(diameters)) => (self.columns.remove(diameters), 0.5),
@@ -214,7 +180,9 @@ impl Table {
         let name = shortened(&column.name);
         let mut radii = numbers_of(column)?;
         if let Some(row) = radii.iter().position(|radius| !(radius.is_finite() && *radius > 0.0)) {
-            return Err(TableError::Radius { row, column: name, found: radii[row] });
+            let found = radii[row];
+            let message = format!("{name} is {found}; a radius must be finite and greater than 0");
+            return Err(LoadError::at(Place::Row(row), message));
         }
         radii.iter_mut().for_each(|radius| *radius *= factor);
         Ok(Some((name, radii)))
@@ -399,12 +367,15 @@ impl Loaded {
     }
 }
 
-fn numbers_of(column: TableColumn) -> Result<Vec<f64>, TableError> {
+fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
     match column.values {
         ColumnValues::Numbers(numbers) => Ok(numbers),
         ColumnValues::Labels(labels) => {
             let found = labels.names.first().map(|name| shortened(name)).unwrap_or_default();
-            Err(TableError::Text { column: shortened(&column.name), found })
+            let column = shortened(&column.name);
+            Err(LoadError::new(format!(
+                "the column {column} has text, such as `{found}`, where numbers must be"
+            )))
         }
     }
 }

@@ -2,50 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
 use super::loaded::{Column, Loaded};
 use super::open::open;
 use crate::scene::sphere_array::SphereArray;
-
-/// An error of joining a trajectory with its topology.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum TopologyError {
-    /// No topology was given.
-    #[error(
-        "a {format} file has positions alone; give a topology, a file that says what the atoms are, such as the .pdb \
-         or .xyz file of the same system"
-    )]
-    Missing {
-        /// Name of the trajectory's format.
-        format: &'static str,
-    },
-    /// The topology cannot be read.
-    #[error("the topology {}: {error}", path.display())]
-    Unreadable {
-        /// The path of the topology.
-        path: PathBuf,
-        /// Why it cannot be read.
-        error: Box<LoadError>,
-    },
-    /// The topology has more or fewer atoms.
-    #[error(
-        "frame {frame} has {atoms} atoms, but the topology {} has {found}; use a file of the same system as the \
-         topology, with all of its atoms",
-        path.display()
-    )]
-    Count {
-        /// Index of the frame, from 0.
-        frame: usize,
-        /// Number of atoms of the frame.
-        atoms: usize,
-        /// The path of the topology.
-        path: PathBuf,
-        /// Number of atoms of the topology.
-        found: usize,
-    },
-}
 
 /// What the spheres of a trajectory are.
 #[derive(Debug)]
@@ -66,24 +27,35 @@ pub(super) struct Positions {
 impl Topology {
     /// Reads the first frame of the file that the options name.
     pub(super) fn open(options: &Options, format: &'static str) -> Result<Self, LoadError> {
-        let path = options.topology.as_deref().ok_or(TopologyError::Missing { format })?;
+        let path = options.topology.as_deref().ok_or_else(|| {
+            let message = format!(
+                "a {format} file has positions alone; give a topology, a file that says what the atoms are, such as the \
+                 .pdb or .xyz file of the same system"
+            );
+            LoadError::new(message).of_kind(LoadErrorKind::NoTopology)
+        })?;
         let loaded = open(path, &Options::default()).map_err(|error| {
-            let error = match error {
-                LoadError::File { error, .. } => LoadError::Io(error),
-                other => other,
+            let place = match error.place {
+                Place::File(_) => Place::Whole,
+                place => place,
             };
-            TopologyError::Unreadable { path: path.to_path_buf(), error: error.into() }
+            let error = LoadError { place, ..error };
+            LoadError::new(format!("the topology {}: {error}", path.display()))
         })?;
         Ok(Self { path: path.to_path_buf(), loaded })
     }
 
     /// Checks that a frame has as many atoms as the topology.
-    pub(super) fn check(&self, frame: usize, atoms: usize) -> Result<(), TopologyError> {
+    pub(super) fn check(&self, frame: usize, atoms: usize) -> Result<(), LoadError> {
         let found = self.loaded.spheres.len();
         if atoms == found {
             return Ok(());
         }
-        Err(TopologyError::Count { frame, atoms, path: self.path.clone(), found })
+        Err(LoadError::new(format!(
+            "frame {frame} has {atoms} atoms, but the topology {} has {found}; use a file of the same system as the \
+             topology, with all of its atoms",
+            self.path.display()
+        )))
     }
 
     /// Returns the spheres of a frame: radii, colours and columns are those of the topology; positions, cell and further

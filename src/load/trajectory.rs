@@ -9,7 +9,7 @@ use std::io::{self, BufRead, Read as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind};
 use super::format::{Format, Options};
 use super::loaded::Loaded;
 use super::source::{Bytes, Source};
@@ -72,7 +72,7 @@ impl Frames {
     ) -> Result<Loaded, LoadError> {
         let frames = index.frames.len();
         let Some(span) = index.frames.get(wanted) else {
-            return Err(LoadError::NoSuchFrame { wanted, frames });
+            return Err(LoadError::no_such_frame(wanted, frames));
         };
         let mut loaded = match (self, &index.reader) {
             (Self::Lines { read, .. }, _) => {
@@ -83,7 +83,7 @@ impl Frames {
                 read(&text, options)?
             }
             (Self::Bytes { .. }, Some(reader)) => reader.read(source, wanted, span, options)?,
-            (Self::Bytes { .. }, None) => return Err(LoadError::NoSuchFrame { wanted, frames: 0 }),
+            (Self::Bytes { .. }, None) => return Err(LoadError::no_such_frame(wanted, 0)),
         };
         loaded.notes.extend_from_slice(&index.notes);
         loaded.frames = index.is_whole.then_some(frames);
@@ -206,11 +206,12 @@ impl Trajectory {
         if wanted < frames {
             return Ok(found);
         }
-        Err(found.index.problem.unwrap_or(LoadError::NoSuchFrame { wanted, frames }))
+        let none = || LoadError::no_such_frame(wanted, frames);
+        Err(found.index.problem.unwrap_or_else(none))
     }
 
     fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
-        let of_file = |error| in_file(path, error);
+        let of_file = |error: LoadError| error.in_file(path);
         let mut source = Source::open(path).map_err(|error| of_file(error.into()))?;
         let format = match options.format {
             Some(format) => format,
@@ -220,7 +221,11 @@ impl Trajectory {
             }
         };
         format.check(options)?;
-        let frames = format.frames.ok_or(LoadError::NoFrames { format: format.name })?;
+        let frames = format.frames.ok_or_else(|| {
+            let name = format.name;
+            let message = format!("a file of the format {name} has no frames; read it as a whole");
+            LoadError::new(message).of_kind(LoadErrorKind::NoFrames)
+        })?;
         if matches!(frames, Frames::Bytes { .. }) {
             source = source.in_small_pieces().map_err(|error| of_file(error.into()))?;
         }
@@ -259,7 +264,7 @@ impl Trajectory {
     /// If there is no such frame, or it cannot be read. Lines are counted from the start of the file.
     pub fn frame(&mut self, index: usize) -> Result<Loaded, LoadError> {
         let Self { path, source, frames, index: found, options } = self;
-        frames.read(source, found, index, options).map_err(|error| in_file(path, error))
+        frames.read(source, found, index, options).map_err(|error| error.in_file(path))
     }
 
     /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
@@ -270,14 +275,6 @@ impl Trajectory {
     pub fn into_frame(mut self, index: usize) -> Result<Loaded, LoadError> {
         let loaded = self.frame(index)?;
         self.index.with_problem(loaded)
-    }
-}
-
-/// Puts the path into an error of reading the file.
-fn in_file(path: &Path, error: LoadError) -> LoadError {
-    match error {
-        LoadError::Io(error) => LoadError::File { path: path.to_path_buf(), error },
-        other => other,
     }
 }
 

@@ -5,7 +5,6 @@
 //! and arrays of cells, are not used, and a note says so.
 
 mod document;
-mod error;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -13,9 +12,8 @@ mod values;
 use std::collections::HashSet;
 
 use document::{Array, Document};
-pub use error::VtkError;
 
-use super::error::LoadError;
+use super::error::{LoadError, Place};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::scalar::Scalar;
@@ -38,7 +36,10 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let bytes = without_byte_order_mark(bytes);
     if bytes.starts_with(LEGACY) {
-        return Err(VtkError::Legacy.into());
+        return Err(LoadError::new(
+            "this is a legacy VTK file, which is not read; save it as .vtp or .vtu, such as with PyVista: \
+             pyvista.read('a.vtk').save('a.vtp')",
+        ));
     }
     let document = document::read(bytes)?;
     let mut notes: Vec<String> =
@@ -53,16 +54,26 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
 }
 
 /// The columns of all pieces together.
-fn columns(document: &Document<'_>, notes: &mut Vec<String>) -> Result<Vec<TableColumn>, VtkError> {
+fn columns(
+    document: &Document<'_>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<TableColumn>, LoadError> {
     let mut pieces = document.pieces.iter().enumerate().filter(|(_, piece)| piece.points > 0);
     let Some((index, first)) = pieces.next() else {
         return Ok(["x", "y", "z"].map(|name| TableColumn::numbers(name, Vec::new())).into());
     };
-    let no_points = |piece, points| move || VtkError::NoPoints { piece, points };
+    let no_points = |piece, points| {
+        move || {
+            let message = format!(
+                "it declares NumberOfPoints={points}, but has no array in an element Points, which holds their positions"
+            );
+            LoadError::at(Place::Piece(piece), message)
+        }
+    };
     let positions = first.positions.as_ref().ok_or_else(no_points(index, first.points))?;
     if positions.components != 3 {
         let message = format!("it must have 3 components, but has {}", positions.components);
-        return Err(VtkError::Array { piece: index, name: "Points".to_owned(), message });
+        return Err(in_array(index, "Points", &message));
     }
     let mut groups = vec![group(document, index, positions, "Points")?];
     let mut names = HashSet::new();
@@ -135,13 +146,14 @@ fn group(
     piece: usize,
     array: &Array<'_>,
     name: &str,
-) -> Result<Vec<Vec<f64>>, VtkError> {
+) -> Result<Vec<Vec<f64>>, LoadError> {
     let points = document.pieces.get(piece).map_or(0, |piece| piece.points);
-    let refused = |message| {
-        let name = shortened(&one_line(name));
-        VtkError::Array { piece, name, message }
-    };
-    values::numbers(array, points, document).map_err(refused)
+    values::numbers(array, points, document).map_err(|message| in_array(piece, name, &message))
+}
+
+fn in_array(piece: usize, name: &str, message: &str) -> LoadError {
+    let name = shortened(&one_line(name));
+    LoadError::at(Place::Piece(piece), format!("the array {name}: {message}"))
 }
 
 /// Adds the numbers of another piece.
@@ -150,14 +162,11 @@ fn append(
     more: Vec<Vec<f64>>,
     piece: usize,
     name: &str,
-) -> Result<(), VtkError> {
+) -> Result<(), LoadError> {
     if all.len() != more.len() {
-        let (name, components) = (shortened(&one_line(name)), more.len());
-        let message = format!(
-            "it has {components} components, but that of the first piece has {}",
-            all.len()
-        );
-        return Err(VtkError::Array { piece, name, message });
+        let (all, more) = (all.len(), more.len());
+        let message = format!("it has {more} components, but that of the first piece has {all}");
+        return Err(in_array(piece, name, &message));
     }
     all.iter_mut().zip(more).for_each(|(all, more)| all.extend(more));
     Ok(())

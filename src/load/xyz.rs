@@ -10,16 +10,14 @@
 use std::io;
 
 mod columns;
-mod error;
 
 use columns::Declared;
-pub use error::{DeclaredFrame, XyzError};
 
-use super::error::LoadError;
+use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::rows::{self, Lines, Rows, Values};
-use super::table::{Table, TableError};
+use super::table::Table;
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader, read_from_memory};
 use crate::text::{one_line, shortened, without_byte_order_mark};
 
@@ -47,38 +45,53 @@ pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 /// Finds frames by their numbers of atoms; the lines of atoms are only counted.
 fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameIndex> {
     let mut found = FrameIndex::default();
-    let mut previous = None;
+    // The last frame, its line, and its number of atoms.
+    let mut previous: Option<(usize, usize, usize)> = None;
     let problem = loop {
         let (start, lines_before, index) = (lines.offset, lines.line, found.frames.len());
         let Some(text) = lines.next()? else {
             found.is_whole = true;
-            break (index == 0).then_some(XyzError::Empty);
+            break (index == 0).then(|| {
+                LoadError::new("the file is empty; an XYZ file starts with the number of its atoms")
+            });
         };
         let text = without_byte_order_mark(text);
         let line = lines_before + 1;
         let Ok(text) = std::str::from_utf8(text).map(str::trim) else {
-            break Some(XyzError::NotText { line });
+            let message = "this line is not UTF-8 text; an XYZ file is plain text";
+            break Some(LoadError::line(line, message));
         };
         if text.is_empty() {
             continue;
         }
         let Ok(atoms) = text.parse() else {
-            break Some(XyzError::Count { line, found: shortened(text), previous });
+            let before = previous.map_or_else(String::new, |(index, line, atoms)| {
+                format!("; frame {index} before it declares {} on line {line}", counted(atoms))
+            });
+            let text = shortened(text);
+            let what = "is not a valid number of atoms, which must begin a frame";
+            break Some(LoadError::line(line, format!("`{text}` {what}{before}")));
         };
         if last.is_some_and(|last| index > last) {
             break None;
         }
-        let frame = DeclaredFrame { index, line, atoms };
         let _comment = lines.skip(1)?;
         let skipped = lines.skip(atoms)?;
         if skipped < atoms {
-            break Some(XyzError::TooFewAtoms { frame, found: skipped });
+            let declared = counted(atoms);
+            let message =
+                format!("frame {index} declares {declared}, but the file ends after {skipped}");
+            break Some(LoadError::line(line, message));
         }
         found.frames.push(FrameSpan { bytes: start..lines.offset, lines_before });
-        previous = Some(frame);
+        previous = Some((index, line, atoms));
     };
-    found.problem = problem.map(LoadError::from);
+    found.problem = problem;
     Ok(found)
+}
+
+fn counted(atoms: usize) -> String {
+    if atoms == 1 { "1 atom".to_owned() } else { format!("{atoms} atoms") }
 }
 
 fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
@@ -94,21 +107,20 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadEr
     // The comment may have any encoding; the part that is read is ASCII.
     let comment = String::from_utf8_lossy(lines.next().unwrap_or_default());
     lines_before += 1;
-    let refused =
-        |message: String| XyzError::Properties { line: lines_before, message: one_line(&message) };
+    let refused = |message: String| LoadError::line(lines_before, one_line(&message));
     let declared = Declared::of_comment(&comment).map_err(refused)?;
     let cell = columns::cell_of(&comment).map_err(refused)?;
     let origin = columns::origin_of(&comment).map_err(refused)?;
     let rows = Rows { text: lines.rest, lines_before, may_be_longer: declared.is_plain };
     let table = Table { columns: rows.read(&declared.fields)? };
+    let columns = table.names();
     let mut loaded = rows::into_loaded(table, options, |row| lines_before + row + 1).map_err(
-        |error| match error {
-            LoadError::Table(TableError::NoPositions { columns }) => {
-                let message =
-                    format!("Properties has no pos:R:3, which must name the positions; its columns are {columns}");
-                refused(message).into()
-            }
-            other => other,
+        |error| match error.kind {
+            LoadErrorKind::NoPositions => refused(format!(
+                "Properties has no pos:R:3, which must name the positions; its columns are {columns}"
+            ))
+            .of_kind(error.kind),
+            _ => error,
         },
     )?;
     loaded.cell = cell;

@@ -1,9 +1,8 @@
 //! Tests of reading arrays of spheres from .npy, .npz and raw files: good files, bad files and noise.
 
 use pinhole::SphereArray;
-use pinhole::load::npy::{self as reader, SpheresError};
-use pinhole::load::npz::{self, NpzError};
-use pinhole::load::{ColumnValues, Loaded, raw};
+use pinhole::load::npy as reader;
+use pinhole::load::{ColumnValues, LoadError, Loaded, npz, raw};
 use pinhole::write;
 use pinhole::write::npy::write_spheres;
 
@@ -12,11 +11,11 @@ use crate::arrays::{npy, zip};
 /// Two spheres: x, y, z, radius.
 const ROWS: [[f32; 4]; 2] = [[1.0, 2.0, 3.0, 0.5], [4.0, -5.0, 6.5, 0.25]];
 
-fn read_spheres(file: &[u8], radius: Option<f64>) -> Result<SphereArray, SpheresError> {
+fn read_spheres(file: &[u8], radius: Option<f64>) -> Result<SphereArray, LoadError> {
     reader::read(file, radius).map(|loaded| loaded.spheres)
 }
 
-fn read_archive(file: &[u8], radius: Option<f64>) -> Result<SphereArray, NpzError> {
+fn read_archive(file: &[u8], radius: Option<f64>) -> Result<SphereArray, LoadError> {
     npz::read(file, radius).map(|loaded| loaded.spheres)
 }
 
@@ -160,8 +159,12 @@ fn files_that_are_not_whole() {
     }
     let sides = "18446744073709551615, 18446744073709551615";
     assert!(message(&npy("<f4", false, &format!("({sides}, 4)"), b""), None).contains("shape"));
-    assert_eq!(read_spheres(b"", None), Err(SpheresError::NoNpy));
-    assert_eq!(read_spheres(b"PK\x03\x04", None), Err(SpheresError::NoNpy));
+    for other in [&b""[..], b"PK\x03\x04"] {
+        assert_eq!(
+            message(other, None),
+            "this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save"
+        );
+    }
     for length in 6..100 {
         let error = message(&file[..length], None);
         assert!(error.starts_with("the .npy header is cut off; "), "{length}: {error}");

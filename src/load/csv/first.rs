@@ -1,6 +1,7 @@
 //! Looks at the first lines of a table: what separates values, and where names of columns are.
 
-use super::{CsvError, Separator};
+use super::Separator;
+use crate::load::error::LoadError;
 use crate::load::rows::{Lines, Values, number};
 use crate::load::table;
 use crate::text::without_byte_order_mark;
@@ -22,8 +23,9 @@ struct Line<'a> {
 }
 
 impl<'a> First<'a> {
-    pub(super) fn of(text: &'a [u8], given: &[String]) -> Result<Self, CsvError> {
-        let (comment, first, after) = first_line(text).ok_or(CsvError::Empty)?;
+    pub(super) fn of(text: &'a [u8], given: &[String]) -> Result<Self, LoadError> {
+        let (comment, first, after) = first_line(text)
+            .ok_or_else(|| LoadError::new("there are no rows; a table has one on each line"))?;
         let separator = separator_of(first.text);
         let values = values_of(first.text, separator);
         let line = first.number;
@@ -33,7 +35,9 @@ impl<'a> First<'a> {
         let rows_with_first = &text[row.len() - line_length(row)..];
         let (names, rows, lines_before) = if is_header {
             if !given.is_empty() {
-                return Err(CsvError::TwoNames { line });
+                let message =
+                    "the table has a header here; remove the names of columns that are given";
+                return Err(LoadError::line(line, message));
             }
             (values, after, line)
         } else if given.is_empty() {
@@ -47,11 +51,21 @@ impl<'a> First<'a> {
                 })
             });
             let columns = values.len();
-            let example = if columns == 3 { "x,y,z" } else { "x,y,z,radius" }.to_owned();
-            (names.ok_or(CsvError::NoNames { line, columns, example })?, rows_with_first, line - 1)
+            let example = if columns == 3 { "x,y,z" } else { "x,y,z,radius" };
+            let names = names.ok_or_else(|| {
+                let message = format!(
+                    "the table has no header; name its {columns} columns in their order, such as with --columns {example}"
+                );
+                LoadError::line(line, message)
+            })?;
+            (names, rows_with_first, line - 1)
         } else {
             if given.len() != values.len() {
-                return Err(CsvError::Names { line, names: given.len(), columns: values.len() });
+                let (names, columns) = (given.len(), values.len());
+                let message = format!(
+                    "there are {names} names of columns, but this row has {columns} values"
+                );
+                return Err(LoadError::line(line, message));
             }
             (given.to_vec(), rows_with_first, line - 1)
         };

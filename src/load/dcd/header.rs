@@ -1,6 +1,6 @@
 //! The records before the first frame of a DCD file.
 
-use crate::load::binary::{BinaryError, Order, Reader, numbers};
+use crate::load::binary::{Order, Reader, numbers, wrong_start};
 use crate::load::error::LoadError;
 use crate::load::source::Bytes;
 
@@ -58,8 +58,8 @@ pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
 pub(super) fn reader(source: &mut dyn Bytes) -> Result<Reader<'_>, LoadError> {
     let mut reader = Reader::new(source, Order::Little)?;
     let first = reader.bytes(reader.size.min(12), "the header")?;
-    let message = "it does not start with a record of 84 bytes for CORD".to_owned();
-    let (order, _) = layout(&first).ok_or(BinaryError::Start { format: "dcd", message })?;
+    let message = "it does not start with a record of 84 bytes for CORD";
+    let (order, _) = layout(&first).ok_or_else(|| wrong_start("dcd", message))?;
     reader.order = order;
     reader.seek(0)?;
     Ok(reader)
@@ -84,7 +84,7 @@ impl Header {
         if !first.starts_with(NAME) {
             let message =
                 "the file has velocities (VELD) and no positions; give the trajectory of positions";
-            return Err(BinaryError::value(marker_bytes, message).into());
+            return Err(LoadError::byte(marker_bytes, message));
         }
         let control: Vec<u32> = numbers(&first[4..], reader.order).collect();
         header.frames = control[0];
@@ -100,11 +100,11 @@ impl Header {
         header.atoms = usize::try_from(atoms)
             .ok()
             .filter(|atoms| *atoms > 0)
-            .ok_or_else(|| BinaryError::value(start, format!("the file declares {atoms} atoms")))?;
+            .ok_or_else(|| LoadError::byte(start, format!("the file declares {atoms} atoms")))?;
         let fixed = control[8] as usize;
         if fixed >= header.atoms {
             let message = format!("{fixed} of {atoms} atoms are fixed; at least one must move");
-            return Err(BinaryError::value(marker_bytes + 36, message).into());
+            return Err(LoadError::byte(marker_bytes + 36, message));
         }
         // What one frame takes is checked before memory depends on the number of atoms.
         reader.check(header.frame_bytes(0), format!("a frame of {atoms} atoms"))?;
@@ -117,7 +117,7 @@ impl Header {
                 if !is_atom {
                     let message =
                         format!("{number} is not the number of an atom, from 1 to {atoms}");
-                    return Err(BinaryError::value(start + 4 * index as u64, message).into());
+                    return Err(LoadError::byte(start + 4 * index as u64, message));
                 }
                 header.free.push(number as u32 - 1);
             }
@@ -149,7 +149,7 @@ impl Header {
         let found = self.marker(reader, what)?;
         if found != length {
             let message = format!("{what} must take {length} bytes, but the file says {found}");
-            return Err(BinaryError::value(offset, message).into());
+            return Err(LoadError::byte(offset, message));
         }
         let bytes = reader.bytes(length, what)?;
         self.check_end(reader, length, what)?;
@@ -182,6 +182,6 @@ impl Header {
             return Ok(());
         }
         let message = format!("{what} takes {length} bytes, but the file says {found} at its end");
-        Err(BinaryError::value(offset, message).into())
+        Err(LoadError::byte(offset, message))
     }
 }

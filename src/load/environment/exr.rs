@@ -8,20 +8,19 @@ use exr::meta::MetaData;
 use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{Compression, ReadLayers, Vec2, read as reader};
 
-use super::{EnvironmentFileError, Watched, black, refusal};
+use super::{Watched, black, damaged, refusal};
 use crate::light::environment::Environment;
+use crate::load::error::LoadError;
 
 const FORMAT: &str = "OpenEXR";
 
 /// Names of the channels that are read.
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
-pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     let at_end = Cell::new(false);
     let refused = |error: Error| refusal(FORMAT, bytes, &at_end, &error);
-    let unreadable = |message: &str| {
-        Err(EnvironmentFileError::Format { format: FORMAT, message: message.to_owned() })
-    };
+    let unreadable = |message: &str| Err(damaged(FORMAT, message));
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     let meta =
         MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(refused)?;
@@ -34,7 +33,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     let Some(header) = with_color else {
         let first = meta.headers.first().map(|header| names(&header.channels.list).join(", "));
         let found = crate::text::one_line(&first.unwrap_or_default());
-        return Err(EnvironmentFileError::Channels { found });
+        let found = if found.is_empty() { "no channels".to_owned() } else { found };
+        return Err(LoadError::new(format!(
+            "no part of the OpenEXR file has the channels R, G and B, which are needed; the first part has {found}"
+        )));
     };
     // The decoder of B44 overflows on damaged files (exr 1.74).
     let is_lossy = |compression| matches!(compression, Compression::B44 | Compression::B44A);
@@ -72,5 +74,5 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     }
     let (_, texels) = image.layer_data.channel_data.pixels;
     let [width, height] = [size.width(), size.height()].map(|count| count as u32);
-    Ok(Environment::new(width, height, texels)?)
+    Environment::new(width, height, texels).map_err(|error| LoadError::new(error.to_string()))
 }

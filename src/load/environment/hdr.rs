@@ -5,17 +5,17 @@ use std::cell::Cell;
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 
-use super::{EnvironmentFileError, Watched, black, refusal};
+use super::{Watched, black, damaged, refusal};
 use crate::light::environment::Environment;
+use crate::load::error::LoadError;
 
 const FORMAT: &str = "Radiance HDR";
 
-pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     let at_end = Cell::new(false);
     let refused = |error| refusal(FORMAT, bytes, &at_end, &error);
     if has_empty_runs(bytes) {
-        let message = "it has several empty runs of pixels in a row".to_owned();
-        return Err(EnvironmentFileError::Format { format: FORMAT, message });
+        return Err(damaged(FORMAT, "it has several empty runs of pixels in a row"));
     }
     // Not strict: the signature may be `#?RGBE` as well, and headers have lines of all kinds.
     let decoder =
@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     let (width, height) = decoder.dimensions();
     let mut texels = black([width, height].map(u64::from), FORMAT, bytes.len())?;
     decoder.read_image(bytemuck::cast_slice_mut(&mut texels)).map_err(refused)?;
-    Ok(Environment::new(width, height, texels)?)
+    Environment::new(width, height, texels).map_err(|error| LoadError::new(error.to_string()))
 }
 
 /// Whether the file has eight run markers in a row of which the last four are empty. No encoder writes that, and the

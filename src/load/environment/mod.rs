@@ -7,7 +7,8 @@
 use std::cell::Cell;
 use std::io::{Cursor, Read, Seek, SeekFrom};
 
-use crate::light::environment::{Environment, EnvironmentError};
+use crate::light::environment::Environment;
+use crate::load::error::{LoadError, LoadErrorKind};
 
 #[cfg(feature = "exr")]
 mod exr;
@@ -17,89 +18,49 @@ mod hdr;
 /// The largest number of texels that a file may have: 16,384 × 8192.
 pub const MAX_TEXELS: u64 = 1 << 27;
 
-/// An error of reading an environment map.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum EnvironmentFileError {
-    /// The file begins with the signature of neither format.
-    #[error("this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them")]
-    Unknown,
-    /// This build cannot read the format of the file.
-    #[error(
-        "this file has the format {format}, which this build cannot read; build pinhole with the feature `{feature}`"
-    )]
-    NotBuilt {
-        /// Name of the format.
-        format: &'static str,
-        /// The feature of this crate that adds its reader.
-        feature: &'static str,
-    },
-    /// The file ends before the image does.
-    #[error("the {format} file is incomplete: it ends after {bytes} bytes, before its image does")]
-    Truncated {
-        /// Name of the format.
-        format: &'static str,
-        /// Length of the file in bytes.
-        bytes: usize,
-    },
-    /// The decoder cannot read the file.
-    #[error("the {format} file is damaged or of a kind that cannot be read: {message}")]
-    Format {
-        /// Name of the format.
-        format: &'static str,
-        /// The decoder's reason.
-        message: String,
-    },
-    /// The file has no colours.
-    #[error(
-        "no part of the OpenEXR file has the channels R, G and B, which are needed; the first part has {}",
-        if found.is_empty() { "no channels" } else { found }
-    )]
-    Channels {
-        /// Names of the channels of the first part.
-        found: String,
-    },
-    /// The map has more texels than [`MAX_TEXELS`].
-    #[error(
-        "the image has {width}×{height} texels, more than the limit of {MAX_TEXELS}; use a smaller image"
-    )]
-    TooLarge {
-        /// Number of columns.
-        width: u64,
-        /// Number of rows.
-        height: u64,
-    },
-    /// There is not enough memory for the map.
-    #[error("there is not enough memory for {texels} texels; use a smaller image")]
-    Memory {
-        /// Number of texels.
-        texels: u64,
-    },
-    /// The size of the map or one of its texels is not valid.
-    #[error(transparent)]
-    Environment(#[from] EnvironmentError),
-}
-
 /// Reads an environment map; the first bytes of the file show its format.
 ///
 /// From an OpenEXR file, the first part with the channels R, G and B is read.
 ///
 /// # Errors
 /// If the file has neither format, is damaged or too large, or if a texel is not a valid radiance.
-pub fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
+pub fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     if bytes.starts_with(b"#?") {
         #[cfg(feature = "hdr")]
         return hdr::read(bytes);
         #[cfg(not(feature = "hdr"))]
-        return Err(EnvironmentFileError::NotBuilt { format: "Radiance HDR", feature: "hdr" });
+        return Err(not_built("Radiance HDR", "hdr"));
     }
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         #[cfg(feature = "exr")]
         return exr::read(bytes);
         #[cfg(not(feature = "exr"))]
-        return Err(EnvironmentFileError::NotBuilt { format: "OpenEXR", feature: "exr" });
+        return Err(not_built("OpenEXR", "exr"));
     }
-    Err(EnvironmentFileError::Unknown)
+    Err(LoadError::new(
+        "this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them",
+    ))
+}
+
+#[cfg(not(all(feature = "exr", feature = "hdr")))]
+fn not_built(format: &str, feature: &str) -> LoadError {
+    LoadError::new(format!(
+        "this file has the format {format}, which this build cannot read; build pinhole with the feature `{feature}`"
+    ))
+}
+
+fn cut_off(format: &str, bytes: usize) -> LoadError {
+    let message = format!(
+        "the {format} file is incomplete: it ends after {bytes} bytes, before its image does"
+    );
+    LoadError::new(message).of_kind(LoadErrorKind::CutOff)
+}
+
+/// The decoder cannot read the file.
+fn damaged(format: &str, message: &str) -> LoadError {
+    LoadError::new(format!(
+        "the {format} file is damaged or of a kind that cannot be read: {message}"
+    ))
 }
 
 /// Limit on the number of texels that a file may declare for each of its bytes. What the formats can reach is less:
@@ -115,16 +76,22 @@ fn black(
     [width, height]: [u64; 2],
     format: &'static str,
     bytes: usize,
-) -> Result<Vec<[f32; 3]>, EnvironmentFileError> {
+) -> Result<Vec<[f32; 3]>, LoadError> {
     let texels = width.saturating_mul(height);
     if texels > MAX_TEXELS {
-        return Err(EnvironmentFileError::TooLarge { width, height });
+        return Err(LoadError::new(format!(
+            "the image has {width}×{height} texels, more than the limit of {MAX_TEXELS}; use a smaller image"
+        )));
     }
     if texels > SMALL.max(TEXELS_PER_BYTE.saturating_mul(bytes as u64)) {
-        return Err(EnvironmentFileError::Truncated { format, bytes });
+        return Err(cut_off(format, bytes));
     }
     let mut room = Vec::new();
-    room.try_reserve_exact(texels as usize).map_err(|_| EnvironmentFileError::Memory { texels })?;
+    room.try_reserve_exact(texels as usize).map_err(|_| {
+        LoadError::new(format!(
+            "there is not enough memory for {texels} texels; use a smaller image"
+        ))
+    })?;
     room.resize(texels as usize, [0.0; 3]);
     Ok(room)
 }
@@ -164,10 +131,9 @@ fn refusal(
     bytes: &[u8],
     at_end: &Cell<bool>,
     message: &impl ToString,
-) -> EnvironmentFileError {
+) -> LoadError {
     if at_end.get() {
-        return EnvironmentFileError::Truncated { format, bytes: bytes.len() };
+        return cut_off(format, bytes.len());
     }
-    let message = crate::text::one_line(&message.to_string());
-    EnvironmentFileError::Format { format, message }
+    damaged(format, &crate::text::one_line(&message.to_string()))
 }

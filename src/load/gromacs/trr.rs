@@ -2,7 +2,7 @@
 //! kJ/(mol Å).
 
 use super::{ANGSTROMS, cell_of, find_frames};
-use crate::load::binary::{BinaryError, Order, Reader, component_names, numbers};
+use crate::load::binary::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::loaded::{Column, ColumnValues, Loaded};
@@ -70,10 +70,10 @@ impl Header {
         let magic: i32 = reader.number(&what)?;
         let name = reader.bytes(NAME.len() as u64, what.as_str())?;
         if magic != MAGIC || name != NAME {
-            let message = "a frame must start with 1993 and GMX_trn_file".to_owned();
+            let message = "a frame must start with 1993 and GMX_trn_file";
             return Err(match start {
-                0 => BinaryError::Start { format: "trr", message }.into(),
-                _ => BinaryError::value(start, message).into(),
+                0 => wrong_start("trr", message),
+                _ => LoadError::byte(start, message),
             });
         }
         let mut sizes = [0; 10];
@@ -81,13 +81,12 @@ impl Header {
             let offset = reader.offset;
             let found: i32 = reader.number(&what)?;
             *size = u64::try_from(found).map_err(|_| {
-                BinaryError::value(offset, format!("frame {index}: {part} takes {found} bytes"))
+                LoadError::byte(offset, format!("frame {index}: {part} takes {found} bytes"))
             })?;
         }
         let offset = reader.offset;
         let declared: i32 = reader.number(&what)?;
-        let wrong =
-            |message: String| BinaryError::value(offset, format!("frame {index}: {message}"));
+        let wrong = |message: String| LoadError::byte(offset, format!("frame {index}: {message}"));
         let atoms = u64::try_from(declared)
             .ok()
             .filter(|atoms| *atoms > 0)
@@ -103,8 +102,7 @@ impl Header {
                 "box, positions, velocities and forces of {atoms} atoms take {}, {x}, {v} and {f} bytes, which is \
                  neither single nor double precision",
                 sizes[BOX]
-            ))
-            .into());
+            )));
         }
         // Step and number of records of the energy, then time and lambda.
         let is_double = !is_of(4);
@@ -160,14 +158,9 @@ impl FrameReader for Trr {
                         .collect();
                     if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                         let width = if header.is_double { 8 } else { 4 };
-                        return Err(BinaryError::Position {
-                            offset: offset + width * index as u64,
-                            frame,
-                            atom: index / 3,
-                            axis: ['x', 'y', 'z'][index % 3],
-                            found: values[index],
-                        }
-                        .into());
+                        let (byte, atom) = (offset + width * index as u64, index / 3);
+                        let (axis, found) = (['x', 'y', 'z'][index % 3], values[index]);
+                        return Err(wrong_position(byte, frame, atom, axis, found));
                     }
                 }
                 // Forces are energies for a length.

@@ -4,7 +4,7 @@
 
 use super::unpack::{self, Packed};
 use super::{ANGSTROMS, cell_of, find_frames};
-use crate::load::binary::{BinaryError, Order, Reader, numbers};
+use crate::load::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::loaded::Loaded;
@@ -66,14 +66,13 @@ impl Header {
         if !matches!(magic, MAGIC | LONG_MAGIC) {
             let message = format!("a frame must start with 1995 or 2023, but starts with {magic}");
             return Err(match start {
-                0 => BinaryError::Start { format: "xtc", message }.into(),
-                _ => BinaryError::value(start, message).into(),
+                0 => wrong_start("xtc", message),
+                _ => LoadError::byte(start, message),
             });
         }
         let offset = reader.offset;
-        let wrong = |offset, message: String| {
-            BinaryError::value(offset, format!("frame {index}: {message}"))
-        };
+        let wrong =
+            |offset, message: String| LoadError::byte(offset, format!("frame {index}: {message}"));
         let atoms: i32 = reader.number(&what)?;
         let _step: i32 = reader.number(&what)?;
         let _time: f32 = reader.number(&what)?;
@@ -88,7 +87,7 @@ impl Header {
             .ok()
             .filter(|atoms| *atoms > 0 && again == atoms.cast_signed() as i32)
         else {
-            return Err(wrong(offset, format!("it declares {atoms} and then {again} atoms")).into());
+            return Err(wrong(offset, format!("it declares {atoms} and then {again} atoms")));
         };
         if atoms <= FEW {
             return Ok(Self { atoms, cell, packed: None, bytes: 12 * atoms as u64 });
@@ -96,7 +95,7 @@ impl Header {
         let packed = Packed::read(reader, &what).and_then(|packed| {
             packed
                 .check()
-                .map_err(|message| wrong(start + HEADER_BYTES, message).into())
+                .map_err(|message| wrong(start + HEADER_BYTES, message))
                 .map(|()| packed)
         })?;
         let offset = reader.offset;
@@ -141,13 +140,13 @@ impl FrameReader for Xtc {
             }
             Some(packed) => unpack::positions(&bytes, &packed, header.atoms).map_err(|error| {
                 let message = format!("frame {frame}: {}", error.message);
-                BinaryError::value(offset + error.byte, message)
+                LoadError::byte(offset + error.byte, message)
             })?,
         };
         for (atom, center) in centers.iter().enumerate() {
             if let Some(axis) = center.iter().position(|value| !value.is_finite()) {
                 let (found, axis) = (center[axis], ['x', 'y', 'z'][axis]);
-                return Err(BinaryError::Position { offset, frame, atom, axis, found }.into());
+                return Err(wrong_position(offset, frame, atom, axis, found));
             }
         }
         let centers = centers.into_iter().map(|center| center.map(|length| length * ANGSTROMS));

@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use crate::load::binary::{BinaryError, Order, Reader, numbers, shown};
+use crate::load::binary::{Order, Reader, numbers, shown, wrong_start};
 use crate::load::error::LoadError;
 
 const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
@@ -99,13 +99,12 @@ impl Chunk {
 impl Index {
     /// Reads the index of a file.
     pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, LoadError> {
-        let start =
-            |message: &str| BinaryError::Start { format: "gsd", message: message.to_owned() };
         if reader.left() < HEADER_BYTES {
-            return Err(start("it is shorter than the header of 256 bytes").into());
+            return Err(wrong_start("gsd", "it is shorter than the header of 256 bytes"));
         }
         if reader.number::<u64>("the header")? != MAGIC {
-            return Err(start("it does not start with the signature of the format").into());
+            let message = "it does not start with the signature of the format";
+            return Err(wrong_start("gsd", message));
         }
         let index_location: u64 = reader.number("the header")?;
         let index_entries: u64 = reader.number("the header")?;
@@ -120,7 +119,7 @@ impl Index {
                 version >> 16,
                 version & 0xffff
             );
-            return Err(BinaryError::value(44, message).into());
+            return Err(LoadError::byte(44, message));
         }
         reader.seek(reader.offset + 64)?;
         let schema = shown(&reader.bytes(64, "the header")?);
@@ -128,7 +127,7 @@ impl Index {
             let message = format!(
                 "the file has the schema `{schema}`; only that of HOOMD-blue, `hoomd`, can be read"
             );
-            return Err(BinaryError::value(112, message).into());
+            return Err(LoadError::byte(112, message));
         }
         reader.seek(names_location)?;
         let bytes = names_entries.saturating_mul(NAME_BYTES);
@@ -152,7 +151,7 @@ impl Index {
                 Err((frame, message)) => {
                     // A frame without one of its chunks is not complete.
                     index.chunks.retain(|chunk| chunk.frame < frame);
-                    index.problem = Some(BinaryError::value(offset, message).into());
+                    index.problem = Some(LoadError::byte(offset, message));
                     break;
                 }
             }

@@ -4,8 +4,7 @@ use crate::load::rows::{Values, number};
 
 /// How the three lines of a box are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Shape {
+pub(super) enum Shape {
     /// Low and high end along x, y and z.
     Orthogonal,
     /// The same of the box around the cell, each followed by one of the tilt factors xy, xz and yz.

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::cell::Cell;
 use super::elements::{self, Types};
 use super::styles::{columns_of, fields_of};
-use super::{LammpsError, order};
+use super::{order, too_few_atoms, wrong_text};
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::loaded::{ColumnValues, Loaded};
@@ -36,18 +36,19 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
         if content.is_empty() {
             continue;
         }
-        let invalid =
-            || LammpsError::Line { line, found: shortened(&String::from_utf8_lossy(content)) };
+        let invalid = || wrong_text(line, content, "cannot be read");
         if !is_section(content) {
             if atoms.is_some() {
                 let (line_of_count, declared) = count.unwrap_or_default();
-                let found = shortened(&String::from_utf8_lossy(content));
-                return Err(LammpsError::NoSection { line, found, declared, line_of_count }.into());
+                let what = format!(
+                    "stands where a section must begin; {declared} atoms are declared on line {line_of_count}"
+                );
+                return Err(wrong_text(line, content, &what));
             }
-            if let Some(found) = count_of(content, b"atoms") {
-                let found =
-                    found.map_err(|found| LammpsError::Count { line, what: "atoms", found })?;
-                count = Some((line, found));
+            if let Some(atoms) = count_of(content, b"atoms") {
+                let invalid =
+                    |text: &[u8]| wrong_text(line, text, "is not a valid number of atoms");
+                count = Some((line, atoms.map_err(invalid)?));
             } else if let Some(axis) = ["xlo xhi", "ylo yhi", "zlo zhi"]
                 .iter()
                 .position(|n| content.ends_with(n.as_bytes()))
@@ -64,35 +65,31 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
             ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
             && let Some(first_line) = lines_of_sections.insert(section, line)
         {
-            return Err(LammpsError::SecondSection { line, section, first_line }.into());
+            let message = format!(
+                "a second section {section} begins here; the first begins on line {first_line}; remove one of them"
+            );
+            return Err(LoadError::line(line, message));
         }
         file.skip_blank();
-        let number_of_atoms = || count.ok_or(LammpsError::NoCount { line });
+        let mut rows = || {
+            let (line_of_count, declared) = count.ok_or_else(|| {
+                LoadError::line(line, "a line such as `100 atoms` must come before the atoms")
+            })?;
+            let too_few = |found| too_few_atoms(line_of_count, declared, found);
+            file.take_rows(declared).map_err(too_few)
+        };
         match content {
             b"Atoms" => {
-                let (line_of_count, declared) = number_of_atoms()?;
-                let style = comment_of(text);
-                let rows = file.take_rows(declared).map_err(|found| LammpsError::TooFewAtoms {
-                    line: line_of_count,
-                    declared,
-                    found,
-                })?;
+                let (rows, style) = (rows()?, comment_of(text));
                 atoms = Some((rows, fields_of(rows, style.as_deref(), &options.columns)?));
             }
-            b"Velocities" => {
-                let (line_of_count, declared) = number_of_atoms()?;
-                let rows = file.take_rows(declared).map_err(|found| LammpsError::TooFewAtoms {
-                    line: line_of_count,
-                    declared,
-                    found,
-                })?;
-                velocities = Some(rows);
-            }
+            b"Velocities" => velocities = Some(rows()?),
             b"Masses" => file.each_pair(|line, name, value| {
                 let mass = number(value).filter(|mass| mass.is_finite());
-                let mass = mass.ok_or(LammpsError::Mass {
-                    line,
-                    found: shortened(&String::from_utf8_lossy(value)),
+                let mass = mass.ok_or_else(|| {
+                    let found = shortened(&String::from_utf8_lossy(value));
+                    let message = format!("the mass is `{found}`, which is not a finite number");
+                    LoadError::line(line, message)
                 })?;
                 types.add_mass(String::from_utf8_lossy(name).into_owned(), mass);
                 Ok(())
@@ -105,7 +102,9 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
             _ => file.skip_section(),
         }
     }
-    let Some((rows, fields)) = atoms else { return Err(LammpsError::NoAtoms.into()) };
+    let Some((rows, fields)) = atoms else {
+        return Err(LoadError::new("there is no section Atoms; a data file of LAMMPS has one"));
+    };
     let mut table = Table { columns: rows.read(&fields)? };
     let mut notes = Vec::from_iter(elements::name_types(&mut table, &types));
     let order = order::by_id(&mut table);
@@ -185,14 +184,13 @@ impl<'a> File<'a> {
     /// Calls a function with the line and the first two values of each line of a section.
     fn each_pair(
         &mut self,
-        mut each: impl FnMut(usize, &[u8], &[u8]) -> Result<(), LammpsError>,
-    ) -> Result<(), LammpsError> {
+        mut each: impl FnMut(usize, &[u8], &[u8]) -> Result<(), LoadError>,
+    ) -> Result<(), LoadError> {
         while let Some(text) = self.peek() {
             self.next();
             let mut values = Values { rest: text };
             let (Some(first), Some(second)) = (values.next(), values.next()) else {
-                let found = shortened(&String::from_utf8_lossy(text));
-                return Err(LammpsError::Line { line: self.line, found });
+                return Err(wrong_text(self.line, text, "cannot be read"));
             };
             each(self.line, first, second)?;
         }
@@ -241,13 +239,13 @@ fn is_section(line: &[u8]) -> bool {
 }
 
 /// The number before a word that ends the line, if it ends it.
-fn count_of(line: &[u8], word: &[u8]) -> Option<Result<usize, String>> {
+fn count_of<'a>(line: &'a [u8], word: &[u8]) -> Option<Result<usize, &'a [u8]>> {
     let text = line
         .strip_suffix(word)?
         .strip_suffix(b" ")
         .or_else(|| line.strip_suffix(word)?.strip_suffix(b"\t"))?;
-    let text = String::from_utf8_lossy(text.trim_ascii()).into_owned();
-    Some(text.parse().map_err(|_| shortened(&text)))
+    let text = text.trim_ascii();
+    Some(String::from_utf8_lossy(text).parse().map_err(|_| text))
 }
 
 fn numbers_of<const COUNT: usize>(line: &[u8]) -> Option<[f64; COUNT]> {

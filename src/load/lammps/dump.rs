@@ -3,15 +3,15 @@
 use std::io;
 
 use super::cell::{Cell, Shape};
-use super::{LammpsError, order};
+use super::{order, too_few_atoms, wrong_text};
 use crate::load::elements::appearance;
-use crate::load::error::LoadError;
+use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::format::Options;
 use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
-use crate::load::table::{self, Table, TableColumn, TableError};
+use crate::load::table::{self, Table, TableColumn};
 use crate::load::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
-use crate::text::{shortened, without_byte_order_mark};
+use crate::text::without_byte_order_mark;
 
 /// How frames are found and read one by one.
 pub(in crate::load) const FRAMES: Frames = Frames::Lines { find, read };
@@ -42,8 +42,10 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
         let Some(text) = lines.next()? else {
             found.is_whole = true;
             break match first {
-                Some((_, before)) => Some(LammpsError::CutOff { line: before + 1 }),
-                None => found.frames.is_empty().then_some(LammpsError::Empty),
+                Some((_, before)) => Some(cut_off(before + 1)),
+                None => found.frames.is_empty().then(|| {
+                    LoadError::new("the file is empty; a dump of LAMMPS starts with ITEM: TIMESTEP")
+                }),
             };
         };
         let text = String::from_utf8_lossy(without_byte_order_mark(text).trim_ascii()).into_owned();
@@ -51,7 +53,11 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
             continue;
         }
         let Some(item) = text.strip_prefix("ITEM:").map(str::trim) else {
-            break Some(LammpsError::NoItem { line, found: shortened(&text), previous });
+            let before = previous.map_or_else(String::new, |(line, atoms): (usize, usize)| {
+                format!("; the frame before it declares {atoms} atoms on line {line}")
+            });
+            let what = format!("stands where ITEM: must begin an item{before}");
+            break Some(wrong_text(line, text.as_bytes(), &what));
         };
         if last.is_some_and(|last| found.frames.len() > last) {
             break None;
@@ -63,29 +69,34 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
                 let line = line + 1;
                 let text = String::from_utf8_lossy(lines.next()?.unwrap_or_default()).into_owned();
                 let Ok(count) = text.trim().parse::<usize>() else {
-                    let found = shortened(text.trim());
-                    break Some(LammpsError::Count { line, what: "atoms", found });
+                    break Some(wrong_text(
+                        line,
+                        text.as_bytes(),
+                        "is not a valid number of atoms",
+                    ));
                 };
                 atoms = Some((line, count));
             }
             _ if item.starts_with("BOX BOUNDS") => drop(lines.skip(3)?),
             _ if item == "ATOMS" || item.starts_with("ATOMS ") => {
                 let Some((declared_on, declared)) = atoms.take() else {
-                    break Some(LammpsError::MissingItem { line, item: "ITEM: NUMBER OF ATOMS" });
+                    break Some(missing(line, "ITEM: NUMBER OF ATOMS"));
                 };
                 let skipped = lines.skip(declared)?;
                 if skipped < declared {
-                    let line = declared_on;
-                    break Some(LammpsError::TooFewAtoms { line, declared, found: skipped });
+                    break Some(too_few_atoms(declared_on, declared, skipped));
                 }
                 found.frames.push(FrameSpan { bytes: start..lines.offset, lines_before: before });
                 previous = Some((declared_on, declared));
                 first = None;
             }
-            _ => break Some(LammpsError::UnknownItem { line, found: shortened(&text) }),
+            _ => {
+                let what = "is not an item of a dump of atoms";
+                break Some(wrong_text(line, text.as_bytes(), what));
+            }
         }
     };
-    found.problem = problem.map(LoadError::from);
+    found.problem = problem;
     Ok(found)
 }
 
@@ -95,7 +106,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
     let mut cell = None;
     let names = loop {
         let Some(text) = lines.next() else {
-            return Err(LammpsError::CutOff { line: frame.lines_before + 1 }.into());
+            return Err(cut_off(frame.lines_before + 1));
         };
         line += 1;
         let text = String::from_utf8_lossy(text.trim_ascii());
@@ -103,22 +114,28 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
         if item.starts_with("BOX BOUNDS") {
             let shape = Shape::of_item(item);
             let bounds = [(); 3].map(|()| lines.next().unwrap_or_default());
-            cell = Some(Cell::of_dump(shape, bounds).map_err(|index| LammpsError::Box {
-                line: line + index + 1,
-                found: shortened(&String::from_utf8_lossy(bounds[index].trim_ascii())),
-                shape,
+            cell = Some(Cell::of_dump(shape, bounds).map_err(|index| {
+                let what = format!("is not a line of the box; {}", shape.values());
+                wrong_text(line + index + 1, bounds[index], &what)
             })?);
             line += 3;
         } else if let Some(names) = item.strip_prefix("ATOMS") {
             break names.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         }
     };
-    let cell = cell.ok_or(LammpsError::MissingItem { line, item: "ITEM: BOX BOUNDS" })?;
+    let cell = cell.ok_or_else(|| missing(line, "ITEM: BOX BOUNDS"))?;
     let names = match (names.is_empty(), options.columns.is_empty()) {
         (false, true) => names,
         (true, false) => options.columns.clone(),
-        (true, true) => return Err(LammpsError::NoNames { line }.into()),
-        (false, false) => return Err(LammpsError::TwoNames { line }.into()),
+        (true, true) => {
+            let message = "the columns have no names; name them in the order of the file, such as with --columns \
+                           id,type,xs,ys,zs";
+            return Err(LoadError::line(line, message));
+        }
+        (false, false) => {
+            let message = "the file names its columns; remove the names that are given";
+            return Err(LoadError::line(line, message));
+        }
     };
     let rows = Rows { text: lines.rest, lines_before: line, may_be_longer: false };
     let mut table = Table { columns: rows.read(&fields(names, lines.rest))? };
@@ -126,11 +143,15 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
     let is_noted = types_as_elements(&mut table);
     let order = order::by_id(&mut table);
     let line_of = |row| line + 1 + order.as_ref().map_or(row, |order| order[row] as usize);
-    let mut loaded = rows::into_loaded(table, options, line_of).map_err(|error| match error {
-        LoadError::Table(TableError::NoPositions { columns }) => {
-            LammpsError::NoPositions { line, columns }.into()
+    let columns = table.names();
+    let mut loaded = rows::into_loaded(table, options, line_of).map_err(|error| match error.kind {
+        LoadErrorKind::NoPositions => {
+            let message = format!(
+                "there are no positions among the columns {columns}; they are x y z, xu yu zu, xs ys zs or xsu ysu zsu"
+            );
+            LoadError::line(line, message).of_kind(error.kind)
         }
-        other => other,
+        _ => error,
     })?;
     (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     if is_noted {
@@ -139,6 +160,15 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
         );
     }
     Ok(loaded)
+}
+
+/// The file ends within the frame that begins in this line.
+fn cut_off(line: usize) -> LoadError {
+    LoadError::line(line, "the file ends within the frame that begins here, before its atoms")
+}
+
+fn missing(line: usize, item: &str) -> LoadError {
+    LoadError::line(line, format!("{item} is missing before ITEM: ATOMS"))
 }
 
 /// What the columns are. Types are text, whether they are numbers or labels; of others the first line decides.

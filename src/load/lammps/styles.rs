@@ -1,7 +1,7 @@
 //! The columns of the atoms in data files, which depend on the simulation's style of atoms.
 
-use super::LammpsError;
 use super::data::listed;
+use crate::load::error::LoadError;
 use crate::load::rows::{Field, Kind, Lines, Rows, Values};
 use crate::text::shortened;
 
@@ -42,7 +42,7 @@ pub(super) fn fields_of(
     rows: Rows<'_>,
     style: Option<&str>,
     given: &[String],
-) -> Result<Vec<Field>, LammpsError> {
+) -> Result<Vec<Field>, LoadError> {
     let line = rows.lines_before + 1;
     let first: Vec<&[u8]> = Values { rest: Lines::new(rows.text).next().unwrap_or_default() }
         .take_while(|value| !value.starts_with(b"#"))
@@ -56,12 +56,24 @@ pub(super) fn fields_of(
     let names: Vec<String> = if given.is_empty() {
         let columns = match &style {
             Some(style) => {
-                let unknown = || LammpsError::UnknownStyle { line, style: shortened(style) };
-                columns_of(style).ok_or_else(unknown)?
+                columns_of(style).ok_or_else(|| {
+                    let style = shortened(style);
+                    let message = format!(
+                        "the columns of the style {style} are not known; name them, such as with --columns id,type,x,y,z"
+                    );
+                    LoadError::line(line, message)
+                })?
             }
             None if found == 5 || has_images(5) => columns_of("atomic").unwrap_or_default(),
             None if rows.text.is_empty() => columns_of("atomic").unwrap_or_default(),
-            None => return Err(LammpsError::NoStyle { line, found, charge: listed("charge") }),
+            None => {
+                let message = format!(
+                    "atoms have {found} columns, and the file does not say which; name their style, as in `Atoms # full`, \
+                     or the columns, as with --columns {}",
+                    listed("charge")
+                );
+                return Err(LoadError::line(line, message));
+            }
         };
         columns.into_iter().map(str::to_owned).collect()
     } else {
@@ -70,7 +82,10 @@ pub(super) fn fields_of(
     let images = if has_images(names.len()) { &["ix", "iy", "iz"][..] } else { &[] };
     if found != names.len() + images.len() && !rows.text.is_empty() {
         let (names, declared) = (names.join(" "), names.len());
-        return Err(LammpsError::Columns { line, found, declared, names });
+        let message = format!(
+            "this line has {found} columns, but {declared} have names ({names}); three whole numbers may follow"
+        );
+        return Err(LoadError::line(line, message));
     }
     let field = |name: &str| {
         let is_text = matches!(name, "type" | "element");

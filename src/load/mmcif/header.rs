@@ -1,10 +1,10 @@
 //! What stands around the rows of atoms: the names of their columns, and the cell.
 
-use super::MmCifError;
+use super::not_a_number;
 use super::tokens::{Token, Tokens};
 use crate::load::atoms::cell;
+use crate::load::error::LoadError;
 use crate::load::rows::number;
-use crate::text::shortened;
 
 /// Values of an atom that the reader uses, each with its names in the order of preference: those that the authors gave
 /// come first, because PDB files have them.
@@ -87,14 +87,14 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads a text that ends where rows begin. What belongs to an earlier block is forgotten.
-    pub(super) fn before(text: &[u8], lines_before: usize) -> Result<Self, MmCifError> {
+    pub(super) fn before(text: &[u8], lines_before: usize) -> Result<Self, LoadError> {
         let mut header = Self::default();
         header.read(text, lines_before, false)?;
         Ok(header)
     }
 
     /// Adds what stands after the rows, up to the next block.
-    pub(super) fn add_after(&mut self, text: &[u8], lines_before: usize) -> Result<(), MmCifError> {
+    pub(super) fn add_after(&mut self, text: &[u8], lines_before: usize) -> Result<(), LoadError> {
         let columns = self.columns.take();
         let mut after = Self::default();
         after.read(text, lines_before, true)?;
@@ -107,7 +107,7 @@ impl Header {
     }
 
     /// Another block ends the text, or what was read before it is forgotten.
-    fn read(&mut self, text: &[u8], lines_before: usize, to_block: bool) -> Result<(), MmCifError> {
+    fn read(&mut self, text: &[u8], lines_before: usize, to_block: bool) -> Result<(), LoadError> {
         let mut tokens = Tokens::new(text, lines_before);
         let mut name = None;
         let mut names: Option<Vec<&[u8]>> = None;
@@ -128,12 +128,7 @@ impl Header {
                 Token::Name(found) => name = item_of(found, "cell"),
                 Token::Value(value) => {
                     if let Some(name) = name.take() {
-                        let invalid = |what| MmCifError::Number {
-                            line: place.lines_before + 1,
-                            column: place.column + 1,
-                            what,
-                            found: shortened(&String::from_utf8_lossy(value)),
-                        };
+                        let invalid = |what| not_a_number(value, place, what);
                         self.set(&name, value).map_err(invalid)?;
                     }
                 }
@@ -163,14 +158,14 @@ impl Header {
     }
 
     /// The edges of the cell; `None` if the file has none.
-    pub(super) fn cell(&self) -> Result<Option<[[f64; 3]; 3]>, MmCifError> {
+    pub(super) fn cell(&self) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
         let ([Some(a), Some(b), Some(c)], [Some(alpha), Some(beta), Some(gamma)]) =
             (self.lengths, self.angles)
         else {
             return Ok(None);
         };
         let (lengths, angles) = ([a, b, c], [alpha, beta, gamma]);
-        cell::edges(lengths, angles).ok_or(MmCifError::Cell { lengths, angles })
+        cell::edges(lengths, angles).map_err(LoadError::new)
     }
 }
 

@@ -4,9 +4,10 @@ use std::collections::HashSet;
 
 use memchr::memchr;
 
-use super::MmCifError;
+use super::cut_row;
 use super::header::Columns;
 use super::tokens::{Place, Token, Tokens};
+use crate::load::error::LoadError;
 use crate::text::shortened;
 
 /// A model's rows.
@@ -18,13 +19,13 @@ pub(super) struct Model {
 }
 
 /// The models of a text, and what is wrong after them.
-pub(super) fn find(text: &[u8]) -> (Vec<Model>, Option<MmCifError>) {
+pub(super) fn find(text: &[u8]) -> (Vec<Model>, Option<LoadError>) {
     let mut models = Vec::new();
     let problem = search(text, &mut models).err();
     (models, problem)
 }
 
-fn search(text: &[u8], models: &mut Vec<Model>) -> Result<(), MmCifError> {
+fn search(text: &[u8], models: &mut Vec<Model>) -> Result<(), LoadError> {
     let mut tokens = Tokens::new(text, 0);
     let mut names: Option<Vec<&[u8]>> = None;
     loop {
@@ -70,10 +71,13 @@ impl<'a> Found<'a> {
         Self { models: Vec::new(), names: HashSet::new(), current: b"" }
     }
 
-    fn begin(&mut self, name: &'a [u8], place: Place) -> Result<(), MmCifError> {
+    fn begin(&mut self, name: &'a [u8], place: Place) -> Result<(), LoadError> {
         if !self.names.insert(name) {
             let model = shortened(&String::from_utf8_lossy(name));
-            return Err(MmCifError::ModelAgain { line: place.lines_before + 1, model });
+            let message = format!(
+                "the model {model} begins again; all atoms of a model must follow each other"
+            );
+            return Err(LoadError::line(place.lines_before + 1, message));
         }
         self.current = name;
         self.end(place.offset);
@@ -92,7 +96,7 @@ impl<'a> Found<'a> {
 impl<'a> Rows<'a, '_> {
     /// Finds models where each row is a line that ends with the number of its model, as the archives of the wwPDB have them;
     /// `None` if the rows are not like this.
-    fn by_lines(&self, models: &mut Vec<Model>) -> Result<Option<Tokens<'a>>, MmCifError> {
+    fn by_lines(&self, models: &mut Vec<Model>) -> Result<Option<Tokens<'a>>, LoadError> {
         let Self { text, columns, first } = *self;
         if columns.model != Some(columns.count - 1) || first.column != 0 {
             return Ok(None);
@@ -141,7 +145,7 @@ impl<'a> Rows<'a, '_> {
     }
 
     /// Finds models value by value.
-    fn by_values(&self, models: &mut Vec<Model>) -> Result<Tokens<'a>, MmCifError> {
+    fn by_values(&self, models: &mut Vec<Model>) -> Result<Tokens<'a>, LoadError> {
         let Self { text, columns, first } = *self;
         let mut tokens = Tokens::new(text, first.lines_before);
         tokens.go_to(first.offset, first.lines_before);
@@ -165,8 +169,7 @@ impl<'a> Rows<'a, '_> {
             }
             if values < columns.count {
                 found.end(row.offset);
-                let (line, columns) = (row.lines_before + 1, columns.count);
-                break Err(MmCifError::CutRow { line, values, columns });
+                break Err(cut_row(row, values, columns.count));
             }
             if (found.models.is_empty() || name != found.current)
                 && let Err(error) = found.begin(name, row)

@@ -3,7 +3,7 @@
 use memchr::memchr;
 use memchr::memmem;
 
-use super::MmCifError;
+use crate::load::error::{self, LoadError};
 
 /// A token, without its quotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +40,12 @@ pub(super) struct Place {
     pub(super) column: usize,
 }
 
+impl Place {
+    pub(super) fn of_error(self) -> error::Place {
+        error::Place::Column { line: self.lines_before + 1, column: self.column + 1 }
+    }
+}
+
 impl<'a> Tokens<'a> {
     pub(super) fn new(text: &'a [u8], lines_before: usize) -> Self {
         Self { text, at: 0, lines: lines_before, line_start: 0 }
@@ -73,14 +79,14 @@ impl<'a> Tokens<'a> {
 
     /// Returns the next token; `None` at the end of the text.
     #[inline]
-    pub(super) fn next(&mut self) -> Result<Option<Token<'a>>, MmCifError> {
+    pub(super) fn next(&mut self) -> Result<Option<Token<'a>>, LoadError> {
         let place = self.place();
         self.next_at(place)
     }
 
     /// Returns the token at the place that [`Tokens::place`] has found.
     #[inline]
-    pub(super) fn next_at(&mut self, place: Place) -> Result<Option<Token<'a>>, MmCifError> {
+    pub(super) fn next_at(&mut self, place: Place) -> Result<Option<Token<'a>>, LoadError> {
         let rest = &self.text[self.at..];
         let Some(first) = rest.first() else { return Ok(None) };
         match first {
@@ -100,7 +106,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// A quote ends a text only where white space follows, or the text does.
-    fn quoted(&mut self, quote: u8, place: Place) -> Result<Token<'a>, MmCifError> {
+    fn quoted(&mut self, quote: u8, place: Place) -> Result<Token<'a>, LoadError> {
         let rest = &self.text[self.at + 1..];
         let mut from = 0;
         while let Some(found) = memchr::memchr2(quote, b'\n', &rest[from..]) {
@@ -114,14 +120,19 @@ impl<'a> Tokens<'a> {
             }
             from = end + 1;
         }
-        Err(MmCifError::Quote { line: place.lines_before + 1, column: place.column + 1 })
+        let message = "the quoted text that begins here does not end on its line";
+        Err(LoadError::at(place.of_error(), message))
     }
 
     /// A text of several lines begins and ends with `;` at the start of a line.
-    fn lines_of_text(&mut self, place: Place) -> Result<Token<'a>, MmCifError> {
+    fn lines_of_text(&mut self, place: Place) -> Result<Token<'a>, LoadError> {
         let rest = &self.text[self.at + 1..];
-        let end =
-            memmem::find(rest, b"\n;").ok_or(MmCifError::Lines { line: place.lines_before + 1 })?;
+        let end = memmem::find(rest, b"\n;").ok_or_else(|| {
+            LoadError::line(
+                place.lines_before + 1,
+                "the text that begins here with ; does not end; a line that begins with ; must end it",
+            )
+        })?;
         let text = &rest[..end];
         self.lines += memchr::memchr_iter(b'\n', text).count() + 1;
         self.at += end + 3;

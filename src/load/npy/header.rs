@@ -6,9 +6,9 @@
 
 use py_literal::Value;
 
-use super::SpheresError;
 use super::dtype::Dtype;
 use crate::load::binary::component_names;
+use crate::load::error::{LoadError, LoadErrorKind};
 use crate::text::{one_line, shortened};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
@@ -128,17 +128,24 @@ fn add_fields(
 }
 
 /// Splits a file into its header and the data after it.
-pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), SpheresError> {
-    let bad = |message: &str| SpheresError::Header { message: message.to_owned() };
-    let rest = bytes.strip_prefix(MAGIC).ok_or(SpheresError::NoNpy)?;
-    let (version, rest) = rest.split_first_chunk().ok_or_else(|| bad("is cut off"))?;
+pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), LoadError> {
+    let bad = |message: &str| {
+        LoadError::new(format!("the .npy header {message}; write the file with numpy.save"))
+    };
+    let cut_off = || bad("is cut off").of_kind(LoadErrorKind::CutOff);
+    let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| {
+        LoadError::new(
+            "this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save",
+        )
+    })?;
+    let (version, rest) = rest.split_first_chunk().ok_or_else(cut_off)?;
     let (length, rest) = match *version {
         [1, 0] => {
-            let (length, rest) = rest.split_first_chunk().ok_or_else(|| bad("is cut off"))?;
+            let (length, rest) = rest.split_first_chunk().ok_or_else(cut_off)?;
             (usize::from(u16::from_le_bytes(*length)), rest)
         }
         [2 | 3, 0] => {
-            let (length, rest) = rest.split_first_chunk().ok_or_else(|| bad("is cut off"))?;
+            let (length, rest) = rest.split_first_chunk().ok_or_else(cut_off)?;
             (u32::from_le_bytes(*length) as usize, rest)
         }
         [major, minor] => {
@@ -150,9 +157,9 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), SpheresError> {
             "is {length} bytes long, more than the limit of {MAX_TEXT} bytes"
         )));
     }
-    let (text, data) = rest.split_at_checked(length).ok_or_else(|| bad("is cut off"))?;
+    let (text, data) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     let text = str::from_utf8(text).map_err(|_| bad("is not valid text"))?;
-    Ok((parse(text).map_err(|message| SpheresError::Header { message })?, data))
+    Ok((parse(text).map_err(|message| bad(&message))?, data))
 }
 
 /// Parses the text of a header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (10, 4), }`.

@@ -10,10 +10,11 @@ use dtype::{Dtype, Place};
 use header::{Elements, Header};
 
 use super::binary::component_names;
+use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::numbers::{Layout, rows};
-use super::table::{Table, TableColumn, TableError};
+use super::table::{Table, TableColumn};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 
@@ -29,95 +30,14 @@ const COLUMNS: [&[&str]; 5] = [
 /// More components of a vector than this are not made columns.
 const MOST_COMPONENTS: u64 = 64;
 
-/// An error of reading spheres from an `.npy` file.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SpheresError {
-    /// The file does not start with the signature of the format.
-    #[error(
-        "this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save"
-    )]
-    NoNpy,
-    /// The header cannot be read.
-    #[error("the .npy header {message}; write the file with numpy.save")]
-    Header {
-        /// What is wrong with the header, as the end of a sentence.
-        message: String,
-    },
-    /// The elements are not real numbers.
-    #[error(
-        "the array has the type {}, but it must be of floating-point numbers or integers; save it as \
-         a.astype('float32')",
-        shortened(&one_line(found))
-    )]
-    Type {
-        /// NumPy's name of the type of the array.
-        found: String,
-    },
-    /// The shape is not that of a list of spheres.
-    #[error(
-        "the array has the shape {}, but it must be (n, 3) for x, y, z; (n, 4) for x, y, z, radius; (n, 5) with a value \
-         after that; (n, 6) for x, y, z, red, green, blue; or (n, 7) for x, y, z, radius, red, green, blue",
-        tuple(shape)
-    )]
-    Shape {
-        /// The shape of the array.
-        shape: Vec<u64>,
-    },
-    /// The shape of a structured array is not that of a list.
-    #[error(
-        "the array of structures has the shape {}, but it must be (n,); save it as a.ravel()",
-        tuple(shape)
-    )]
-    StructureShape {
-        /// The shape of the array.
-        shape: Vec<u64>,
-    },
-    /// The columns of the array do not make spheres.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The array has radii, and a radius was given as well.
-    #[error(
-        "the array has the shape ({rows}, {columns}) with radii; remove the radius that is given for all spheres"
-    )]
-    TwoRadii {
-        /// Number of spheres.
-        rows: u64,
-        /// Number of columns.
-        columns: usize,
-    },
-    /// The file has fewer or more bytes than its header says.
-    #[error(
-        "an array of shape {} and type {dtype} takes {wanted} bytes, but {found} bytes follow the header; {}",
-        tuple(shape),
-        if u128::from(*found) < *wanted { "the file is cut off" } else { "there are other data after the array" }
-    )]
-    Size {
-        /// The shape of the array.
-        shape: Vec<u64>,
-        /// NumPy's name of the type of the array.
-        dtype: String,
-        /// Size of the array by its header, in bytes.
-        wanted: u128,
-        /// Size of the data after the header, in bytes.
-        found: u64,
-    },
-    /// There is not enough memory for the spheres.
-    #[error("there is not enough memory for {rows} spheres")]
-    Memory {
-        /// Number of spheres.
-        rows: u64,
-    },
-}
-
 /// Reads an `.npy` file of any type of floating-point numbers or integers, in either byte order, in C or Fortran order.
 ///
-/// The columns are those of [`SpheresError::Shape`]. An array of structures has named columns, of which all that make
+/// The columns are x, y, z; x, y, z, radius, and a value after that; or x, y, z, perhaps a radius, red, green, blue. An array of structures has named columns, of which all that make
 /// no spheres are kept. Spheres without a radius get `radius`, or else one that follows from their spacing, with a note.
 ///
 /// # Errors
 /// If the file is not such an array, or has fewer or more bytes than its header says.
-pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, SpheresError> {
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, LoadError> {
     let array = Array::open(bytes)?;
     let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
     Ok(match array.spheres(radius)? {
@@ -158,12 +78,11 @@ pub(super) enum Spheres {
 
 impl<'a> Array<'a> {
     /// Reads the header, and checks it against the length of the data.
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, SpheresError> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, LoadError> {
         let (header, data) = header::split(bytes)?;
         let (dtype, size) = match &header.elements {
             Elements::Plain(name) => {
-                let unknown = || SpheresError::Type { found: name.clone() };
-                let dtype = Dtype::parse(name).ok_or_else(unknown)?;
+                let dtype = Dtype::parse(name).ok_or_else(|| no_numbers(name))?;
                 let size = dtype.size;
                 (Some(dtype), size)
             }
@@ -174,7 +93,16 @@ impl<'a> Array<'a> {
         let wanted = count.saturating_mul(size as u128);
         if wanted != data.len() as u128 {
             let (dtype, found) = (header.elements.name(), data.len() as u64);
-            return Err(SpheresError::Size { shape: header.shape, dtype, wanted, found });
+            let (what, kind) = if u128::from(found) < wanted {
+                ("the file is cut off", LoadErrorKind::CutOff)
+            } else {
+                ("there are other data after the array", LoadErrorKind::Other)
+            };
+            let shape = tuple(&header.shape);
+            let message = format!(
+                "an array of shape {shape} and type {dtype} takes {wanted} bytes, but {found} bytes follow the header; {what}"
+            );
+            return Err(LoadError::new(message).of_kind(kind));
         }
         Ok(Self { header, data, dtype })
     }
@@ -198,10 +126,13 @@ impl<'a> Array<'a> {
     }
 
     /// The array as spheres.
-    pub(super) fn spheres(&self, radius: Option<f64>) -> Result<Spheres, SpheresError> {
+    pub(super) fn spheres(&self, radius: Option<f64>) -> Result<Spheres, LoadError> {
         let Some(dtype) = &self.dtype else {
             let [_] = *self.header.shape else {
-                return Err(SpheresError::StructureShape { shape: self.header.shape.clone() });
+                return Err(LoadError::new(format!(
+                    "the array of structures has the shape {}, but it must be (n,); save it as a.ravel()",
+                    self.shape()
+                )));
             };
             let (columns, unused) = self.fields("");
             let note = format!(
@@ -213,21 +144,32 @@ impl<'a> Array<'a> {
         };
         let names = match *self.header.shape {
             [_, columns @ 3..=7] => COLUMNS[columns as usize - 3],
-            _ => return Err(SpheresError::Shape { shape: self.header.shape.clone() }),
+            _ => {
+                return Err(LoadError::new(format!(
+                    "the array has the shape {}, but it must be (n, 3) for x, y, z; (n, 4) for x, y, z, radius; (n, 5) with \
+                     a value after that; (n, 6) for x, y, z, red, green, blue; or (n, 7) for x, y, z, radius, red, green, \
+                     blue",
+                    self.shape()
+                )));
+            }
         };
         if !dtype.is_real() {
-            return Err(SpheresError::Type { found: dtype.name.clone() });
+            return Err(no_numbers(&dtype.name));
         }
         let count = self.rows();
         if radius.is_some() && names.contains(&"radius") {
-            let rows = count as u64;
-            return Err(SpheresError::TwoRadii { rows, columns: names.len() });
+            let message = format!(
+                "the array has the shape ({count}, {}) with radii; remove the radius that is given for all spheres",
+                names.len()
+            );
+            return Err(LoadError::new(message).of_kind(LoadErrorKind::TwoRadii));
         }
         if names.len() <= 4
             && let Some(spheres) = self.plain(dtype, names.len())
         {
             let have_radii = names.len() == 4;
-            let memory = |_| SpheresError::Memory { rows: count as u64 };
+            let memory =
+                |_| LoadError::new(format!("there is not enough memory for {count} spheres"));
             return spheres.map(|spheres| Spheres::Ready { spheres, have_radii }).map_err(memory);
         }
         let mut columns = self.matrix(dtype, names.iter().map(ToString::to_string));
@@ -298,6 +240,14 @@ impl<'a> Array<'a> {
         let unused = unused.into_iter().map(|field| field.name.clone());
         (used.into_iter().map(column).collect(), unused.collect())
     }
+}
+
+/// The elements are not real numbers.
+fn no_numbers(dtype: &str) -> LoadError {
+    LoadError::new(format!(
+        "the array has the type {}, but it must be of floating-point numbers or integers; save it as a.astype('float32')",
+        shortened(&one_line(dtype))
+    ))
 }
 
 /// Formats a shape as Python writes it.

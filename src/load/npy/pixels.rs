@@ -1,12 +1,13 @@
 //! Reads pictures from NumPy arrays: ids, numbers and vectors of pixels from `.npy` files, and rays from `.npz`
 //! archives. Row 0 is the top.
 
+use super::Array;
 use super::dtype::Dtype;
-use super::{Array, SpheresError, tuple};
 use crate::camera::film::Film;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
-use crate::load::npz::{NpzError, array_of};
+use crate::load::error::LoadError;
+use crate::load::npz::{array_of, of_array};
 use crate::text::{one_line, shortened};
 
 /// One value for each pixel, row by row from the top.
@@ -16,54 +17,6 @@ pub struct Pixels<T> {
     pub size: [u32; 2],
     /// The values.
     pub values: Vec<T>,
-}
-
-/// An error of reading a picture from an array.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PixelsError {
-    /// The file is not an array.
-    #[error(transparent)]
-    Array(#[from] SpheresError),
-    /// The archive is damaged, or an array is missing in it.
-    #[error(transparent)]
-    Archive(#[from] NpzError),
-    /// The elements are of another type.
-    #[error("the array has the type {}, but {wanted}", shortened(&one_line(found)))]
-    Type {
-        /// NumPy's name of the type of the array.
-        found: String,
-        /// What would be right.
-        wanted: &'static str,
-    },
-    /// The array has another shape.
-    #[error("the array has the shape {}, but {wanted}", tuple(shape))]
-    Shape {
-        /// The shape of the array.
-        shape: Vec<u64>,
-        /// What would be right.
-        wanted: &'static str,
-    },
-    /// A number is neither an id nor a miss.
-    #[error(
-        "the id at pixel ({}, {}) is {found}; an id is an index from 0, and a miss is -1 or the largest number of the \
-         type",
-        pixel[0], pixel[1]
-    )]
-    Id {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// The number.
-        found: i128,
-    },
-    /// An array of an archive is not one of rays.
-    #[error("array `{name}`: {error}")]
-    Rays {
-        /// Name of the array.
-        name: &'static str,
-        /// What is wrong with it.
-        error: Box<PixelsError>,
-    },
 }
 
 const NUMBERS: &str = "must be (height, width), with at most 8388608 pixels a side";
@@ -82,21 +35,24 @@ impl Array<'_> {
         Some([side(width)?, side(height)?])
     }
 
-    fn picture(&self, components: u64) -> Result<[u32; 2], PixelsError> {
+    fn picture(&self, components: u64) -> Result<[u32; 2], LoadError> {
         let wanted = if components == 1 { NUMBERS } else { VECTORS };
-        self.sides(components)
-            .ok_or_else(|| PixelsError::Shape { shape: self.header.shape.clone(), wanted })
+        self.sides(components).ok_or_else(|| self.wrong_shape(wanted))
+    }
+
+    fn wrong_shape(&self, wanted: &str) -> LoadError {
+        LoadError::new(format!("the array has the shape {}, but {wanted}", self.shape()))
     }
 
     /// The type of the elements, which is to be one of `names` in either byte order.
-    fn is_of(&self, names: &[&str], wanted: &'static str) -> Result<&Dtype, PixelsError> {
+    fn is_of(&self, names: &[&str], wanted: &'static str) -> Result<&Dtype, LoadError> {
         let is_one = |dtype: &&Dtype| {
             let (order, rest) = dtype.name.split_at_checked(1).unwrap_or_default();
             matches!(order, "<" | ">") && names.contains(&rest)
         };
         self.dtype.as_ref().filter(is_one).ok_or_else(|| {
-            let found = self.header.elements.name();
-            PixelsError::Type { found, wanted }
+            let found = shortened(&one_line(&self.header.elements.name()));
+            LoadError::new(format!("the array has the type {found}, but {wanted}"))
         })
     }
 
@@ -122,7 +78,7 @@ impl Array<'_> {
         (0..count).map(|i| at(place(i))).collect()
     }
 
-    fn floats(&self, components: u64, what: &'static str) -> Result<Pixels<f64>, PixelsError> {
+    fn floats(&self, components: u64, what: &'static str) -> Result<Pixels<f64>, LoadError> {
         let dtype = self.is_of(&["f4", "f8"], what)?;
         let size = self.picture(components)?;
         let decode = |bytes: &[u8]| dtype.number(bytes);
@@ -135,7 +91,7 @@ impl Array<'_> {
 ///
 /// # Errors
 /// If the file is not such an array, or a number is neither an id nor a miss.
-pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, PixelsError> {
+pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, LoadError> {
     let array = Array::open(bytes)?;
     let wanted = "ids must be of the type uint32, int32, uint64 or int64 with a byte order; save them as \
                   ids.astype('int64')";
@@ -149,7 +105,12 @@ pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, PixelsError> {
         Ok(id) if id != NO_ID => Ok(id),
         _ => {
             let width = size[0] as usize;
-            Err(PixelsError::Id { pixel: [(index % width) as u32, (index / width) as u32], found })
+            Err(LoadError::new(format!(
+                "the id at pixel ({}, {}) is {found}; an id is an index from 0, and a miss is -1 or the largest number of the \
+                 type",
+                index % width,
+                index / width
+            )))
         }
     };
     let values = integers.into_iter().enumerate().map(id).collect::<Result<_, _>>()?;
@@ -160,7 +121,7 @@ pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, PixelsError> {
 ///
 /// # Errors
 /// If the file is not such an array.
-pub fn numbers(bytes: &[u8]) -> Result<Pixels<f64>, PixelsError> {
+pub fn numbers(bytes: &[u8]) -> Result<Pixels<f64>, LoadError> {
     let wanted = "depths must be of the type float32 or float64";
     Array::open(bytes)?.floats(1, wanted)
 }
@@ -169,7 +130,7 @@ pub fn numbers(bytes: &[u8]) -> Result<Pixels<f64>, PixelsError> {
 ///
 /// # Errors
 /// If the file is not such an array.
-pub fn vectors(bytes: &[u8]) -> Result<Pixels<[f64; 3]>, PixelsError> {
+pub fn vectors(bytes: &[u8]) -> Result<Pixels<[f64; 3]>, LoadError> {
     let wanted = "vectors must be of the type float32 or float64";
     let Pixels { size, values } = Array::open(bytes)?.floats(3, wanted)?;
     Ok(Pixels { size, values: values.as_chunks().0.to_vec() })
@@ -180,14 +141,11 @@ pub fn vectors(bytes: &[u8]) -> Result<Pixels<[f64; 3]>, PixelsError> {
 ///
 /// # Errors
 /// If the archive has no such arrays.
-pub fn rays(archive: &[u8]) -> Result<Pixels<Ray>, PixelsError> {
-    let of = |name: &'static str| {
-        move |error: PixelsError| PixelsError::Rays { name, error: Box::new(error) }
-    };
+pub fn rays(archive: &[u8]) -> Result<Pixels<Ray>, LoadError> {
     let data = array_of(archive, "directions")?;
-    let Pixels { size, values: directions } = vectors(&data).map_err(of("directions"))?;
+    let Pixels { size, values: directions } = vectors(&data).map_err(of_array("directions"))?;
     let data = array_of(archive, "origins")?;
-    let origins = origins(&data, size).map_err(of("origins"))?;
+    let origins = origins(&data, size).map_err(of_array("origins"))?;
     let ray = |(i, direction): (usize, [f64; 3])| {
         let origin = origins[if origins.len() == 1 { 0 } else { i }];
         Ray { origin: origin.into(), direction: direction.into() }
@@ -196,7 +154,7 @@ pub fn rays(archive: &[u8]) -> Result<Pixels<Ray>, PixelsError> {
 }
 
 /// The points at which rays start: one, or one for each pixel.
-fn origins(bytes: &[u8], size: [u32; 2]) -> Result<Vec<[f64; 3]>, PixelsError> {
+fn origins(bytes: &[u8], size: [u32; 2]) -> Result<Vec<[f64; 3]>, LoadError> {
     let array = Array::open(bytes)?;
     if *array.header.shape == [3] {
         let dtype = array.is_of(&["f4", "f8"], "origins must be of the type float32 or float64")?;
@@ -206,7 +164,7 @@ fn origins(bytes: &[u8], size: [u32; 2]) -> Result<Vec<[f64; 3]>, PixelsError> {
     let found = vectors(bytes)?;
     if found.size != size {
         let wanted = "must be that of the array `directions`, or (3,) for one point";
-        return Err(PixelsError::Shape { shape: array.header.shape.clone(), wanted });
+        return Err(array.wrong_shape(wanted));
     }
     Ok(found.values)
 }

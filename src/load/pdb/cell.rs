@@ -1,12 +1,12 @@
 //! Reads the periodic cell from a CRYST1 record.
 
-use super::error::PdbError;
 use super::record::Record;
 use crate::load::atoms::cell;
+use crate::load::error::LoadError;
 
 /// Returns the edge vectors of the cell, the first along x and the second in the plane of x and y; or `None` if the
 /// record is only a placeholder, as in files of structures that are not crystals.
-pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, PdbError> {
+pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
     const FIELDS: [(&str, usize, usize); 6] = [
         ("length of the cell's edge a", 7, 15),
         ("length of the cell's edge b", 16, 24),
@@ -22,5 +22,5 @@ pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, PdbErr
     }
     let [a, b, c, alpha, beta, gamma] = values;
     let (lengths, angles) = ([a, b, c], [alpha, beta, gamma]);
-    cell::edges(lengths, angles).ok_or(PdbError::Cell { line: record.line, lengths, angles })
+    cell::edges(lengths, angles).map_err(|message| LoadError::line(record.line, message))
 }

@@ -1,6 +1,6 @@
 //! Splits a PDB file into lines, and reads fields by their columns.
 
-use super::error::PdbError;
+use crate::load::error::{LoadError, Place};
 use crate::load::rows::number;
 
 /// Kinds of lines that the reader distinguishes.
@@ -75,7 +75,7 @@ pub(super) struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    pub(super) fn new(line: usize, bytes: &'a [u8], name: &'static str) -> Result<Self, PdbError> {
+    pub(super) fn new(line: usize, bytes: &'a [u8], name: &'static str) -> Result<Self, LoadError> {
         // The format has 80 columns; anything after them is ignored.
         let text = bytes.get(..80).unwrap_or(bytes);
         if text.is_ascii() {
@@ -83,25 +83,29 @@ impl<'a> Record<'a> {
         }
         let offset = text.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
         let byte = text.get(offset).copied().unwrap_or_default();
-        Err(PdbError::NotAscii { line, column: offset + 1, byte })
+        let message = format!(
+            "the byte 0x{byte:02x} is not ASCII; ATOM, HETATM and CRYST1 records must be ASCII text"
+        );
+        Err(LoadError::at(Place::Column { line, column: offset + 1 }, message))
     }
 
     /// Refuses a line that ends before one of the fields. Each field has a name, a first and a last column.
     pub(super) fn must_have(
         &self,
         fields: &[(&'static str, usize, usize)],
-    ) -> Result<(), PdbError> {
+    ) -> Result<(), LoadError> {
         let columns = self.text.len();
         match fields.iter().find(|(_, _, last)| *last > columns) {
             None => Ok(()),
-            Some(&(what, first, last)) => Err(PdbError::Short {
-                line: self.line,
-                columns,
-                record: self.name,
-                what,
-                first,
-                last,
-            }),
+            Some((what, first, last)) => {
+                let record = self.name;
+                let article = if record == "ATOM" { "an" } else { "a" };
+                let message = format!(
+                    "the {what} (columns {first}-{last}) is missing, because the line ends after {columns} columns; \
+                     {article} {record} record has at least 54 columns"
+                );
+                Err(LoadError::line(self.line, message))
+            }
         }
     }
 
@@ -126,11 +130,13 @@ impl<'a> Record<'a> {
         what: &'static str,
         first: usize,
         last: usize,
-    ) -> Result<f64, PdbError> {
+    ) -> Result<f64, LoadError> {
         let text = self.text(first, last);
         number(text).filter(|number| number.is_finite()).ok_or_else(|| {
-            let found = escaped(text);
-            PdbError::Number { line: self.line, first, last, what, found }
+            let found = not_valid(text, "a finite number");
+            let place = Place::Columns { line: self.line, first, last };
+            let message = format!("the {what} is {found}; a number such as 11.104 belongs there");
+            LoadError::at(place, message)
         })
     }
 
@@ -141,7 +147,7 @@ impl<'a> Record<'a> {
         what: &'static str,
         first: usize,
         last: usize,
-    ) -> Result<f64, PdbError> {
+    ) -> Result<f64, LoadError> {
         // Few fields are blank, so they are looked at again only where there is no number.
         self.number(what, first, last).or_else(|error| {
             if self.text(first, last).is_empty() { Ok(absent) } else { Err(error) }
@@ -149,7 +155,13 @@ impl<'a> Record<'a> {
     }
 }
 
-/// Returns ASCII text for a message.
-pub(super) fn escaped(text: &[u8]) -> String {
-    String::from_utf8_lossy(text).escape_debug().to_string()
+/// The end of a sentence about the ASCII text of a field.
+pub(super) fn not_valid(text: &[u8], kind: &str) -> String {
+    match text {
+        b"" => "blank".to_owned(),
+        _ => {
+            let found = String::from_utf8_lossy(text);
+            format!("`{}`, which is not {kind}", found.escape_debug())
+        }
+    }
 }

@@ -7,12 +7,13 @@ use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, SampleType};
 use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
-use super::{FileSamples, PictureFile, PictureFileError, damaged};
+use super::{FileSamples, PictureFile, damaged, no_memory};
+use crate::load::error::LoadError;
 use crate::write::exr::CERTIFICATE;
 
 const FORMAT: &str = "OpenEXR";
 
-pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
+pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     let failed = |error: exr::error::Error| damaged(FORMAT, &error);
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
@@ -30,7 +31,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
         return Err(kind("other channels".into()));
     }
     let Vec2(width, height) = header.layer_size;
-    let memory = || PictureFileError::Memory { width: width as u64, height: height as u64 };
+    let memory = || no_memory(width, height);
     let count = width.checked_mul(height).ok_or_else(memory)?;
     // Deflate shrinks by less than 1032.
     if (count as u64).saturating_mul(16) > 1032 * bytes.len() as u64 {
@@ -71,7 +72,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
     })
 }
 
-fn kind(found: String) -> PictureFileError {
+fn kind(found: String) -> LoadError {
     let written = "one part with R, G, B and A in f32 and ZIP compression";
-    PictureFileError::Kind { format: FORMAT, found, written }
+    LoadError::new(format!("the {FORMAT} file has {found}; this crate writes {written}"))
 }

@@ -4,13 +4,14 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-use super::{FileSamples, PictureFile, PictureFileError, damaged};
+use super::{FileSamples, PictureFile, damaged, no_memory};
 use crate::image::encoding::Bits;
+use crate::load::error::LoadError;
 use crate::write::png::CERTIFICATE;
 
 const FORMAT: &str = "PNG";
 
-pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
+pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     let failed = |error: png::DecodingError| damaged(FORMAT, &error);
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: usize::MAX });
     decoder.set_transformations(Transformations::IDENTITY);
@@ -27,7 +28,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
         ColorType::Rgba => true,
         other => return Err(kind(format!("samples of the kind {other:?}"))),
     };
-    let memory = || PictureFileError::Memory { width: width.into(), height: height.into() };
+    let memory = || no_memory(width as usize, height as usize);
     let size = reader.output_buffer_size().ok_or_else(memory)?;
     // Deflate shrinks by less than 1032, so that a short file cannot ask for much memory.
     if size as u64 > 1032 * bytes.len() as u64 + 1032 {
@@ -47,6 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PictureFile, PictureFileError> {
     })
 }
 
-fn kind(found: String) -> PictureFileError {
-    PictureFileError::Kind { format: FORMAT, found, written: "RGB and RGBA with 8 or 16 bits" }
+fn kind(found: String) -> LoadError {
+    let written = "RGB and RGBA with 8 or 16 bits";
+    LoadError::new(format!("the {FORMAT} file has {found}; this crate writes {written}"))
 }

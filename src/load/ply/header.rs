@@ -1,6 +1,7 @@
 //! The header of a PLY file: which elements follow, and what each consists of.
 
-use super::{PlyError, starts};
+use super::starts;
+use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
 
@@ -61,18 +62,22 @@ impl Element {
 }
 
 /// Reads the header.
-pub(super) fn read(bytes: &[u8]) -> Result<Header, PlyError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Header, LoadError> {
     if !starts(bytes) {
-        return Err(PlyError::NoPly);
+        return Err(LoadError::new("this is not a PLY file: its first line is not `ply`"));
     }
     let (mut encoding, mut elements) = (None, Vec::<Element>::new());
     let (mut rest, mut line) = (bytes, 0);
     loop {
-        let end = rest.iter().position(|byte| *byte == b'\n').ok_or(PlyError::NoEnd)?;
+        let end = rest.iter().position(|byte| *byte == b'\n').ok_or_else(|| {
+            let message =
+                "the header has no line `end_header`; the file is cut off or is not a PLY file";
+            LoadError::new(message).of_kind(LoadErrorKind::CutOff)
+        })?;
         let text = String::from_utf8_lossy(&rest[..end]);
         rest = &rest[end + 1..];
         line += 1;
-        let refused = |message: String| PlyError::Header { line, message };
+        let refused = |message: String| LoadError::line(line, message);
         let words: Vec<&str> = text.split_whitespace().collect();
         match *words.as_slice() {
             ["end_header"] => break,
@@ -137,10 +142,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, PlyError> {
             }
         }
     }
-    let no_format = || PlyError::Header {
-        line,
-        message: "the header ends without a line `format`, such as `format ascii 1.0`".to_owned(),
-    };
-    let encoding = encoding.ok_or_else(no_format)?;
+    let encoding = encoding.ok_or_else(|| {
+        let message = "the header ends without a line `format`, such as `format ascii 1.0`";
+        LoadError::line(line, message)
+    })?;
     Ok(Header { encoding, elements, lines: line, bytes: bytes.len() - rest.len() })
 }

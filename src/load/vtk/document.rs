@@ -7,9 +7,9 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::VtkError;
 use super::values::{Encoding, scalar_of_name};
 use crate::load::binary::Order;
+use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
 
@@ -56,37 +56,42 @@ const MOST_COMPONENTS: usize = 64;
 const APPENDED: &[u8] = b"<AppendedData";
 
 /// Reads the XML of a file.
-pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, VtkError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, LoadError> {
     // What is appended may be anything but XML.
     let end = bytes.windows(APPENDED.len()).position(|window| window == APPENDED);
     let xml = &bytes[..end.unwrap_or(bytes.len())];
-    let xml = std::str::from_utf8(xml).map_err(|error| VtkError::Xml {
-        byte: error.valid_up_to() as u64,
-        message: "this is not UTF-8 text".to_owned(),
-    })?;
+    let xml = std::str::from_utf8(xml)
+        .map_err(|error| LoadError::byte(error.valid_up_to() as u64, "this is not UTF-8 text"))?;
     let mut parser = Parser::new();
     parser.read(xml)?;
     if !parser.is_vtk {
-        return Err(VtkError::NoVtk);
+        let message = "this is not a VTK XML file: it has no element VTKFile";
+        return Err(LoadError::new(message));
     }
     if let Some(end) = end {
         (parser.document.appended, parser.document.appended_is_base64) = appended(bytes, end)?;
     } else if let Some(element) = parser.open.pop() {
-        return Err(VtkError::CutOff { element });
+        return Err(cut_off(&element));
     }
     Ok(parser.document)
 }
 
+/// The file ends within an element.
+fn cut_off(element: &str) -> LoadError {
+    let message = format!("the file ends within the element {element}; it is cut off");
+    LoadError::new(message).of_kind(LoadErrorKind::CutOff)
+}
+
 /// Finds the data of the element `AppendedData`, which start after an underscore.
-fn appended(bytes: &[u8], start: usize) -> Result<(&[u8], bool), VtkError> {
-    let cut_off = || VtkError::CutOff { element: "AppendedData".to_owned() };
+fn appended(bytes: &[u8], start: usize) -> Result<(&[u8], bool), LoadError> {
     let rest = &bytes[start..];
-    let tag = rest.iter().position(|byte| *byte == b'>').ok_or_else(cut_off)?;
+    let tag = rest.iter().position(|byte| *byte == b'>');
+    let tag = tag.ok_or_else(|| cut_off("AppendedData"))?;
     let (tag, data) = rest.split_at(tag + 1);
     let is_base64 = tag.windows(6).any(|window| window == b"base64");
-    let data = data.trim_ascii_start().strip_prefix(b"_").ok_or_else(|| VtkError::Xml {
-        byte: (start + tag.len()) as u64,
-        message: "appended data must start with an underscore".to_owned(),
+    let data = data.trim_ascii_start().strip_prefix(b"_").ok_or_else(|| {
+        let byte = (start + tag.len()) as u64;
+        LoadError::byte(byte, "appended data must start with an underscore")
     })?;
     Ok((data, is_base64))
 }
@@ -119,11 +124,11 @@ impl<'a> Parser<'a> {
         Self { document, is_vtk, open: Vec::new(), is_in_array, cells: 0, points: 0 }
     }
 
-    fn read(&mut self, xml: &'a str) -> Result<(), VtkError> {
+    fn read(&mut self, xml: &'a str) -> Result<(), LoadError> {
         let mut reader = Reader::from_str(xml);
         loop {
             let byte = reader.buffer_position();
-            let refused = |message: String| VtkError::Xml { byte, message: one_line(&message) };
+            let refused = |message: String| LoadError::byte(byte, one_line(&message));
             let event = reader.read_event().map_err(|error| refused(error.to_string()))?;
             match event {
                 Event::Start(element) => {
@@ -217,14 +222,23 @@ impl<'a> Parser<'a> {
         encoding.is_wide = one_of("header_type", ["UInt32", "UInt64"])?;
         let kind = attribute(element, "type")?.unwrap_or_default();
         if !["PolyData", "UnstructuredGrid"].contains(&kind.as_str()) {
-            return Err(Problem::Error(VtkError::Type { found: shortened(&one_line(&kind)) }));
+            let is_list =
+                kind.starts_with('P') || kind.contains("MultiBlock") || kind == "Collection";
+            let advice = if is_list { "; name one of the files that it lists" } else { "" };
+            return Err(Problem::Error(LoadError::new(format!(
+                "the file is of the type {}, but only PolyData (.vtp) and UnstructuredGrid (.vtu) can be read{advice}",
+                shortened(&one_line(&kind))
+            ))));
         }
         match attribute(element, "compressor")?.as_deref() {
             None | Some("") => {}
             Some("vtkZLibDataCompressor") => encoding.is_compressed = true,
             Some(found) => {
                 let found = shortened(&one_line(found));
-                return Err(Problem::Error(VtkError::Compressor { found }));
+                return Err(Problem::Error(LoadError::new(format!(
+                    "the data are compressed with {found}, but only vtkZLibDataCompressor can be read; save the file with \
+                     zlib or without compression"
+                ))));
             }
         }
         Ok(())
@@ -251,14 +265,14 @@ impl<'a> Parser<'a> {
 
 /// What is wrong with an element: an error as it is, or a message without its place.
 enum Problem {
-    Error(VtkError),
+    Error(LoadError),
     Message(String),
 }
 
-fn at(problem: Problem, byte: u64) -> VtkError {
+fn at(problem: Problem, byte: u64) -> LoadError {
     match problem {
         Problem::Error(error) => error,
-        Problem::Message(message) => VtkError::Xml { byte, message },
+        Problem::Message(message) => LoadError::byte(byte, message),
     }
 }
 
