@@ -10,6 +10,7 @@ const REMOVED: &[(&str, &str)] = &[
     ("job status --json", "`pinhole job status JOB --missing` lists units, one a line"),
     ("job submit", "submit an array of `pinhole job part` yourself; docs/scale.md has the scripts"),
     ("--accel binary-tree", "use --accel tree"),
+    ("--profile=", "use `--profile`, which prints the table"),
     ("bench --calibrate", "`--accel auto` follows a rule that needs no measured prices"),
     ("bench --counts", "`pinhole bench` measures the time of a ray"),
     ("bench --pictures", "the structure is the same for one picture and for many"),
@@ -25,7 +26,12 @@ pub(super) fn message(error: &clap::Error, arguments: &[String]) -> Option<Strin
         Some(ContextValue::String(name)) => name.split(' ').next(),
         _ => None,
     });
+    let has_value = error.get(ContextKind::InvalidValue).is_some();
     let is_named = |removed: &str| {
+        // A flag that has no value any more.
+        if let Some(flag) = removed.strip_suffix('=') {
+            return has_value && names.clone().any(|name| name == flag);
+        }
         let (before, last) = removed.rsplit_once(' ').unwrap_or(("", removed));
         let mut words = before.split_whitespace().enumerate();
         names.clone().any(|name| name == last)

@@ -32,7 +32,7 @@ fn validator(has_ray_queries: bool) -> Validator {
 
 /// The most sources that there may be. A change may lower it: what kernels differ in is an `override` constant, unless it
 /// is a type, a directive or a binding.
-const MOST_SOURCES: usize = 112;
+const MOST_SOURCES: usize = 85;
 
 /// The parts with entry points of render passes.
 const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];
