@@ -303,7 +303,10 @@ fn number(element: &BytesStart<'_>, name: &str) -> Result<Option<u64>, Problem> 
 /// Reads the attributes of an array. The inner error says of an array that is not used what it is.
 fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Problem> {
     let name = attribute(element, "Name")?.unwrap_or_default();
-    let shown = shortened(&one_line(&name));
+    let shown = match name.is_empty() {
+        true => "without a name".to_owned(),
+        false => shortened(&one_line(&name)),
+    };
     let kind = attribute(element, "type")?.unwrap_or_default();
     let Some(scalar) = scalar_of_name(&kind) else {
         if kind == "String" {
