@@ -21,6 +21,7 @@ use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, glam};
 
 use crate::embedding::{Host, size_of_film, view_of};
 use crate::headless;
+use crate::planted::faulty;
 use crate::support::View;
 use crate::support::compare::{Picture, compare};
 use crate::support::spheres::{self, Spheres};
@@ -82,6 +83,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         .collect();
     trials.push(trial("structures::a_million_coincident_centres", coincident));
     trials.push(trial("structures::outliers_do_not_show", outliers));
+    trials.push(trial("structures::rays_from_afar_need_wider_boxes", unwidened));
     trials.push(trial("structures::slices_do_not_show", slices));
     trials.push(trial("structures::whether_there_is_any_is_what_the_nearest_says", any));
     trials.push(trial("structures::a_list_of_several_slices", long_list));
@@ -200,6 +202,23 @@ fn outliers(headless: &'static Headless) {
             assert_same(accel.structure().name(), &[image(&accel)], &expected);
         }
     }
+}
+
+/// A tree whose boxes are not wider for rays that start far from the crowd loses spheres.
+fn unwidened(headless: &'static Headless) {
+    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e4, false);
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let widening = "max(0x1p-17 * farthest - brick.crowd_margin, 0.0)";
+    let faulty = faulty("accel/wide_tree.wgsl", widening, "0.0 * farthest").unwrap();
+    let tree = AccelPlan::new(scene.spheres(), AccelChoice::Tree, ROOMY).build(scene.spheres());
+    let pose = Pose::looking_at([7e3, 0.4, 5e3], [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
+    let camera = PinholeCamera::with_vertical_fov(pose, 2e-4, 1.25).unwrap();
+    let film = Film::new(1000, 800).unwrap();
+    let [right, wrong] = [headless, &faulty]
+        .map(|device| render_view(device, &scene, &tree, &camera, &film).unwrap());
+    let pairs = right.id().unwrap().iter().zip(wrong.id().unwrap());
+    let lost = pairs.filter(|(right, wrong)| right != wrong).count();
+    assert!(lost > 0, "no pixel shows the fault");
 }
 
 fn slices(headless: &'static Headless) {
