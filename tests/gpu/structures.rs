@@ -206,13 +206,13 @@ fn outliers(headless: &'static Headless) {
 
 /// A tree whose boxes are not wider for rays that start far from the crowd loses spheres.
 fn unwidened(headless: &'static Headless) {
-    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e4, false);
+    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e5, false);
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
     let widening = "max(0x1p-17 * farthest - brick.crowd_margin, 0.0)";
     let faulty = faulty("accel/wide_tree.wgsl", widening, "0.0 * farthest").unwrap();
     let tree = AccelPlan::new(scene.spheres(), AccelChoice::Tree, ROOMY).build(scene.spheres());
-    let pose = Pose::looking_at([7e3, 0.4, 5e3], [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
-    let camera = PinholeCamera::with_vertical_fov(pose, 2e-4, 1.25).unwrap();
+    let pose = Pose::looking_at([7e4, 0.4, 5e4], [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
+    let camera = PinholeCamera::with_vertical_fov(pose, 2e-5, 1.25).unwrap();
     let film = Film::new(1000, 800).unwrap();
     let [right, wrong] = [headless, &faulty]
         .map(|device| render_view(device, &scene, &tree, &camera, &film).unwrap());
