@@ -9,8 +9,8 @@ mod first;
 #[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod tests;
 
-use first::First;
 pub(super) use first::starts;
+use first::{First, Separator};
 
 use super::error::LoadError;
 use super::format::Options;
@@ -19,13 +19,6 @@ use super::loaded::{ColumnValues, Loaded};
 use super::rows::{self, Lines, Values, number};
 use super::table::{self, Table, TableColumn};
 use crate::text::without_byte_order_mark;
-
-/// What separates the values of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Separator {
-    Blank,
-    Byte(u8),
-}
 
 /// Reads a table.
 ///

@@ -17,21 +17,21 @@ use header::{CELL_BYTES, Header};
 
 use super::binary::{Reader, numbers, wrong_position};
 use super::error::LoadError;
-use super::format::Options;
+use super::format::{FrameIndex, FrameReader, Frames, Options};
+use super::frame::FrameSpan;
 use super::loaded::Loaded;
 use super::source::Bytes;
 use super::topology::{Positions, Topology};
-use super::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames};
 
 /// How frames are found and read one by one.
-pub(super) const FRAMES: Frames = Frames::Bytes { find };
+pub(super) const FRAMES: Frames = Frames::Positions { find };
 
 fn find(
     source: &mut dyn Bytes,
     _: Option<usize>,
-    options: &Options,
+    topology: Option<Topology>,
 ) -> Result<FrameIndex, LoadError> {
-    let topology = Topology::open(options, "dcd")?;
+    let topology = Topology::required(topology, "dcd")?;
     let mut reader = header::reader(source)?;
     let header = Header::read(&mut reader)?;
     topology.check(0, header.atoms)?;

@@ -1,14 +1,17 @@
-//! A file format, and reading a file with it.
+//! A file format as plain data: its names, how its bytes and frames are read, and the options for that.
 
-use std::io::{self, Read as _};
-use std::path::{Path, PathBuf};
+use std::fmt;
+use std::io;
+use std::ops::Range;
+use std::path::PathBuf;
 
 use super::error::LoadError;
-use super::formats::FORMATS;
+use super::frame::{FrameSpan, FrameText};
 use super::gzip;
+use super::line_reader::LineReader;
 use super::loaded::Loaded;
-use super::source::{Source, without_gz};
-use super::trajectory::Frames;
+use super::source::Bytes;
+use super::topology::Topology;
 
 /// A file format for spheres.
 #[derive(Debug)]
@@ -20,8 +23,8 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Contents of such a file, in a few words for users.
     pub about: &'static str,
-    /// How the frames of a file are found and read, if a file can have several.
-    pub(super) frames: Option<Frames>,
+    /// How a file is read.
+    pub(super) reading: Reading,
     /// Whether a file has positions alone, so that [`Options::topology`] names a file that says what the spheres are.
     pub needs_topology: bool,
     /// Whether a file can lack names for its columns, so that [`Options::columns`] gives them.
@@ -35,8 +38,72 @@ pub struct Format {
     pub z_is_up: bool,
     /// Whether the first bytes of a file look like this format.
     pub(super) starts: fn(&[u8]) -> bool,
-    pub(super) reader: fn(&[u8], &Options) -> Result<Loaded, LoadError>,
     pub(super) extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
+}
+
+/// How a file of a format is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Reading {
+    /// As a whole.
+    Whole(fn(&[u8], &Options) -> Result<Loaded, LoadError>),
+    /// Frame by frame, because a file can have several.
+    Frames(Frames),
+}
+
+/// How a format with several frames finds and reads them.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Frames {
+    /// Text: frames are found line by line, and each is one piece of the file.
+    Lines {
+        /// Finds all frames, or those up to one that is wanted.
+        find: fn(&mut LineReader<'_>, Option<usize>) -> io::Result<FrameIndex>,
+        read: fn(&FrameText<'_>, &Options) -> Result<Loaded, LoadError>,
+    },
+    /// Binary data, where a reader goes to any place.
+    Bytes {
+        /// Finds all frames, or those up to one that is wanted, and gives the index a reader. What is wrong after some
+        /// frames is the problem of the index, not an error.
+        find: fn(&mut dyn Bytes, Option<usize>, &Options) -> Result<FrameIndex, LoadError>,
+    },
+    /// The same of positions alone, where another file, the topology, says what the spheres are.
+    Positions {
+        /// Finds all frames, or those up to one that is wanted; an error if there is no topology.
+        find: FindPositions,
+    },
+}
+
+/// Finds frames of positions alone, which the topology completes.
+pub(super) type FindPositions =
+    fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
+
+/// Reads frames of binary data, with what was found out about the file.
+pub(super) trait FrameReader: fmt::Debug + Send + Sync {
+    /// Reads one frame that the index has, counted from 0.
+    fn read(
+        &self,
+        source: &mut dyn Bytes,
+        frame: usize,
+        span: &FrameSpan,
+        options: &Options,
+    ) -> Result<Loaded, LoadError>;
+}
+
+/// Where the frames of a file are.
+#[derive(Debug, Default)]
+pub(super) struct FrameIndex {
+    /// Bytes before the first frame that every frame needs.
+    pub(super) head: Range<u64>,
+    pub(super) frames: Vec<FrameSpan>,
+    /// Whether the file was searched to its end.
+    pub(super) is_whole: bool,
+    /// What is wrong after the last frame, as where a program is still writing.
+    pub(super) problem: Option<LoadError>,
+    /// Whether a complete frame is right whatever follows it, as in binary data that say how long they are.
+    pub(super) stands_alone: bool,
+    /// Notes for the user on every frame.
+    pub(super) notes: Vec<String>,
+    /// Reads the frames, if they are binary data.
+    pub(super) reader: Option<Box<dyn FrameReader>>,
 }
 
 /// Options for reading a file of spheres.
@@ -56,106 +123,10 @@ pub struct Options {
 }
 
 impl Format {
-    /// Returns the format with this name.
-    #[must_use]
-    pub fn of_name(name: &str) -> Option<&'static Self> {
-        FORMATS.iter().find(|format| format.name == name)
-    }
-
-    /// Returns the format with this extension, which may be in upper or lower case.
-    #[must_use]
-    pub fn of_extension(extension: &str) -> Option<&'static Self> {
-        let extension = extension.to_ascii_lowercase();
-        FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
-    }
-
-    /// Returns the format that the first bytes of a file look like; a few hundred bytes are enough.
-    #[must_use]
-    pub fn of_content(bytes: &[u8]) -> Option<&'static Self> {
-        FORMATS.iter().find(|format| (format.starts)(bytes))
-    }
-
     /// Whether a file can have several frames, which [`Trajectory`](super::Trajectory) reads one by one.
     #[must_use]
     pub const fn has_frames(&self) -> bool {
-        self.frames.is_some()
-    }
-
-    /// Returns the format of a file by its extension or else, of a regular file, by its first bytes, which may be
-    /// compressed with gzip. Nothing else is opened: a pipe can be read only once.
-    ///
-    /// # Errors
-    /// If the first bytes are needed and cannot be read.
-    pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
-        const FIRST_BYTES: u64 = 1 << 12;
-        let format = Self::of_file_name(path);
-        if format.is_some() || !path.is_file() {
-            return Ok(format);
-        }
-        let mut first = Vec::new();
-        Source::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
-        Ok(Self::of_content(&first))
-    }
-
-    /// Returns the format with the extension of a file's name, before which `.gz` is taken away.
-    fn of_file_name(path: &Path) -> Option<&'static Self> {
-        without_gz(path).extension()?.to_str().and_then(Self::of_extension)
-    }
-
-    /// Returns the format of a file by its extension or else by its first bytes.
-    pub(super) fn of_file(path: &Path, first: &[u8]) -> Result<&'static Self, LoadError> {
-        let format = Self::of_file_name(path).or_else(|| Self::of_content(first));
-        format.ok_or_else(Self::unknown)
-    }
-
-    /// The error of a file of which neither the name nor the content shows the format.
-    #[must_use]
-    pub fn unknown() -> LoadError {
-        let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-        LoadError::new(format!(
-            "neither the name nor the content of this file shows its format; choose one of {}",
-            names.join(", ")
-        ))
-    }
-
-    /// Lists the extensions of all formats for which `is_wanted` returns true, such as `.npy, .npz`.
-    #[must_use]
-    pub fn extensions_of(is_wanted: impl Fn(&Self) -> bool) -> String {
-        let wanted = FORMATS.iter().filter(|format| is_wanted(format));
-        let extensions = wanted.flat_map(|format| format.extensions);
-        extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
-    }
-
-    /// Checks that every given option applies to this format.
-    ///
-    /// # Errors
-    /// Returns the first option that does not apply.
-    pub fn check(&self, options: &Options) -> Result<(), LoadError> {
-        let refused = |option, what: String| {
-            Err(LoadError::new(format!("{option} applies only to {what}; remove it")))
-        };
-        if options.frame.is_some() && !self.has_frames() {
-            let what =
-                format!("trajectories ({})", Self::extensions_of(|format| format.has_frames()));
-            return refused("frame", what);
-        }
-        if options.radius.is_some() && !self.may_lack_radii {
-            let files = Self::extensions_of(|format| format.may_lack_radii);
-            let what = format!("data that can lack radii ({files})");
-            return refused("radius", what);
-        }
-        if options.topology.is_some() && !self.needs_topology {
-            let what = format!(
-                "trajectories of positions alone ({})",
-                Self::extensions_of(|format| format.needs_topology)
-            );
-            return refused("topology", what);
-        }
-        if !options.columns.is_empty() && !self.may_lack_names {
-            let files = Self::extensions_of(|format| format.may_lack_names);
-            return refused("columns", format!("tables ({files})"));
-        }
-        Ok(())
+        matches!(self.reading, Reading::Frames(_))
     }
 
     /// Returns how many bytes of memory reading takes in addition to the file itself, or 0 if the file does not say.
@@ -167,18 +138,6 @@ impl Format {
             return Ok(gzip::size_hint(bytes));
         }
         (self.extra_bytes)(bytes)
-    }
-
-    /// Reads a file of this format, which may be compressed with gzip.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or an option does not apply to this format.
-    pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-        self.check(options)?;
-        if gzip::starts(bytes) {
-            return (self.reader)(&gzip::decompressed(bytes)?, options);
-        }
-        (self.reader)(bytes, options)
     }
 }
 
@@ -219,49 +178,5 @@ impl Options {
     #[must_use]
     pub fn with_radius(self, radius: f64) -> Self {
         Self { radius: Some(radius), ..self }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_name_and_extension_belongs_to_one_format() {
-        let mut seen = std::collections::HashSet::new();
-        for format in FORMATS {
-            assert_eq!(Format::of_name(format.name), Some(format));
-            for extension in format.extensions {
-                assert!(seen.insert(extension), "{extension} belongs to several formats");
-                assert_eq!(Format::of_extension(&extension.to_uppercase()), Some(format));
-            }
-        }
-    }
-
-    #[test]
-    fn options_that_do_not_apply_are_refused() {
-        let raw = Format::of_name("raw-f32x4").unwrap();
-        let refused = raw.read(&[], &Options::default().with_frame(1)).unwrap_err().to_string();
-        assert!(refused.starts_with("frame applies only to trajectories ("), "{refused}");
-        assert!(raw.read(&[], &Options::default().with_radius(1.0)).is_err());
-        assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
-    }
-
-    #[test]
-    fn content_shows_the_format() {
-        for (bytes, name) in [
-            (&b"\x93NUMPY\x01"[..], "npy"),
-            (b"PK\x03\x04", "npz"),
-            (b"ply\r\nformat ascii 1.0", "ply"),
-            (b"12\n\nH 0 0 0", "xyz"),
-            (b"HEADER    OXYGEN TRANSPORT", "pdb"),
-            (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
-            (b"id,X,y,z,q\n1,2", "csv"),
-            (b"made by me\n\n 20 atoms\n", "lammps-data"),
-            (b"# comment\n\nData_4HHB\n", "mmcif"),
-        ] {
-            assert_eq!(Format::of_content(bytes).map(|format| format.name), Some(name));
-        }
-        assert_eq!(Format::of_content(b""), None);
     }
 }

@@ -8,7 +8,8 @@ mod xtc;
 
 use super::binary::Reader;
 use super::error::{LoadError, LoadErrorKind};
-use super::trajectory::{FrameIndex, FrameSpan};
+use super::format::FrameIndex;
+use super::frame::FrameSpan;
 
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};

@@ -12,11 +12,11 @@ use index::{Chunk, Index};
 use super::binary::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::elements::appearance;
 use super::error::LoadError;
-use super::format::Options;
+use super::format::{FrameIndex, FrameReader, Frames, Options};
+use super::frame::FrameSpan;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::source::Bytes;
 use super::table::{Table, TableColumn};
-use super::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames};
 
 pub(super) use index::starts;
 

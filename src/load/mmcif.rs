@@ -7,6 +7,7 @@
 //!
 //! Positions that are fractions of the cell give the atoms that the file lists; its symmetry is not applied.
 
+mod errors;
 mod header;
 mod models;
 #[cfg(test)]
@@ -15,16 +16,17 @@ mod tokens;
 
 use std::io::SeekFrom;
 
+use errors::{cut_row, not_a_number};
 use header::{Columns, Header, SLOTS, decimal, is_unknown};
 use tokens::{Place, Token, Tokens};
 
 use super::Loaded;
 use super::atoms::{Atom, Atoms};
 use super::error::LoadError;
-use super::format::Options;
-use super::source::Bytes;
-use super::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames, bytes};
-use crate::text::{shortened, without_byte_order_mark};
+use super::format::{FrameIndex, FrameReader, Frames, Options};
+use super::frame::FrameSpan;
+use super::source::{Bytes, bytes};
+use crate::text::without_byte_order_mark;
 
 /// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
@@ -120,20 +122,6 @@ fn no_atoms() -> LoadError {
         "there are no atoms: no loop_ has _atom_site.Cartn_x, _atom_site.Cartn_y and _atom_site.Cartn_z, or \
          _atom_site_fract_x, _y and _z, with rows below",
     )
-}
-
-/// The last row of the loop has too few values.
-fn cut_row(place: Place, values: usize, columns: usize) -> LoadError {
-    let message = format!(
-        "the row of _atom_site that begins here has {values} values, but the loop names {columns} columns; a value is \
-         missing in this row or in one before it, or the file is cut off"
-    );
-    LoadError::line(place.lines_before + 1, message)
-}
-
-fn not_a_number(text: &[u8], place: Place, what: &str) -> LoadError {
-    let found = shortened(&String::from_utf8_lossy(text));
-    LoadError::at(place.of_error(), format!("{what} is `{found}`, which is not a finite number"))
 }
 
 /// Where a value begins, and the value.

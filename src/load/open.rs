@@ -1,14 +1,16 @@
-//! Opens files of spheres, and chooses their format.
+//! Opens files of spheres, whole or of several frames one at a time, and chooses their format. The file that says what the
+//! spheres of a trajectory are is opened in the same way.
 
-use std::io::{self, Read as _};
-use std::path::Path;
+use std::io::{self, BufRead as _, Read as _};
+use std::path::{Path, PathBuf};
 
-use super::error::LoadError;
-use super::format::{Format, Options};
+use super::error::{LoadError, LoadErrorKind, Place};
+use super::format::{Format, FrameIndex, Frames, Options, Reading};
+use super::frames::read_from_memory;
+use super::gzip;
 use super::loaded::Loaded;
-use super::source::Source;
-use super::source::without_gz;
-use super::trajectory::Trajectory;
+use super::source::{Source, without_gz};
+use super::topology::Topology;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
 /// content. Of a file with several frames only the one that is asked for is in memory; [`Trajectory`] reads several.
@@ -44,13 +46,159 @@ pub fn from_bytes(
 ) -> Result<Loaded, LoadError> {
     let format = match options.format {
         Some(format) => format,
-        None if super::gzip::starts(bytes) => {
-            let bytes = super::gzip::decompressed(bytes)?;
+        None if gzip::starts(bytes) => {
+            let bytes = gzip::decompressed(bytes)?;
             return from_bytes(&bytes, without_gz(name.as_ref()), options);
         }
         None => Format::of_file(name.as_ref(), bytes)?,
     };
     format.read(bytes, options)
+}
+
+impl Format {
+    /// Reads a file of this format, which may be compressed with gzip.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or an option does not apply to this format.
+    pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+        self.check(options)?;
+        if gzip::starts(bytes) {
+            return self.read_plain(&gzip::decompressed(bytes)?, options);
+        }
+        self.read_plain(bytes, options)
+    }
+
+    /// Reads a file that is not compressed.
+    fn read_plain(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+        match self.reading {
+            Reading::Whole(read) => read(bytes, options),
+            Reading::Frames(frames) => {
+                read_from_memory(bytes, frames, options, open_topology(options)?)
+            }
+        }
+    }
+}
+
+/// Reads the first frame of the topology that the options name, if they name one.
+fn open_topology(options: &Options) -> Result<Option<Topology>, LoadError> {
+    let Some(path) = options.topology.as_deref() else { return Ok(None) };
+    let loaded = open(path, &Options::default()).map_err(|error| {
+        let place = match error.place {
+            Place::File(_) => Place::Whole,
+            place => place,
+        };
+        let error = LoadError { place, ..error };
+        LoadError::new(format!("the topology {}: {error}", path.display()))
+    })?;
+    Ok(Some(Topology::new(path.to_path_buf(), loaded)))
+}
+
+/// A file of several frames. [`Trajectory::frame`] reads one of them; the others are not in memory.
+#[derive(Debug)]
+pub struct Trajectory {
+    path: PathBuf,
+    source: Source,
+    frames: Frames,
+    index: FrameIndex,
+    options: Options,
+}
+
+impl Trajectory {
+    /// Opens a file and finds its frames, in one pass over the file. Its format is the one in the options, or else
+    /// follows from the extension, or else from the content. The other options apply to every frame.
+    ///
+    /// If the file ends within a frame, as where a program is still writing, the frames before it can be read, and
+    /// [`Trajectory::problem`] says what is wrong.
+    ///
+    /// # Errors
+    /// If the file cannot be read, its format is not known or has no frames, an option does not apply to it, or not even
+    /// the first frame is complete.
+    pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
+        Self::find(path.as_ref(), options, None)
+    }
+
+    /// Opens a file like [`Trajectory::open`], and finds its frames up to the one in the options or else the first.
+    ///
+    /// # Errors
+    /// If there is no such frame, or for the reasons of [`Trajectory::open`].
+    pub fn open_up_to(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
+        let wanted = options.frame.unwrap_or_default();
+        let found = Self::find(path.as_ref(), options, Some(wanted))?;
+        let frames = found.len();
+        if wanted < frames {
+            return Ok(found);
+        }
+        let none = || LoadError::no_such_frame(wanted, frames);
+        Err(found.index.problem.unwrap_or_else(none))
+    }
+
+    fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
+        let of_file = |error: LoadError| error.in_file(path);
+        let mut source = Source::open(path).map_err(|error| of_file(error.into()))?;
+        let format = match options.format {
+            Some(format) => format,
+            None => {
+                let first = source.fill_buf().map_err(|error| of_file(error.into()))?;
+                Format::of_file(path, first)?
+            }
+        };
+        format.check(options)?;
+        let Reading::Frames(frames) = format.reading else {
+            let name = format.name;
+            let message = format!("a file of the format {name} has no frames; read it as a whole");
+            return Err(LoadError::new(message).of_kind(LoadErrorKind::NoFrames));
+        };
+        if !matches!(frames, Frames::Lines { .. }) {
+            source = source.in_small_pieces().map_err(|error| of_file(error.into()))?;
+        }
+        let topology = open_topology(options).map_err(of_file)?;
+        let index = frames.find(&mut source, last, options, topology).map_err(of_file)?;
+        let options = Options { format: Some(format), frame: None, ..options.clone() };
+        Ok(Self { path: path.to_path_buf(), source, frames, index, options })
+    }
+
+    /// Number of frames that are complete.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.index.frames.len()
+    }
+
+    /// Always false: a trajectory has at least one frame.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.index.frames.is_empty()
+    }
+
+    /// What is wrong after the last complete frame, if anything is.
+    #[must_use]
+    pub fn problem(&self) -> Option<&LoadError> {
+        self.index.problem.as_ref()
+    }
+
+    /// How many bytes a frame has in the file; `None` if there is no such frame.
+    #[must_use]
+    pub fn frame_bytes(&self, index: usize) -> Option<u64> {
+        self.index.frames.get(index).map(|span| span.bytes.end - span.bytes.start)
+    }
+
+    /// Reads one frame, counted from 0.
+    ///
+    /// # Errors
+    /// If there is no such frame, or it cannot be read. Lines are counted from the start of the file.
+    pub fn frame(&mut self, index: usize) -> Result<Loaded, LoadError> {
+        let Self { path, source, frames, index: found, options } = self;
+        frames.read(source, found, index, options).map_err(|error| error.in_file(path))
+    }
+
+    /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
+    /// of the file: so a wrong number of atoms is noticed. Of binary data, where it need not be, a note says what is wrong.
+    ///
+    /// # Errors
+    /// As [`Trajectory::frame`], and then [`Trajectory::problem`].
+    pub fn into_frame(mut self, index: usize) -> Result<Loaded, LoadError> {
+        let loaded = self.frame(index)?;
+        self.index.with_problem(loaded)
+    }
 }
 
 #[cfg(test)]

@@ -23,8 +23,9 @@ use record::{Kind, Lines, Record};
 use super::Loaded;
 use super::atoms::{Atom, Atoms};
 use super::error::{LoadError, Place};
-use super::format::Options;
-use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
+use super::format::{FrameIndex, Frames, Options};
+use super::frame::{FrameSpan, FrameText};
+use super::line_reader::LineReader;
 use crate::text::without_byte_order_mark;
 
 /// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.

@@ -9,6 +9,7 @@ mod header;
 #[cfg(test)]
 mod tests;
 
+pub(super) use header::starts;
 use header::{Element, Encoding, Header};
 
 use super::binary::Order;
@@ -18,11 +19,6 @@ use super::loaded::Loaded;
 use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened};
-
-/// Whether the first line is `ply`.
-pub(super) fn starts(bytes: &[u8]) -> bool {
-    bytes.strip_prefix(b"ply").is_some_and(|rest| matches!(rest.first(), Some(b'\n' | b'\r')))
-}
 
 /// Reads the vertices of a PLY file.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {

@@ -3,8 +3,10 @@
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::error::LoadError;
 use super::gzip::{self, Gunzip};
 
 /// How much of a file is read at a time.
@@ -78,6 +80,19 @@ impl Seek for Source {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.inner().seek(to)
     }
+}
+
+/// Reads a range of the bytes of a file.
+pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8>, LoadError> {
+    /// More is allocated as it arrives, because a file may lie about its frames.
+    const AT_ONCE: u64 = 1 << 26;
+    let length = range.end - range.start;
+    let mut bytes = Vec::with_capacity(length.min(AT_ONCE) as usize);
+    source.seek(SeekFrom::Start(range.start))?;
+    if source.take(length).read_to_end(&mut bytes)? as u64 != length {
+        return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
+    }
+    Ok(bytes)
 }
 
 /// The path without the ending `.gz`, which says nothing about what is compressed.

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use names::{
     COLOR_NAMES, COLORS, DIAMETERS, ELEMENTS, OPACITIES, POSITIONS, RADII, Sets, TRANSPARENCIES,
+    plain,
 };
 #[allow(unused_imports, reason = "not every format asks what names mean")]
 pub(super) use names::{has_positions, is_element, must_be_numbers};
@@ -48,9 +49,7 @@ impl TableColumn {
 
     /// The name in lower case, with dots for what separates words.
     fn plain_name(&self) -> String {
-        let name = self.name.trim().to_lowercase();
-        let dotted = name.replace([' ', '_', '-', '[', '(', ':'], ".");
-        dotted.trim_end_matches([']', ')']).to_owned()
+        plain(&self.name)
     }
 }
 

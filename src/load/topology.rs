@@ -2,10 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::error::{LoadError, LoadErrorKind, Place};
-use super::format::Options;
+use super::error::{LoadError, LoadErrorKind};
 use super::loaded::{Column, Loaded};
-use super::open::open;
 use crate::scene::sphere_array::SphereArray;
 
 /// What the spheres of a trajectory are.
@@ -25,24 +23,19 @@ pub(super) struct Positions {
 }
 
 impl Topology {
-    /// Reads the first frame of the file that the options name.
-    pub(super) fn open(options: &Options, format: &'static str) -> Result<Self, LoadError> {
-        let path = options.topology.as_deref().ok_or_else(|| {
+    pub(super) fn new(path: PathBuf, loaded: Loaded) -> Self {
+        Self { path, loaded }
+    }
+
+    /// The topology, without which a file of this format cannot be read.
+    pub(super) fn required(given: Option<Self>, format: &str) -> Result<Self, LoadError> {
+        given.ok_or_else(|| {
             let message = format!(
                 "a {format} file has positions alone; give a topology, a file that says what the atoms are, such as the \
                  .pdb or .xyz file of the same system"
             );
             LoadError::new(message).of_kind(LoadErrorKind::NoTopology)
-        })?;
-        let loaded = open(path, &Options::default()).map_err(|error| {
-            let place = match error.place {
-                Place::File(_) => Place::Whole,
-                place => place,
-            };
-            let error = LoadError { place, ..error };
-            LoadError::new(format!("the topology {}: {error}", path.display()))
-        })?;
-        Ok(Self { path: path.to_path_buf(), loaded })
+        })
     }
 
     /// Checks that a frame has as many atoms as the topology.

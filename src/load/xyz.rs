@@ -14,11 +14,13 @@ mod columns;
 use columns::Declared;
 
 use super::error::{LoadError, LoadErrorKind};
-use super::format::Options;
+use super::format::{FrameIndex, Frames, Options};
+use super::frame::{FrameSpan, FrameText};
+use super::frames::read_from_memory;
+use super::line_reader::LineReader;
 use super::loaded::Loaded;
 use super::rows::{self, Lines, Rows, Values};
 use super::table::Table;
-use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader, read_from_memory};
 use crate::text::{one_line, shortened, without_byte_order_mark};
 
 /// Reads one frame, counted from 0.
@@ -28,7 +30,7 @@ use crate::text::{one_line, shortened, without_byte_order_mark};
 /// # Errors
 /// If the text is not a valid XYZ file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
-    read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame))
+    read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
 /// Whether the first line that is not blank is a number, as in an XYZ file.

@@ -1,10 +1,16 @@
 //! Looks at the first lines of a table: what separates values, and where names of columns are.
 
-use super::Separator;
 use crate::load::error::LoadError;
 use crate::load::rows::{Lines, Values, number};
 use crate::load::table;
 use crate::text::without_byte_order_mark;
+
+/// What separates the values of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Separator {
+    Blank,
+    Byte(u8),
+}
 
 /// What the first lines of a table say.
 pub(super) struct First<'a> {

@@ -8,7 +8,7 @@ use exr::meta::MetaData;
 use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{Compression, ReadLayers, Vec2, read as reader};
 
-use super::{Watched, black, damaged, refusal};
+use super::decoding::{Watched, black, damaged, refusal};
 use crate::light::environment::Environment;
 use crate::load::error::LoadError;
 

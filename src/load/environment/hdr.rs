@@ -5,7 +5,7 @@ use std::cell::Cell;
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 
-use super::{Watched, black, damaged, refusal};
+use super::decoding::{Watched, black, damaged, refusal};
 use crate::light::environment::Environment;
 use crate::load::error::LoadError;
 

@@ -4,14 +4,14 @@
 use super::{ANGSTROMS, cell_of, find_frames};
 use crate::load::binary::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
-use crate::load::format::Options;
+use crate::load::format::{FrameIndex, FrameReader, Frames, Options};
+use crate::load::frame::FrameSpan;
 use crate::load::loaded::{Column, ColumnValues, Loaded};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
-use crate::load::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames};
 
 /// How frames are found and read one by one.
-pub(in crate::load) const FRAMES: Frames = Frames::Bytes { find };
+pub(in crate::load) const FRAMES: Frames = Frames::Positions { find };
 
 const MAGIC: i32 = 1993;
 /// The text that follows: its length with and without a NUL, and itself.
@@ -40,9 +40,9 @@ pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
 fn find(
     source: &mut dyn Bytes,
     last: Option<usize>,
-    options: &Options,
+    topology: Option<Topology>,
 ) -> Result<FrameIndex, LoadError> {
-    let topology = Topology::open(options, "trr")?;
+    let topology = Topology::required(topology, "trr")?;
     let mut reader = Reader::new(source, Order::Big)?;
     let mut found = find_frames(&mut reader, last, |reader, index| {
         let header = Header::read(reader, index)?;

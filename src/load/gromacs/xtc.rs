@@ -6,14 +6,14 @@ use super::unpack::{self, Packed};
 use super::{ANGSTROMS, cell_of, find_frames};
 use crate::load::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
-use crate::load::format::Options;
+use crate::load::format::{FrameIndex, FrameReader, Frames, Options};
+use crate::load::frame::FrameSpan;
 use crate::load::loaded::Loaded;
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
-use crate::load::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames};
 
 /// How frames are found and read one by one.
-pub(in crate::load) const FRAMES: Frames = Frames::Bytes { find };
+pub(in crate::load) const FRAMES: Frames = Frames::Positions { find };
 
 /// The usual number at the start of a frame.
 const MAGIC: i32 = 1995;
@@ -34,9 +34,9 @@ pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
 fn find(
     source: &mut dyn Bytes,
     last: Option<usize>,
-    options: &Options,
+    topology: Option<Topology>,
 ) -> Result<FrameIndex, LoadError> {
-    let topology = Topology::open(options, "xtc")?;
+    let topology = Topology::required(topology, "xtc")?;
     let mut reader = Reader::new(source, Order::Big)?;
     let mut found = find_frames(&mut reader, last, |reader, index| {
         let header = Header::read(reader, index)?;

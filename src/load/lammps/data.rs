@@ -5,13 +5,13 @@ use std::collections::HashMap;
 
 use super::cell::Cell;
 use super::elements::{self, Types};
-use super::styles::{columns_of, fields_of};
+use super::styles::fields_of;
 use super::{order, too_few_atoms, wrong_text};
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
-use crate::load::table::{Table, TableColumn};
+use crate::load::table::Table;
 use crate::text::{shortened, without_byte_order_mark};
 
 /// Whether one of the first lines declares a number of atoms.
@@ -255,21 +255,4 @@ fn numbers_of<const COUNT: usize>(line: &[u8]) -> Option<[f64; COUNT]> {
         *value = values.next().and_then(number).filter(|number| number.is_finite())?;
     }
     Some(numbers)
-}
-
-/// A column of text from another one, with other texts in place of its names.
-pub(super) fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
-    let ColumnValues::Labels(labels) = &column.values else { return None };
-    let mut labels = labels.clone();
-    // Several types may be of one element.
-    let mut unique = crate::load::labels::LabelsBuilder::default();
-    let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
-    labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
-    labels.names = unique.names;
-    Some(TableColumn::labels(name, labels))
-}
-
-/// The columns of a style by its name, for messages.
-pub(super) fn listed(style: &str) -> String {
-    columns_of(style).unwrap_or_default().join(",")
 }

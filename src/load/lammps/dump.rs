@@ -6,11 +6,12 @@ use super::cell::{Cell, Shape};
 use super::{order, too_few_atoms, wrong_text};
 use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
-use crate::load::format::Options;
+use crate::load::format::{FrameIndex, Frames, Options};
+use crate::load::frame::{FrameSpan, FrameText};
+use crate::load::line_reader::LineReader;
 use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
 use crate::load::table::{self, Table, TableColumn};
-use crate::load::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::text::without_byte_order_mark;
 
 /// How frames are found and read one by one.

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use mendeleev::Element;
 
-use super::data::relabelled;
 use crate::load::elements::appearance;
+use crate::load::labels::LabelsBuilder;
 use crate::load::loaded::ColumnValues;
-use crate::load::table::Table;
+use crate::load::table::{Table, TableColumn};
 use crate::text::shortened;
 
 /// What a data file says about types. Types are numbers, as text, or labels.
@@ -94,4 +94,16 @@ pub(super) fn name_types(table: &mut Table, types: &Types) -> Option<String> {
     let note =
         format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
     (!shown.is_empty()).then_some(note)
+}
+
+/// A column of text from another one, with other texts in place of its names.
+fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
+    let ColumnValues::Labels(labels) = &column.values else { return None };
+    let mut labels = labels.clone();
+    // Several types may be of one element.
+    let mut unique = LabelsBuilder::default();
+    let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
+    labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
+    labels.names = unique.names;
+    Some(TableColumn::labels(name, labels))
 }

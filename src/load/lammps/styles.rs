@@ -1,6 +1,5 @@
 //! The columns of the atoms in data files, which depend on the simulation's style of atoms.
 
-use super::data::listed;
 use crate::load::error::LoadError;
 use crate::load::rows::{Field, Kind, Lines, Rows, Values};
 use crate::text::shortened;
@@ -31,9 +30,14 @@ const STYLES: [(&str, &str); 22] = [
     ("tri", "id mol type triangleflag density x y z"),
 ];
 
-pub(super) fn columns_of(style: &str) -> Option<Vec<&'static str>> {
+fn columns_of(style: &str) -> Option<Vec<&'static str>> {
     let (_, columns) = STYLES.iter().find(|(name, _)| *name == style)?;
     Some(columns.split(' ').collect())
+}
+
+/// The columns of a style by its name, for messages.
+fn listed(style: &str) -> String {
+    columns_of(style).unwrap_or_default().join(",")
 }
 
 /// Returns the columns of the rows: those that are given, or those of the style, or those of the only style that they can

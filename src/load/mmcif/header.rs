@@ -1,6 +1,6 @@
 //! What stands around the rows of atoms: the names of their columns, and the cell.
 
-use super::not_a_number;
+use super::errors::not_a_number;
 use super::tokens::{Token, Tokens};
 use crate::load::atoms::cell;
 use crate::load::error::LoadError;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use memchr::memchr;
 
-use super::cut_row;
+use super::errors::cut_row;
 use super::header::Columns;
 use super::tokens::{Place, Token, Tokens};
 use crate::load::error::LoadError;

@@ -1,7 +1,7 @@
 //! Files that are made here.
 
 use super::*;
-use crate::load::trajectory::read_from_memory;
+use crate::load::frames::read_from_memory;
 use crate::load::{ColumnValues, Format, from_bytes};
 use crate::scene::sphere_array::SphereArray;
 
@@ -30,7 +30,7 @@ fn file(rows: &[&str]) -> String {
 }
 
 fn read(text: &str, frame: usize) -> Result<Loaded, LoadError> {
-    read_from_memory(text.as_bytes(), FRAMES, &Options::default().with_frame(frame))
+    read_from_memory(text.as_bytes(), FRAMES, &Options::default().with_frame(frame), None)
 }
 
 fn loaded(text: &str) -> Loaded {

@@ -7,7 +7,7 @@ use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, SampleType};
 use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
-use super::{FileSamples, PictureFile, damaged, no_memory};
+use super::file::{FileSamples, PictureFile, damaged, no_memory};
 use crate::load::error::LoadError;
 use crate::write::exr::CERTIFICATE;
 

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-use super::{FileSamples, PictureFile, damaged, no_memory};
+use super::file::{FileSamples, PictureFile, damaged, no_memory};
 use crate::image::encoding::Bits;
 use crate::load::error::LoadError;
 use crate::write::png::CERTIFICATE;

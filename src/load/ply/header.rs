@@ -1,6 +1,5 @@
 //! The header of a PLY file: which elements follow, and what each consists of.
 
-use super::starts;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
@@ -59,6 +58,11 @@ impl Element {
         let is_list = self.properties.iter().any(|property| property.list.is_some());
         (!is_list).then(|| self.properties.iter().map(|property| property.scalar.size()).sum())
     }
+}
+
+/// Whether the first line is `ply`.
+pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+    bytes.strip_prefix(b"ply").is_some_and(|rest| matches!(rest.first(), Some(b'\n' | b'\r')))
 }
 
 /// Reads the header.

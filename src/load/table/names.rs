@@ -39,8 +39,10 @@ pub(super) const ELEMENTS: &[&str] =
 pub(super) const COLOR_NAMES: &[&str] = &["color", "colour", "colors"];
 
 /// The name of a column in lower case, with dots for what separates words.
-fn plain(name: &str) -> String {
-    super::TableColumn::numbers(name, Vec::new()).plain_name()
+pub(super) fn plain(name: &str) -> String {
+    let name = name.trim().to_lowercase();
+    let dotted = name.replace([' ', '_', '-', '[', '(', ':'], ".");
+    dotted.trim_end_matches([']', ')']).to_owned()
 }
 
 /// Whether a column with this name must have numbers, because positions or radii follow from it.

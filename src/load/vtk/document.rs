@@ -7,11 +7,19 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::values::{Encoding, scalar_of_name};
 use crate::load::binary::Order;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
+
+/// How a file stores bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Encoding {
+    pub(super) order: Order,
+    /// Whether lengths before the data are u64, and not u32.
+    pub(super) is_wide: bool,
+    pub(super) is_compressed: bool,
+}
 
 /// What a file says of its points.
 #[derive(Debug)]
@@ -54,6 +62,23 @@ pub(super) enum Data<'a> {
 const MOST_COMPONENTS: usize = 64;
 
 const APPENDED: &[u8] = b"<AppendedData";
+
+/// Returns the type of this name.
+fn scalar_of_name(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "Int8" => Scalar::I8,
+        "UInt8" => Scalar::U8,
+        "Int16" => Scalar::I16,
+        "UInt16" => Scalar::U16,
+        "Int32" => Scalar::I32,
+        "UInt32" => Scalar::U32,
+        "Int64" => Scalar::I64,
+        "UInt64" => Scalar::U64,
+        "Float32" => Scalar::F32,
+        "Float64" => Scalar::F64,
+        _ => return None,
+    })
+}
 
 /// Reads the XML of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, LoadError> {

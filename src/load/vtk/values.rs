@@ -6,37 +6,11 @@ use std::io::Read as _;
 use data_encoding::BASE64;
 use flate2::bufread::ZlibDecoder;
 
-use super::document::{Array, Data, Document};
-use crate::load::binary::{Number, Order};
+use super::document::{Array, Data, Document, Encoding};
+use crate::load::binary::Number;
 use crate::load::scalar::Scalar;
 use crate::parallel;
 use crate::text::{one_line, shortened};
-
-/// How a file stores bytes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Encoding {
-    pub(super) order: Order,
-    /// Whether lengths before the data are u64, and not u32.
-    pub(super) is_wide: bool,
-    pub(super) is_compressed: bool,
-}
-
-/// Returns the type of this name.
-pub(super) fn scalar_of_name(name: &str) -> Option<Scalar> {
-    Some(match name {
-        "Int8" => Scalar::I8,
-        "UInt8" => Scalar::U8,
-        "Int16" => Scalar::I16,
-        "UInt16" => Scalar::U16,
-        "Int32" => Scalar::I32,
-        "UInt32" => Scalar::U32,
-        "Int64" => Scalar::I64,
-        "UInt64" => Scalar::U64,
-        "Float32" => Scalar::F32,
-        "Float64" => Scalar::F64,
-        _ => return None,
-    })
-}
 
 /// Reads an array of a piece with this number of points: one list of numbers for each component.
 pub(super) fn numbers(

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::certificate::LitStage;
 use super::recording::PathState;
+use super::stage::LitStage;
 use crate::verify::bias::deviation;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;

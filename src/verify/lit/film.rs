@@ -1,10 +1,10 @@
 //! The check of the sums of a pixel's samples. The WGSL twins are `shaders/path/accumulate.wgsl` and
 //! `path/film_sums.wgsl`.
 
-use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
 use super::judge::Judged;
 use super::recording::{PathState, RecordedFilm, slot};
+use super::stage::LitStage;
 use crate::image::color::LUMINANCE;
 use crate::verify::number::{Number, Vector};
 

@@ -1,9 +1,10 @@
 //! The verdict about a stage, and how it is found and counted.
 
-use super::certificate::{LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT, StageCounts};
+use super::certificate::{LitCertificate, LitOpen, LitViolation, OPEN_KEPT, StageCounts};
 use super::expected::{Expected, Mismatch};
 use super::kernel::Address;
 use super::recording::PathState;
+use super::stage::LitStage;
 use crate::parallel::{map_parts, ranges};
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;

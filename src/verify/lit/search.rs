@@ -4,10 +4,10 @@
 use glam::{DVec3, Vec4};
 
 use super::alternatives::Doubts;
-use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
 use super::kernel::Hit;
 use super::recording::{PathState, flag, slot};
+use super::stage::LitStage;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};

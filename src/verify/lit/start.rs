@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
 use super::judge::{Judged, along_choices};
 use super::kernel::Address;
 use super::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
+use super::stage::LitStage;
 use crate::camera::film::{Film, YAxis};
 use crate::camera::sampling::{pair, pixel_seed, unit};
 use crate::image::NO_ID;

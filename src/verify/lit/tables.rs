@@ -6,8 +6,9 @@ use std::cmp::Ordering;
 use glam::Vec4;
 
 use super::material::ENERGIES;
+use super::near::{are_near, is_near};
 use super::recording::{LitInputs, UploadedLighting};
-use super::upload::{LitUploadError, are_near, is_near};
+use super::upload_error::LitUploadError;
 use crate::image::color::luminance;
 use crate::light::codes;
 use crate::light::energy::EnergyTables;

@@ -1,8 +1,10 @@
 //! The check of uploaded data for lit pictures: whether the numbers on the device are those of the requested scene and
 //! settings.
 
+use super::near::{are_near, is_near};
 use super::recording::{LitInputs, UploadedLighting, flag};
 use super::tables;
+use super::upload_error::LitUploadError;
 use crate::geometry::math::{unit, wide};
 use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
@@ -12,47 +14,7 @@ use crate::scene::Scene;
 use crate::verify::candidates::Candidates;
 use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, U};
-use crate::verify::upload::{LEAST_MARGIN, UploadError, check_view};
-
-/// Why the data on the device are not those that were requested.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LitUploadError {
-    /// The camera or the scene's box is wrong.
-    #[error(transparent)]
-    View(#[from] UploadError),
-    /// A list of pixels does not have the size of the rectangle.
-    #[error(
-        "the recording has a list that does not have {pixels} pixels, the size of its rectangle"
-    )]
-    Size {
-        /// The number of pixels in the rectangle.
-        pixels: u64,
-    },
-    /// A parameter of the lighting is wrong.
-    #[error("{what} on the device differs from the settings")]
-    Lighting {
-        /// The name of the parameter.
-        what: &'static str,
-    },
-    /// An entry of the tables is wrong.
-    #[error("{what} {index} on the device differs from the scene and the settings")]
-    Table {
-        /// The kind of entry.
-        what: &'static str,
-        /// Index of the entry, from 0.
-        index: usize,
-    },
-}
-
-/// Whether a number is within two roundings of another.
-pub(in crate::verify) fn is_near(found: f32, asked: f64) -> bool {
-    (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH
-}
-
-pub(in crate::verify) fn are_near<const N: usize>(found: [f32; N], asked: [f64; N]) -> bool {
-    found.into_iter().zip(asked).all(|(found, asked)| is_near(found, asked))
-}
+use crate::verify::upload::{LEAST_MARGIN, check_view};
 
 /// Compares the recording with the scene and the settings.
 pub(in crate::verify) fn check(

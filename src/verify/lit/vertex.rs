@@ -3,10 +3,10 @@
 
 use glam::DVec3;
 
-use super::certificate::LitStage;
 use super::expected::Mismatch;
 use super::kernel::Kernel;
 use super::recording::{flag, slot};
+use super::stage::LitStage;
 use crate::geometry::math::wide;
 use crate::image::NO_ID;
 use crate::verify::line::Line;

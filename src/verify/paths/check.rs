@@ -6,13 +6,14 @@ use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
-use crate::verify::lit::certificate::{LitCertificate, LitStage};
+use crate::verify::lit::certificate::LitCertificate;
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::film;
 use crate::verify::lit::judge::{Judged, along_choices, judge_pixels, searched, unchanged};
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
+use crate::verify::lit::stage::LitStage;
 use crate::verify::lit::{start, upload};
 
 const ENDED: (LitStage, &str) = (LitStage::Scatter, "a path that has ended");

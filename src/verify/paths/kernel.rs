@@ -3,11 +3,11 @@
 
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
-use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::expected::Mismatch;
 use crate::verify::lit::kernel::{Address, Kernel, unit};
 use crate::verify::lit::material::Material;
 use crate::verify::lit::recording::{PathState, flag, slot};
+use crate::verify::lit::stage::LitStage;
 use crate::verify::lit::vertex::Vertex;
 use crate::verify::lit::warp::Axes;
 use crate::verify::number::{Number, Vector};

@@ -4,11 +4,11 @@
 use super::kernel::Surface;
 use crate::light::codes::lamp::HEAD;
 use crate::light::codes::sampling::{CHANCE, MULTIPLE};
-use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::expected::Mismatch;
 use crate::verify::lit::kernel::{Kernel, unit};
 use crate::verify::lit::lamp::Lamp;
 use crate::verify::lit::recording::{NO_EMITTER, flag, slot};
+use crate::verify::lit::stage::LitStage;
 use crate::verify::lit::warp::{axes_around, cone_direction, cone_of_sphere, pi};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;

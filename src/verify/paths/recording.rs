@@ -1,7 +1,7 @@
 //! Recordings of paths: their states dispatch by dispatch.
 
 use crate::verify::lit::recording::{LitInputs, PathState, RecordedFilm};
-use crate::verify::lit::upload::LitUploadError;
+use crate::verify::lit::upload_error::LitUploadError;
 
 /// A recording of the paths of a rectangle of a film. The checker needs only this and the scene.
 #[derive(Clone, Debug, PartialEq)]

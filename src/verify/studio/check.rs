@@ -8,7 +8,7 @@ use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
-use crate::verify::lit::certificate::{LitCertificate, LitStage};
+use crate::verify::lit::certificate::LitCertificate;
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::judge::{
     Judged, StageOutcome, along_choices, judge_pixels, searched, unchanged,
@@ -16,6 +16,7 @@ use crate::verify::lit::judge::{
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
+use crate::verify::lit::stage::LitStage;
 use crate::verify::lit::{film, start, upload};
 use crate::verify::number::{Number, Vector};
 

@@ -1,7 +1,7 @@
 //! Recordings of studios: the state of every ray dispatch by dispatch.
 
 use crate::verify::lit::recording::{LitInputs, PathState, RecordedFilm};
-use crate::verify::lit::upload::LitUploadError;
+use crate::verify::lit::upload_error::LitUploadError;
 
 /// A recording of a rectangle of a picture of a studio. The checker needs only this and the scene.
 #[derive(Clone, Debug, PartialEq)]

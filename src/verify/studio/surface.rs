@@ -2,11 +2,11 @@
 //! `shaders/studio/surface.wgsl`.
 
 use crate::image::NO_ID;
-use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::expected::Mismatch;
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::material::Material;
 use crate::verify::lit::recording::{flag, slot};
+use crate::verify::lit::stage::LitStage;
 use crate::verify::lit::vertex::Vertex;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;

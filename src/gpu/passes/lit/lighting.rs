@@ -8,8 +8,7 @@ use glam::DVec3;
 
 use super::kernels::{Materials, Mode, SkyKind, Sources};
 use super::one_pass::OnePass;
-use super::records::LightingParameters;
-use super::round::BITS;
+use super::records::{BITS, LightingParameters};
 use crate::camera::Camera;
 use crate::geometry::math::unit;
 use crate::gpu::passes::emitter_table;

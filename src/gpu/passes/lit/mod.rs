@@ -9,6 +9,7 @@
 //! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] records them
 //! into any encoder.
 
+mod all_kernels;
 mod frame;
 mod kernels;
 mod lighting;
@@ -32,9 +33,9 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 
+pub(in crate::gpu) use all_kernels::all_kernels;
 pub(in crate::gpu) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
 pub(in crate::gpu) use kernels::Mode;
-pub(in crate::gpu) use kernels::all_kernels;
 pub(in crate::gpu) use lighting::LightingData;
 pub(in crate::gpu) use lighting_buffers::LightingBuffers;
 pub(in crate::gpu) use live::{LiveKey, LivePasses, LiveView};

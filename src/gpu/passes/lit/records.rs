@@ -24,6 +24,9 @@ pub(in crate::gpu) struct DispatchParameters {
 /// `LIST_OF_LIGHT` in `shaders/path/queue.wgsl`.
 pub(in crate::gpu) const LIST_OF_LIGHT: u32 = 2;
 
+/// Number of lights that are tested before their contributions are added. Each has a bit in a word.
+pub(super) const BITS: usize = 32;
+
 /// Number of lists of paths.
 pub(super) const LISTS: u64 = 3;
 

@@ -8,12 +8,9 @@ use super::frame::Area;
 use super::lighting::LightingData;
 use super::pass::Pass;
 use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses};
-use super::records::{DispatchParameters, LIST_OF_LIGHT};
+use super::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-
-/// Number of lights that are tested before their contributions are added. Each has a bit in a word.
-pub(super) const BITS: usize = 32;
 
 /// A dispatch of a round.
 #[derive(Clone, Copy, Debug)]
