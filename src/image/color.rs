@@ -9,7 +9,26 @@ use crate::text::shortened;
 ///
 /// Components are finite and not negative, and may exceed 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "run-file",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "[f32; 3]", into = "[f32; 3]")
+)]
 pub struct LinearRgb([f32; 3]);
+
+impl TryFrom<[f32; 3]> for LinearRgb {
+    type Error = ColorError;
+
+    fn try_from(rgb: [f32; 3]) -> Result<Self, ColorError> {
+        Self::new(rgb)
+    }
+}
+
+impl From<LinearRgb> for [f32; 3] {
+    fn from(color: LinearRgb) -> Self {
+        color.to_array()
+    }
+}
 
 impl LinearRgb {
     /// Black.

@@ -6,6 +6,7 @@ use crate::image::color::LinearRgb;
 
 /// An infinite matt plane. It is visible, and reflects light, only on the side of its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ground {
     /// A point of the plane, in world space.
     pub point: DVec3,

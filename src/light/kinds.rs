@@ -8,6 +8,7 @@ use crate::image::color::LinearRgb;
 
 /// A light, placed in the world or relative to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Light {
     /// The kind of the light and its parameters.
     pub kind: LightKind,
@@ -17,6 +18,7 @@ pub struct Light {
 
 /// The kind of a light and its parameters. Colours are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LightKind {
     /// A light at the eye without shadows: each surface is lit along the ray that sees it.
@@ -54,7 +56,12 @@ pub enum LightKind {
 
 /// The frame of a light's position or direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    any(feature = "run-file", feature = "scene-file"),
+    derive(serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum LightFrame {
     /// World space.

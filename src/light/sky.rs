@@ -9,6 +9,7 @@ use crate::light::environment::Environment;
 
 /// The sky, which surrounds the scene infinitely far away. Up is +y.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sky {
     /// The radiance of the sky.
     pub light: SkyLight,
@@ -18,6 +19,7 @@ pub struct Sky {
 
 /// The radiance of a sky.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum SkyLight {
     /// The same radiance in all directions; black for no light.
@@ -31,7 +33,8 @@ pub enum SkyLight {
         /// Radiance from straight down.
         nadir: LinearRgb,
     },
-    /// An image of all directions.
+    /// An image of all directions. Run files have its numbers as arrays.
+    #[cfg_attr(feature = "run-file", serde(skip))]
     Image {
         /// The image.
         environment: Arc<Environment>,

@@ -6,6 +6,7 @@ use crate::light::codes;
 
 /// The algorithm that turns rays into colours.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Integrator {
     /// Colours the surface that the ray through a pixel's centre hits first, without lights.
@@ -43,7 +44,12 @@ impl Integrator {
 
 /// How the surface that a primary ray hits is coloured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    any(feature = "run-file", feature = "scene-file"),
+    derive(serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Shading {
     /// The colour of the sphere, without any shading.
@@ -85,6 +91,7 @@ impl Default for PrimarySettings {
 
 /// Settings of the path integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct PathTracing {
     /// The largest number of surfaces that a path hits, including those that it passes through: 1 to 64.
     pub max_depth: u32,
@@ -114,7 +121,12 @@ impl LightSampling {
 
 /// How emissive spheres, a sun and the image of a sky are sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    any(feature = "run-file", feature = "scene-file"),
+    derive(serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum LightSampling {
     /// Only by scattered rays that happen to hit a light.

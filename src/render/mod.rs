@@ -37,6 +37,7 @@ pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
 /// All settings of a picture apart from the scene and the view.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderSettings {
     /// The algorithm that turns rays into colours.
     pub integrator: Integrator,
@@ -60,6 +61,7 @@ pub struct RenderSettings {
 
 /// The number of samples, their positions, and the random seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sampling {
     /// The number of samples for each pixel: 1 to 2²⁴.
     pub samples: u32,

@@ -7,6 +7,7 @@ use crate::image::color::LinearRgb;
 /// Settings of the studio integrator: lights, shadows, ambient light, and aids for seeing shape. Surfaces that are not
 /// emissive are shaded as Lambert surfaces, with the glossy lobe of their material if it has one.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Studio {
     /// Ambient light, which arrives from all directions.
     pub ambient: LinearRgb,
@@ -39,6 +40,7 @@ impl Default for Studio {
 /// Ambient occlusion: ambient light is reduced to the share of cosine-weighted directions in which no opaque sphere is
 /// near.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Occlusion {
     /// The largest distance, in scene units, at which a sphere occludes; `None` for any distance.
     pub radius: Option<f64>,
@@ -55,6 +57,7 @@ impl Default for Occlusion {
 
 /// Depth cueing: colours fade linearly with the distance along the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthCue {
     /// Distance at which fading begins, in scene units.
     pub near: f64,
@@ -66,6 +69,7 @@ pub struct DepthCue {
 
 /// Lines at edges of the data layers: between spheres where the depth jumps or the direction of the normal changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Outline {
     /// Width of the outline in pixels: 0.5 to 64.
     pub width: f32,

@@ -45,7 +45,6 @@ mod least_errors;
 mod legal_camera;
 mod legal_camera_rays;
 mod legal_device;
-mod legal_paths;
 mod lens;
 mod light;
 mod nearest;

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use pinhole::camera::{OrthographicCamera, Pose};
 use pinhole::image::denoise::GUIDES;
 use pinhole::verify::run_file::{
-    self, Extras, LitSamples, RunFile, RunFileError, ShownPicture, write_with,
+    self, Extras, LitSamples, Run, RunFile, RunFileError, ShownPicture, write_with,
 };
 use pinhole::verify::{Checker, LitCertificate, LitRecording, Outcome, PathRecording, Recording};
 use pinhole::{
@@ -13,7 +13,6 @@ use pinhole::{
     SurfaceProperties, View, cpu,
 };
 
-use crate::legal_paths::followed;
 use crate::run_file::{
     bytes_of_header, is_contradiction, provenance, signed, with_header, with_numbers,
 };
@@ -46,40 +45,81 @@ fn replayed(bytes: &[u8]) -> Result<Option<LitCertificate>, RunFileError> {
     Ok(has_light.then_some(certificate))
 }
 
+/// Two samples that an adapter took, and the picture by one ray for each pixel: `pinhole verify light.toml --paths 2
+/// --save light.run` in `tests/cpu/run_file_light`. Whenever the format has another version, they are recorded again.
+fn recorded() -> (Scene, Recording, PathRecording) {
+    let mut source = Cursor::new(include_bytes!("run_file_light/light.run"));
+    let file = RunFile::open(&mut source).unwrap();
+    let Run { scene, recording, .. } = file.run().unwrap();
+    let run = file.run().unwrap();
+    let mut made: Option<PathRecording> = None;
+    let mut add = |one: LitRecording<'_>| {
+        let LitRecording::Paths(one) = one else { panic!("it is of paths") };
+        match &mut made {
+            Some(made) => made.samples.extend(one.samples.clone()),
+            None => made = Some(one.clone()),
+        }
+    };
+    assert!(file.light(&run, &mut add).unwrap());
+    (scene, recording, made.unwrap())
+}
+
+/// The samples of a recording in a rectangle alone.
+fn cut(made: &PathRecording, [x, y, width, height]: [u32; 4]) -> PathRecording {
+    let mut cut = made.clone();
+    let whole = made.given.size[0];
+    let indices: Vec<usize> = (y..y + height)
+        .flat_map(|j| (x..x + width).map(move |i| (j * whole + i) as usize))
+        .collect();
+    fn only<T: Clone>(list: &mut Vec<T>, indices: &[usize]) {
+        *list = indices.iter().map(|index| list[*index].clone()).collect();
+    }
+    (cut.given.origin, cut.given.size) = ([x, y], [width, height]);
+    for sample in &mut cut.samples {
+        only(&mut sample.start, &indices);
+        only(&mut sample.film.before, &indices);
+        only(&mut sample.film.after, &indices);
+        for surface in &mut sample.surfaces {
+            only(&mut surface.hits, &indices);
+            only(&mut surface.scattered, &indices);
+            only(&mut surface.open, &indices);
+        }
+    }
+    cut
+}
+
 #[test]
 fn what_is_saved_is_judged_as_before() {
-    for number in 0..3 {
-        let (scene, picture, mut made) = followed(number, Film::new(19, 13).unwrap());
-        let checker = Checker::new(&scene).unwrap();
-        let legal = checker.certify_paths(&made);
-        assert!(legal.violation_count == 0 && legal.stages().checked > 1000, "{legal}");
-        let bytes = with_light(&scene, &picture, &made);
-        assert_eq!(replayed(&bytes).unwrap(), Some(legal));
-        // What the device did wrong is kept, in rays that go on and in those that have ended.
-        let surfaces = &mut made.samples[1].surfaces;
-        surfaces[0].scattered[40].slots[3][1] ^= 1 << 20;
-        surfaces.last_mut().unwrap().scattered[7].slots[4][0] ^= 1;
-        let wrong = checker.certify_paths(&made);
-        assert_eq!((wrong.outcome(), wrong.violation_count >= 2), (Outcome::Violated, true));
-        assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(wrong));
-        // And so is what it was given.
-        made.given.lighting.zenith[1] += 0.1;
-        let other = checker.certify_paths(&made);
-        assert!(other.upload.is_some());
-        assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(other));
-    }
+    let (scene, picture, mut made) = recorded();
+    let checker = Checker::new(&scene).unwrap();
+    let legal = checker.certify_paths(&made);
+    assert!(legal.violation_count == 0 && legal.stages().checked > 1000, "{legal}");
+    let bytes = with_light(&scene, &picture, &made);
+    assert_eq!(replayed(&bytes).unwrap(), Some(legal));
+    // What the device did wrong is kept, in rays that go on and in those that have ended.
+    let surfaces = &mut made.samples[1].surfaces;
+    surfaces[0].scattered[40].slots[3][1] ^= 1 << 20;
+    surfaces.last_mut().unwrap().scattered[7].slots[4][0] ^= 1;
+    let wrong = checker.certify_paths(&made);
+    assert_eq!((wrong.outcome(), wrong.violation_count >= 2), (Outcome::Violated, true));
+    assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(wrong));
+    // And so is what it was given.
+    made.given.lighting.zenith[1] += 0.1;
+    let other = checker.certify_paths(&made);
+    assert!(other.upload.is_some());
+    assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(other));
 }
 
 /// A small file, which still has everything.
 fn small() -> (Scene, Recording, Vec<u8>) {
-    let (scene, picture, made) = followed(3, Film::new(3, 1).unwrap());
-    let bytes = with_light(&scene, &picture, &made);
+    let (scene, picture, made) = recorded();
+    let bytes = with_light(&scene, &picture, &cut(&made, [4, 4, 3, 1]));
     (scene, picture, bytes)
 }
 
 #[test]
 fn rectangles_differ_and_pictures_do_not() {
-    let (scene, picture, made) = followed(0, Film::new(6, 5).unwrap());
+    let (scene, picture, made) = recorded();
     let part = |samples: std::ops::Range<usize>| {
         let samples = made.samples[samples].to_vec();
         PathRecording { given: made.given.clone(), samples }
@@ -87,22 +127,11 @@ fn rectangles_differ_and_pictures_do_not() {
     let mut samples = LitSamples::new(Box::new(Cursor::new(Vec::new())));
     samples.add(LitRecording::Paths(&part(0..1))).unwrap();
     // One pixel of the second sample.
-    let mut other = part(1..2);
-    (other.given.origin, other.given.size) = ([3, 2], [1, 1]);
-    let pixel = 2 * 6 + 3;
-    let sample = &mut other.samples[0];
-    sample.start = vec![sample.start[pixel]];
-    sample.film.before = vec![sample.film.before[pixel]];
-    sample.film.after = vec![sample.film.after[pixel]];
-    for surface in &mut sample.surfaces {
-        surface.hits = vec![surface.hits[pixel]];
-        surface.scattered = vec![surface.scattered[pixel]];
-        surface.open = vec![surface.open[pixel]];
-    }
+    let mut other = cut(&part(1..2), [3, 2, 1, 1]);
     samples.add(LitRecording::Paths(&other)).unwrap();
     let bytes = written(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
     let certificate = replayed(&bytes).unwrap().unwrap();
-    assert_eq!((certificate.paths, certificate.violation_count), (31, 0), "{certificate}");
+    assert_eq!((certificate.paths, certificate.violation_count), (109, 0), "{certificate}");
     // Lists that do not have the size of the rectangle, and samples of another picture.
     other.given.size = [2, 1];
     assert!(samples.add(LitRecording::Paths(&other)).is_err());
@@ -139,30 +168,20 @@ fn every_byte_that_is_another_or_missing_is_noticed() {
 #[test]
 fn hostile_contents_with_a_right_digest() {
     let (scene, _, bytes) = small();
-    let file = safetensors::SafeTensors::deserialize(&bytes).unwrap();
-    let kept = file.tensor("sample_0_pixels").unwrap().shape()[0];
-    assert!(kept > 3, "{kept}");
     let request = "the light is not that of this scene and these settings";
     let word = |word: u32| word.to_le_bytes();
     for (name, at, numbers, words) in [
         // Something else was requested.
-        ("settings", 8, &9_f64.to_le_bytes()[..], request),
-        ("settings", 32, &5_f64.to_le_bytes(), request),
-        ("camera", 0, &1_f64.to_le_bytes(), request),
+        ("camera", 0, &1_f64.to_le_bytes()[..], request),
         ("palette", 0, &word(0), request),
         // Samples of no picture.
         ("sample_0_place", 4, &word(2), "the rectangle of sample 0 is not in the picture"),
         ("sample_1_place", 12, &word(0), "the rectangle of sample 1 is not in the picture"),
         ("sample_1_place", 12, &word(u32::MAX), "the rectangle of sample 1"),
         ("sample_0_place", 16, &word(2), "the rectangle of sample 0"),
-        ("sample_0_pixels", 0, &word(2), "not ascending pixels of its rectangle"),
-        ("sample_0_pixels", 4, &word(0), "not ascending pixels of its rectangle"),
-        ("sample_0_counts", 0, &word(u32::MAX), "not ascending pixels of its rectangle"),
-        ("sample_0_counts", 0, &word(0), "a surface are not ascending|belong to no surface"),
     ] {
         let error = replayed(&with_numbers(&bytes, name, at, numbers)).unwrap_err();
-        let words = words.split('|').find(|words| error.to_string().contains(words));
-        is_contradiction(&error, words.unwrap_or("one of the expected texts"));
+        is_contradiction(&error, words);
     }
     for (from, to, words) in [
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"3\"", "`sample_2_place` is missing"),
@@ -170,6 +189,11 @@ fn hostile_contents_with_a_right_digest() {
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"5000\"", "there must be 1 to 4096"),
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"two\"", "`lit_samples` is not a valid number"),
         ("\"sample_0_open\"", "\"sample_0_oven\"", "`sample_0_open` is missing"),
+        // Something else was requested, what says nothing, and no number.
+        ("\\\"max_depth\\\":", "\\\"max_depth\\\":1", request),
+        ("\\\"sampling\\\":", "\\\"samplings\\\":", request),
+        ("\"given\":\"{", "\"given\":\"[", "the text `given`: "),
+        ("\\\"zenith\\\":[", "\\\"zenith\\\":[null,", "the text `given`: "),
         ("\"tables\"", "\"tablet\"", "the array `tables` is missing"),
         ("\"request_sha256\"", "\"request_sha257\"", "the text `request_sha256` is missing"),
         ("\"sample_0_start\"", "\"sample_1_start\"", "header"),
@@ -184,15 +208,6 @@ fn hostile_contents_with_a_right_digest() {
     let [before, after] = [&scene, &other].map(run_file::scene_sha256);
     let error = replayed(&with_header(&sphere, &before, &after)).unwrap_err();
     is_contradiction(&error, request);
-}
-
-/// A file of an earlier version has no light.
-#[test]
-fn earlier_versions_have_no_light() {
-    let (scene, picture, _) = small();
-    let bytes = written(&scene, &picture, Extras::default());
-    let older = with_header(&bytes, "\"pinhole_run\":\"4\"", "\"pinhole_run\":\"3\"");
-    assert_eq!(replayed(&older).unwrap(), None);
 }
 
 #[test]

@@ -179,9 +179,9 @@ fn runs_that_are_damaged() {
     let whole = folder.read("run");
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"4\"").unwrap();
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"5\"").unwrap();
     // The number of the version is replaced by another of the same length.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"4\""));
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"5\""));
     let mut other = whole.clone();
     other[version + 15] = b'7';
     for (name, contents, words) in [
@@ -190,7 +190,7 @@ fn runs_that_are_damaged() {
         (
             "other",
             &other,
-            "other: this is a run file of version 7, and this program reads the versions 2 to 4",
+            "other: run file of version 7; this program reads version 5; record it again with `verify --save`",
         ),
         (
             "none",

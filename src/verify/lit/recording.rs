@@ -182,6 +182,7 @@ pub(in crate::verify) mod flag {
 
 /// The parameters of the lighting on the device: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct UploadedLighting {
     /// Colour where a ray hits nothing.
     pub background: [f32; 3],

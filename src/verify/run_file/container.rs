@@ -15,7 +15,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::numbers::{Array, Number, Sink};
-use super::{READ, RunFileError, VERSION, hex};
+use super::{RunFileError, VERSION, hex};
 use crate::parallel::try_map;
 use crate::text::shortened;
 
@@ -169,7 +169,7 @@ impl<'a> Container<'a> {
             .map_err(|error| contradiction(format!("its header cannot be read: {error}")))?;
         match text(&parsed, FORMAT) {
             None => return Err(RunFileError::NotRun),
-            Some(version) if READ.contains(&version) => {}
+            Some(VERSION) => {}
             Some(other) => return Err(RunFileError::Version { found: shortened(other) }),
         }
         let (promised, arrays) = (parsed.data_len() as u64, beyond - header_length);

@@ -4,44 +4,65 @@ use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::container::{Container, contradiction, sink_into};
 use super::numbers::Array;
-use super::settings::{self, LightNumbers};
 use super::{RunFileError, hex};
+use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
 use crate::light::environment::Environment;
+use crate::render::RenderSettings;
+use crate::text::shortened;
 use crate::verify::lit::{LitInputs, UploadedLighting, UploadedSky};
 use crate::verify::recording::UploadedView;
 
 /// The metadata key of the digest of what was requested.
 const REQUEST: &str = "request_sha256";
 
+/// The metadata keys of what was requested, and of what the device was given, as JSON.
+const SETTINGS: &str = "requested";
+const GIVEN: &str = "given";
+
 /// The arrays of what was requested, of which some may be absent.
-const REQUESTED: [&str; 11] = [
+const REQUESTED: [&str; 9] = [
     "camera",
     "color_index",
     "color_rgba8",
-    "lights",
     "palette",
     "scene_origin",
-    "settings",
     "sky_texels",
     "spheres",
     "surface_index",
     "surfaces",
 ];
 
-/// The number of words of [`lighting_words`].
-const WORDS: usize = 45;
+/// What was requested, as JSON. The image of a sky is in arrays.
+#[derive(Serialize, Deserialize)]
+struct Requested {
+    settings: RenderSettings,
+    sky_image: Option<SkyImage>,
+}
+
+/// How the image of a sky is used.
+#[derive(Serialize, Deserialize)]
+struct SkyImage {
+    strength: f32,
+    rotation: f64,
+}
+
+/// What the device was given, as JSON.
+#[derive(Serialize, Deserialize)]
+struct Given {
+    max_surfaces: u32,
+    lighting: UploadedLighting,
+}
 
 /// The arrays that are computed from a [`LitInputs`].
 pub(super) struct LitArrays<'a> {
     given: &'a LitInputs,
-    settings: Vec<f64>,
-    lights: Vec<LightNumbers>,
-    lighting: [u32; WORDS],
     view: [[f32; 3]; 7],
     /// The image of the sky, and whether the device had another.
     sky: Option<(&'a Environment, &'a UploadedSky, bool)>,
@@ -57,14 +78,7 @@ impl<'a> LitArrays<'a> {
             }
             _ => None,
         };
-        Self {
-            given,
-            settings: settings::numbers(&given.settings),
-            lights: given.settings.lights.iter().map(settings::light_numbers).collect(),
-            lighting: lighting_words(&given.lighting),
-            view: view_numbers(&given.uploaded),
-            sky,
-        }
+        Self { given, view: view_numbers(&given.uploaded), sky }
     }
 
     /// Adds the arrays and texts to those of a file.
@@ -73,17 +87,25 @@ impl<'a> LitArrays<'a> {
         arrays: &mut Vec<Array<'b>>,
         texts: &mut BTreeMap<String, String>,
     ) -> io::Result<()> {
-        let LitInputs { uploaded, occluders, lighting, tables, emitters, max_surfaces, .. } =
+        let LitInputs { settings, uploaded, occluders, lighting, tables, emitters, .. } =
             self.given;
-        texts.insert("max_surfaces".to_owned(), max_surfaces.to_string());
+        let mut settings = settings.clone();
+        let sky_image = match settings.sky.light {
+            SkyLight::Image { strength, rotation, .. } => {
+                settings.sky.light = SkyLight::Constant(LinearRgb::BLACK);
+                Some(SkyImage { strength, rotation })
+            }
+            SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
+        };
+        let requested = Requested { settings, sky_image };
+        let max_surfaces = self.given.max_surfaces;
+        let given = Given { max_surfaces, lighting: lighting.clone() };
+        texts.insert(SETTINGS.to_owned(), serde_json::to_string(&requested)?);
+        texts.insert(GIVEN.to_owned(), serde_json::to_string(&given)?);
         arrays.extend([
-            Array::new("settings", &[self.settings.len()], &self.settings, |number| [*number]),
-            Array::new("lights", &[self.lights.len()], &self.lights, |light| *light),
             Array::new("lit_view", &[7], &self.view, |vector| *vector),
             Array::new("lit_advance", &[1], std::slice::from_ref(&uploaded.advance), |x| [*x]),
             Array::new("occluders", &[2], occluders, |corner| *corner),
-            Array::new("lighting", &[WORDS], &self.lighting, |word| [*word]),
-            Array::new("filter", &[lighting.filter_table.len()], &lighting.filter_table, |x| [*x]),
             Array::new("tables", &[tables.len()], tables, |four| *four),
             Array::new("emitters", &[emitters.len()], emitters, |four| *four),
         ]);
@@ -117,7 +139,7 @@ fn request<E>(
     emit: impl Fn(&str, &mut Sha256) -> Result<bool, E>,
 ) -> Result<String, E> {
     let mut all = Sha256::new();
-    for key in ["camera", "y_axis"] {
+    for key in ["camera", "y_axis", SETTINGS] {
         all.update(texts.get(key).map(String::as_bytes).unwrap_or_default());
         all.update([0]);
     }
@@ -167,12 +189,12 @@ pub(super) fn read(
         ));
     }
     let length = |name| file.shape(name).map(|shape| shape.first().copied().unwrap_or_default());
-    let [settings, lights] = ["settings", "lights"].map(length);
-    let settings = file.numbers::<f64>("settings", &[settings?])?;
-    let lights = file.items::<f64, 9>("lights", &[lights?])?;
-    let settings = settings::settings(&settings, &lights, || sky(file))?;
+    let Requested { mut settings, sky_image } = json(file, SETTINGS)?;
+    if let Some(SkyImage { strength, rotation }) = sky_image {
+        settings.sky.light = SkyLight::Image { environment: sky(file)?, strength, rotation };
+    }
+    let Given { max_surfaces, lighting } = json(file, GIVEN)?;
     let words = |name| file.items::<u32, 4>(name, &[length(name)?]);
-    let filter_table = file.numbers("filter", &[length("filter")?])?;
     let uploaded_sky = match &settings.sky.light {
         SkyLight::Image { environment, .. } => Some(if file.has("sky_uploaded") {
             UploadedSky {
@@ -193,11 +215,8 @@ pub(super) fn read(
         origin: [0; 2],
         size: [0; 2],
         settings,
-        max_surfaces: file.whole("max_surfaces")?,
-        lighting: lighting(
-            file.fixed::<u32, 1, WORDS>("lighting")?.map(|[word]| word),
-            filter_table,
-        ),
+        max_surfaces,
+        lighting,
         tables: words("tables")?,
         emitters: words("emitters")?,
         sky: uploaded_sky,
@@ -214,91 +233,9 @@ fn sky(file: &Container<'_>) -> Result<Arc<Environment>, RunFileError> {
     environment.map(Arc::new).map_err(|error| contradiction(format!("the sky: {error}")))
 }
 
-/// The parameters as bits, in the order of their fields.
-fn lighting_words(lighting: &UploadedLighting) -> [u32; WORDS] {
-    let UploadedLighting {
-        background,
-        flags,
-        light_count,
-        zenith,
-        horizon,
-        nadir,
-        roulette_from,
-        source_count,
-        light_sampling,
-        ground_normal,
-        ground_point,
-        ground_color,
-        seed,
-        emitter_count,
-        material_first,
-        environment_size,
-        environment_rotation,
-        environment_strength,
-        ambient,
-        cue_color,
-        cue_near,
-        cue_scale,
-        occlusion_radius,
-        occlusion_samples,
-        lamp_sources,
-        filter_table: _,
-    } = lighting;
-    let mut words = Vec::with_capacity(WORDS);
-    let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-    words.extend(bits(background));
-    words.extend([*flags, *light_count]);
-    words.extend([zenith, horizon, nadir].into_iter().flat_map(|color| bits(color)));
-    words.extend([*roulette_from, *source_count, *light_sampling]);
-    words.extend([ground_normal, ground_point, ground_color].into_iter().flat_map(|v| bits(v)));
-    words.extend([*seed, *emitter_count, *material_first]);
-    words.extend(environment_size);
-    words.extend(bits(environment_rotation));
-    words.extend(bits(&[*environment_strength]));
-    words.extend([ambient, cue_color].into_iter().flat_map(|color| bits(color)));
-    words.extend(bits(&[*cue_near, *cue_scale, *occlusion_radius]));
-    words.extend([*occlusion_samples, *lamp_sources]);
-    std::array::from_fn(|index| words.get(index).copied().unwrap_or_default())
-}
-
-/// The inverse of [`lighting_words`].
-fn lighting(words: [u32; WORDS], filter_table: Vec<f32>) -> UploadedLighting {
-    let mut all = words.into_iter();
-    let mut word = || all.next().unwrap_or_default();
-    let mut lighting = UploadedLighting { filter_table, ..UploadedLighting::default() };
-    let number = f32::from_bits;
-    lighting.background = std::array::from_fn(|_| number(word()));
-    (lighting.flags, lighting.light_count) = (word(), word());
-    for color in [&mut lighting.zenith, &mut lighting.horizon, &mut lighting.nadir] {
-        *color = std::array::from_fn(|_| number(word()));
-    }
-    (lighting.roulette_from, lighting.source_count) = (word(), word());
-    lighting.light_sampling = word();
-    let UploadedLighting { ground_normal, ground_point, ground_color, .. } = &mut lighting;
-    for vector in [ground_normal, ground_point, ground_color] {
-        *vector = std::array::from_fn(|_| number(word()));
-    }
-    (lighting.seed, lighting.emitter_count) = (word(), word());
-    lighting.material_first = word();
-    lighting.environment_size = [word(), word()];
-    lighting.environment_rotation = [number(word()), number(word())];
-    lighting.environment_strength = number(word());
-    for color in [&mut lighting.ambient, &mut lighting.cue_color] {
-        *color = std::array::from_fn(|_| number(word()));
-    }
-    (lighting.cue_near, lighting.cue_scale) = (number(word()), number(word()));
-    lighting.occlusion_radius = number(word());
-    (lighting.occlusion_samples, lighting.lamp_sources) = (word(), word());
-    lighting
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_become_the_same_words_again() {
-        let words = std::array::from_fn(|index| 0x3f80_0000 + index as u32);
-        assert_eq!(lighting_words(&lighting(words, Vec::new())), words);
-    }
+/// A text that is JSON.
+fn json<T: DeserializeOwned>(file: &Container<'_>, key: &str) -> Result<T, RunFileError> {
+    serde_json::from_str(file.text(key)?).map_err(|error| {
+        contradiction(format!("the text `{key}`: {}", shortened(&error.to_string())))
+    })
 }

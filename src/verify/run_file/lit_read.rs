@@ -3,13 +3,12 @@
 use super::RunFileError;
 use super::container::{Container, contradiction};
 use super::lit_inputs;
-use super::lit_kept::Kept;
 use super::lit_samples::{MAX_SAMPLE_BYTES, MAX_SAMPLES, bytes_in_memory, name_of};
 use crate::render::Integrator;
 use crate::scene::Scene;
 use crate::verify::lit::{LitInputs, PathState, RecordedFilm};
-use crate::verify::paths::RecordedSample;
-use crate::verify::studio::{StudioLight, StudioSample};
+use crate::verify::paths::{RecordedSample, RecordedSurface};
+use crate::verify::studio::{StudioLight, StudioSample, StudioSurface};
 use crate::verify::{LitRecording, PathRecording, Recording, StudioRecording};
 
 /// The metadata key of the number of samples.
@@ -84,8 +83,9 @@ impl Sample<'_, '_> {
         Ok(sample)
     }
 
-    fn states(self, array: &str, count: usize) -> Result<Vec<PathState>, RunFileError> {
-        let slots = self.file.items::<u32, 4>(&self.name(array), &[count, PathState::SLOTS])?;
+    fn states(self, array: &str, shape: &[usize]) -> Result<Vec<PathState>, RunFileError> {
+        let shape = [shape, &[PathState::SLOTS]].concat();
+        let slots = self.file.items::<u32, 4>(&self.name(array), &shape)?;
         let (all, _) = slots.as_chunks();
         Ok(all.iter().map(|slots| PathState { slots: *slots }).collect())
     }
@@ -95,57 +95,73 @@ impl Sample<'_, '_> {
         Ok(sums.as_chunks().0.to_vec())
     }
 
-    /// The states at the camera and the sums, and what is kept of all surfaces apart from light.
-    fn common(
-        self,
-        given: &LitInputs,
-        batches: usize,
-    ) -> Result<(Vec<PathState>, RecordedFilm, Kept), RunFileError> {
-        let Self { file, .. } = self;
-        let length = |array| {
-            let shape = file.shape(&self.name(array))?;
-            Ok::<_, RunFileError>(shape.first().copied().unwrap_or_default())
-        };
-        let surfaces = length("counts")?;
+    /// The numbers of surfaces and of pixels of a sample.
+    fn shape(self, given: &LitInputs, batches: usize) -> Result<[usize; 2], RunFileError> {
+        let shape = self.file.shape(&self.name("hits"))?;
+        let surfaces = shape.first().copied().unwrap_or_default();
         let bytes = bytes_in_memory([given.pixels(), surfaces as u64, batches as u64]);
         if bytes > MAX_SAMPLE_BYTES {
             return Err(RunFileError::Memory { name: self.name("states"), bytes });
         }
-        let (pixels, kept) = (given.pixels() as usize, length("pixels")?);
-        let film = RecordedFilm {
+        Ok([surfaces, given.pixels() as usize])
+    }
+
+    fn film(self, pixels: usize) -> Result<RecordedFilm, RunFileError> {
+        Ok(RecordedFilm {
             before: self.sums("before", pixels)?,
             after: self.sums("after", pixels)?,
-        };
-        let kept = Kept {
-            counts: file.numbers(&self.name("counts"), &[surfaces])?,
-            pixels: file.numbers(&self.name("pixels"), &[kept])?,
-            hits: file.items(&self.name("hits"), &[kept])?,
-            states: self.states("states", kept)?,
-            ..Kept::default()
-        };
-        Ok((self.states("start", pixels)?, film, kept))
+        })
     }
 
     fn paths(self, sample: u32, given: &LitInputs) -> Result<RecordedSample, RunFileError> {
-        let (start, film, mut kept) = self.common(given, 0)?;
-        kept.open = self.file.numbers(&self.name("open"), &[kept.pixels.len()])?;
-        let surfaces = kept.paths(&start)?;
-        Ok(RecordedSample { sample, start, surfaces, film })
+        let Self { file, .. } = self;
+        let shape @ [_, pixels] = self.shape(given, 0)?;
+        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
+        let states = self.states("states", &shape)?;
+        let open = file.numbers::<u32>(&self.name("open"), &shape)?;
+        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).zip(open.chunks(pixels));
+        let surface = |((hits, scattered), open): ((&[_], &[_]), &[_])| RecordedSurface {
+            hits: hits.to_vec(),
+            scattered: scattered.to_vec(),
+            open: open.to_vec(),
+        };
+        Ok(RecordedSample {
+            sample,
+            start: self.states("start", &[pixels])?,
+            surfaces: surfaces.map(surface).collect(),
+            film: self.film(pixels)?,
+        })
     }
 
     fn studio(self, sample: u32, given: &LitInputs) -> Result<StudioSample, RunFileError> {
         let Self { file, .. } = self;
         let batches = file.shape(&self.name("hidden"))?.get(1).copied().unwrap_or_default();
-        let (start, film, mut kept) = self.common(given, batches)?;
-        let shape = [kept.pixels.len(), batches];
-        kept.lights = StudioLight {
-            hidden: file.numbers(&self.name("hidden"), &shape)?,
-            radiance: file.items(&self.name("radiance"), &shape)?,
-            left: file.numbers(&self.name("left"), &shape)?,
-        };
+        let shape @ [surfaces, pixels] = self.shape(given, batches)?;
+        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
+        let states = self.states("states", &shape)?;
+        let of_lights = [surfaces, batches, pixels];
+        let hidden = file.numbers::<u32>(&self.name("hidden"), &of_lights)?;
+        let radiance = file.items::<u32, 4>(&self.name("radiance"), &of_lights)?;
+        let left = file.numbers::<u32>(&self.name("left"), &of_lights)?;
+        let lights = hidden.chunks(pixels).zip(radiance.chunks(pixels)).zip(left.chunks(pixels));
+        let mut lights = lights.map(|((hidden, radiance), left)| StudioLight {
+            hidden: hidden.to_vec(),
+            radiance: radiance.to_vec(),
+            left: left.to_vec(),
+        });
         // The others are of ambient light.
-        let lights = (given.lighting.light_count.div_ceil(32) as usize).min(batches);
-        let surfaces = kept.studio(&start, [lights, batches - lights])?;
-        Ok(StudioSample { sample, start, surfaces, film })
+        let of_lights = (given.lighting.light_count.div_ceil(32) as usize).min(batches);
+        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).map(|(hits, shaded)| {
+            let (hits, shaded) = (hits.to_vec(), shaded.to_vec());
+            let mut next = |count| lights.by_ref().take(count).collect();
+            let (lights, ambient) = (next(of_lights), next(batches - of_lights));
+            StudioSurface { hits, shaded, lights, ambient }
+        });
+        Ok(StudioSample {
+            sample,
+            start: self.states("start", &[pixels])?,
+            surfaces: surfaces.collect(),
+            film: self.film(pixels)?,
+        })
     }
 }

@@ -2,15 +2,14 @@
 //! file until the recording is complete.
 
 use std::cell::RefCell;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
 use super::container::in_pieces;
-use super::lit_kept::Kept;
 use super::numbers::{Array, Number};
 use crate::verify::LitRecording;
 use crate::verify::lit::{LitInputs, PathState, RecordedFilm};
 use crate::verify::paths::RecordedSample;
-use crate::verify::studio::{StudioLight, StudioSample};
+use crate::verify::studio::StudioSample;
 
 /// The largest number of samples in a run file.
 pub const MAX_SAMPLES: u32 = 4096;
@@ -77,7 +76,14 @@ impl LitSamples {
                 let RecordedSample { sample, start, surfaces, film } = sample;
                 self.check(start.len(), surfaces.len(), 0)?;
                 self.keep_sample([&[*sample], &place[..]].concat(), start, film)?;
-                self.keep_surfaces(&Kept::of_paths(start, surfaces), None)
+                let shape = [surfaces.len(), start.len()];
+                let hits = surfaces.iter().flat_map(|surface| &surface.hits);
+                let states = surfaces.iter().flat_map(|surface| words_of(&surface.scattered));
+                self.keep_hits(shape, hits.flatten().copied(), states)?;
+                let open = surfaces.iter().flat_map(|surface| &surface.open);
+                self.keep("open", &shape, open.copied())?;
+                self.count += 1;
+                Ok(())
             }),
             LitRecording::Studio(studio) => studio.samples.iter().try_for_each(|sample| {
                 let StudioSample { sample, start, surfaces, film } = sample;
@@ -85,7 +91,23 @@ impl LitSamples {
                 let batches = of_first.map_or(0, |first| first.lights.len() + first.ambient.len());
                 self.check(start.len(), surfaces.len(), batches)?;
                 self.keep_sample([&[*sample], &place[..]].concat(), start, film)?;
-                self.keep_surfaces(&Kept::of_studio(start, surfaces), Some(batches))
+                let shape = [surfaces.len(), start.len()];
+                let hits = surfaces.iter().flat_map(|surface| &surface.hits);
+                let states = surfaces.iter().flat_map(|surface| words_of(&surface.shaded));
+                self.keep_hits(shape, hits.flatten().copied(), states)?;
+                let lights = || {
+                    surfaces
+                        .iter()
+                        .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
+                };
+                let shape = [surfaces.len(), batches, start.len()];
+                self.keep("hidden", &shape, lights().flat_map(|light| &light.hidden).copied())?;
+                let radiance = lights().flat_map(|light| light.radiance.as_flattened());
+                let of_radiance = [&shape[..], &[4]].concat();
+                self.keep("radiance", &of_radiance, radiance.copied())?;
+                self.keep("left", &shape, lights().flat_map(|light| &light.left).copied())?;
+                self.count += 1;
+                Ok(())
             }),
         }
     }
@@ -108,51 +130,43 @@ impl LitSamples {
         film: &RecordedFilm,
     ) -> io::Result<()> {
         let pixels = start.len();
-        self.keep("place", vec![place.len()], place.into_iter())?;
-        self.keep("start", vec![pixels, PathState::SLOTS, 4], words_of(start))?;
+        self.keep("place", &[place.len()], place.into_iter())?;
+        self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
         for (name, sums) in [("before", &film.before), ("after", &film.after)] {
-            self.keep(name, vec![pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
+            self.keep(name, &[pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
         }
         Ok(())
     }
 
-    /// Keeps the surfaces of a sample, of a studio with a number of batches, and ends the sample.
-    fn keep_surfaces(&mut self, kept: &Kept, batches: Option<usize>) -> io::Result<()> {
-        let Kept { counts, pixels, hits, states, open, lights } = kept;
-        let count = pixels.len();
-        self.keep("counts", vec![counts.len()], counts.iter().copied())?;
-        self.keep("pixels", vec![count], pixels.iter().copied())?;
-        self.keep("hits", vec![count, 4], hits.iter().flatten().copied())?;
-        self.keep("states", vec![count, PathState::SLOTS, 4], words_of(states))?;
-        match batches {
-            None => self.keep("open", vec![count], open.iter().copied())?,
-            Some(batches) => {
-                let StudioLight { hidden, radiance, left } = lights;
-                self.keep("hidden", vec![count, batches], hidden.iter().copied())?;
-                let words = radiance.iter().flatten().copied();
-                self.keep("radiance", vec![count, batches, 4], words)?;
-                self.keep("left", vec![count, batches], left.iter().copied())?;
-            }
-        }
-        self.count += 1;
-        Ok(())
+    fn keep_hits(
+        &mut self,
+        [surfaces, pixels]: [usize; 2],
+        hits: impl Iterator<Item = u32>,
+        states: impl Iterator<Item = u32>,
+    ) -> io::Result<()> {
+        self.keep("hits", &[surfaces, pixels, 4], hits)?;
+        self.keep("states", &[surfaces, pixels, PathState::SLOTS, 4], states)
     }
 
     /// Writes an array to the end of the spool.
     fn keep(
         &mut self,
         name: &str,
-        shape: Vec<usize>,
+        shape: &[usize],
         words: impl Iterator<Item = u32>,
     ) -> io::Result<()> {
         let name = name_of(self.count, name);
-        let mut bytes = Vec::new();
-        words.for_each(|word| word.push(&mut bytes));
         let spool = self.spool.get_mut();
         spool.seek(SeekFrom::Start(self.end))?;
-        spool.write_all(&bytes)?;
-        self.arrays.push((name, shape, self.end));
-        self.end += bytes.len() as u64;
+        let mut out = BufWriter::new(spool);
+        let mut end = self.end;
+        for word in words {
+            out.write_all(&word.to_le_bytes())?;
+            end += u32::WIDTH as u64;
+        }
+        out.flush()?;
+        self.arrays.push((name, shape.to_vec(), self.end));
+        self.end = end;
         Ok(())
     }
 

@@ -31,28 +31,22 @@
 //!
 //! | array | type, shape | |
 //! |---|---|---|
-//! | `settings` | f64 (…,) | numbers of [`RenderSettings`](crate::RenderSettings) in the order of its fields, with 0 or 1 before what is optional; without lights and the sky's image |
-//! | `lights` | f64 (…, 9) | kind (0 head, 1 directional, 2 point, 3 sphere), frame (0 world, 1 camera), position or direction, colour, size |
 //! | `sky_texels` | f32 (h, w, 3) | the image of the sky |
 //! | `sky_uploaded`, `sky_shares` | f32 (hw, 3), f32 (…,) | the image on the device and its tables, if they differ |
 //! | `lit_view`, `lit_advance` | like `view`, `advance` | |
 //! | `occluders` | f32 (2, 3) | `occluders` of [`LitInputs`](super::LitInputs) |
-//! | `lighting`, `filter` | u32 (45,), f32 (257,) | parameters of the lighting on the device, as bits; the table of the pixel filter |
 //! | `tables`, `emitters` | u32 (…, 4) | tables on the device, as bits |
 //!
-//! and for each sample i from 0 on, with P pixels in its rectangle and S surfaces, the arrays `sample_i_…`. Of each
-//! surface, pixels are left out whose ray has ended before it; K is the sum of all others:
+//! and for each sample i from 0 on, with P pixels in its rectangle and S surfaces, the arrays `sample_i_…`:
 //!
 //! | array | type, shape | |
 //! |---|---|---|
 //! | `place` | u32 (5,) | index of the sample in its pixels; first column and row, width and height of the rectangle |
 //! | `start` | u32 (P, 9, 4) | the states of the rays at the camera, as bits |
 //! | `before`, `after` | u32 (P, 3, 4) | the sums of the pixels without and with the sample, as bits |
-//! | `counts` | u32 (S,) | the number of pixels of each surface |
-//! | `pixels` | u32 (K,) | their indices in the rectangle |
-//! | `hits`, `states` | u32 (K, 4), (K, 9, 4) | the hits, and the states after shading, as bits |
-//! | `open` | u32 (K,) | along paths: the visibility of the light, as bits |
-//! | `hidden`, `radiance`, `left` | u32 (K, B), (K, B, 4), (K, B) | in studios: for each 32 lights and each 32 directions the hidden ones, the radiance with the others, and the bits that are left |
+//! | `hits`, `states` | u32 (S, P, 4), (S, P, 9, 4) | the hits, and the states after shading, as bits |
+//! | `open` | u32 (S, P) | along paths: the visibility of the light, as bits |
+//! | `hidden`, `radiance`, `left` | u32 (S, B, P), (S, B, P, 4), (S, B, P) | in studios: for each 32 lights and each 32 directions the hidden ones, the radiance with the others, and the bits that are left |
 //!
 //! and, if they were made,
 //!
@@ -66,7 +60,9 @@
 //! file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array `spheres`;
 //! `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also rendered without
 //! recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. With light, `lit_samples` is the
-//! number of samples, at most [`MAX_SAMPLES`]; `max_surfaces` is that of [`LitInputs`](super::LitInputs); and
+//! number of samples, at most [`MAX_SAMPLES`]; `requested` and `given`
+//! are JSON: [`RenderSettings`](crate::RenderSettings), with strength and rotation of the sky's image apart, and what
+//! the device was given for them: the parameters of the lighting, and `max_surfaces` of [`LitInputs`](super::LitInputs); and
 //! `request_sha256` is a digest of what was requested: scene, camera, settings, lights and sky. The same run gives the
 //! same file, to the byte.
 //!
@@ -75,13 +71,11 @@
 
 mod container;
 mod lit_inputs;
-mod lit_kept;
 mod lit_read;
 mod lit_samples;
 mod numbers;
 mod pictures;
 mod read;
-mod settings;
 mod surfaces;
 mod write;
 
@@ -99,12 +93,8 @@ pub use pictures::ShownPicture;
 pub use read::{RunFile, read};
 pub use write::{Extras, write, write_with};
 
-/// The version of the format that this crate writes. It also reads versions 2 and 3: version 3 has no light and no
-/// properties of surfaces, and version 2 also no rays of shading.
-pub const VERSION: &str = "4";
-
-/// The versions that this crate reads.
-const READ: [&str; 3] = ["2", "3", VERSION];
+/// The version of the format that this crate writes and reads.
+pub const VERSION: &str = "5";
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
@@ -176,8 +166,7 @@ pub enum RunFileError {
     },
     /// The file has another version of the format.
     #[error(
-        "this is a run file of version {found}, and this program reads the versions 2 to {VERSION}; \
-         use the program that wrote it"
+        "run file of version {found}; this program reads version {VERSION}; record it again with `verify --save`"
     )]
     Version {
         /// The version of the file.

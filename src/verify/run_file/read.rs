@@ -52,7 +52,7 @@ impl<'a> RunFile<'a> {
 
     /// Reads the samples of the lit picture, one after the other, and calls `each` with a recording of every one, as
     /// [`Headless::record_lit`](crate::gpu::Headless::record_lit) does. `run` is what [`RunFile::run`] returns. Returns
-    /// whether the file has light; files of versions before 4 have none.
+    /// whether the file has light.
     ///
     /// # Errors
     /// Returns an error if what was requested of the lighting or the shape of a sample is not valid.
@@ -159,7 +159,7 @@ fn image(
     .ok_or_else(|| contradiction("the layers have different sizes"))
 }
 
-/// The picture rendered without recording; files of earlier versions have none.
+/// The picture rendered without recording, if there is one.
 fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError> {
     const LAYERS: [&str; 4] =
         ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
@@ -194,15 +194,13 @@ fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
 
 fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, RunFileError> {
     let traced = Rays::read(file, shape, "traced", "ray")?;
-    // Files of version 2 have none.
-    let shaded = file.has("shaded").then(|| Rays::read(file, shape, "shaded", "shading"));
-    let shaded = shaded.transpose()?;
+    let shaded = Rays::read(file, shape, "shaded", "shading")?;
     let (t, ids) = (file.numbers("hit_t", shape)?, file.numbers("hit_id", shape)?);
     let pixel = |index: usize| TracedPixel {
         ray: traced.at(index),
         t: t[index],
         id: ids[index],
-        shading_ray: shaded.as_ref().and_then(|shaded| shaded.at(index)),
+        shading_ray: shaded.at(index),
     };
     try_map(t.len(), pixel).map_err(|_| RunFileError::Memory {
         name: "pixels".to_owned(),

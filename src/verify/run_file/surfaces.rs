@@ -25,7 +25,7 @@ fn surface([kind, a, b, c, opacity]: [f32; 5]) -> Option<SurfaceProperties> {
     Some(SurfaceProperties { material, opacity })
 }
 
-/// Adds the surfaces of a file with so many spheres; files of earlier versions have none.
+/// Adds the surfaces of a file with so many spheres; without any, they are the default.
 pub(super) fn with_surfaces(
     file: &Container<'_>,
     appearance: Appearance,

@@ -40,9 +40,8 @@ pub fn write(
     write_with(scene, recording, provenance, Extras::default(), out)
 }
 
-/// Writes a run file with what [`write()`] writes, and with the light of the picture. Each sample has 336 bytes for each
-/// pixel of its rectangle, and for each surface to which the pixel's ray is followed 168, or in studios 164 and 24 for
-/// each 32 lights or directions.
+/// Writes a run file with what [`write()`] writes, and with the light of the picture. Each sample has 240 bytes for each
+/// pixel of its rectangle, and for each of its surfaces 164, or in studios 160 and 24 for each 32 lights or directions.
 ///
 /// # Errors
 /// The same as for [`write()`]; and if the samples have another camera or film than the recording, or the noisy picture
