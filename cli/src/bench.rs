@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
-use super::adapter::AdapterReport;
+use super::adapter::{AdapterReport, DEVICE_CLOCK};
 use super::args::BenchArgs;
-use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
+use super::bench_report::{BenchReport, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;

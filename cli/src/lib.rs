@@ -33,12 +33,15 @@ mod deadline;
 mod demo;
 mod device;
 #[cfg(feature = "gpu")]
+mod device_error;
+#[cfg(feature = "gpu")]
 mod dump_shaders;
 mod encoding;
 mod excluded_flags;
 mod failure;
 mod file_info;
 mod file_info_text;
+mod file_report;
 mod frames;
 mod generate;
 mod info;
@@ -61,6 +64,9 @@ mod profile;
 #[cfg(feature = "gpu")]
 mod profile;
 mod progress;
+mod progress_line;
+#[cfg(feature = "gpu")]
+mod quick_test;
 mod read_file;
 mod removed;
 mod render;
@@ -81,6 +87,7 @@ mod verify_denoiser;
 mod verify_help;
 mod verify_kept;
 mod verify_light;
+mod verify_listed;
 mod verify_lit;
 mod verify_open;
 mod verify_output;
