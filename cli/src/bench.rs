@@ -10,7 +10,7 @@ use super::bench_report::{BenchReport, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
-use super::input::parse_size;
+use super::input_format::parse_size;
 use super::speak::{answer, tell};
 use super::with_scene::watch_upload;
 use super::{interrupt, memory, process, progress, threads};
