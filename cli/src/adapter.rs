@@ -3,10 +3,16 @@
 use serde::Serialize;
 
 #[cfg(feature = "gpu")]
-use super::bench_report::{DEVICE_CLOCK, HOST_CLOCK};
-#[cfg(feature = "gpu")]
 use pinhole::gpu::Headless;
 use pinhole::verify::run_file::Provenance;
+
+/// Name of the device's own clock.
+#[cfg(feature = "gpu")]
+pub(super) const DEVICE_CLOCK: &str = "device";
+
+/// Name of the host's clock. The clock of a software device measures when commands were queued, not when they ran.
+#[cfg(feature = "gpu")]
+const HOST_CLOCK: &str = "host";
 
 #[derive(Serialize)]
 pub(super) struct AdapterReport {

@@ -1,108 +1,18 @@
-//! The command line as clap parses it. Values are checked where they are used.
+//! Flags that several commands share, and those of small commands, as clap parses them. Values are checked where they are
+//! used.
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 
-use super::bricks::SortArgs;
 use super::camera::CameraArgs;
-use super::certify::CertifyArgs;
 use super::data::format_parser;
-use super::encoding::EncodingArgs;
 use super::excluded_flags::{CAMERA, RENDERING, not_of_pictures};
-use super::file_info::FileArgs;
-use super::frames::FramesArgs;
-use super::generate::GenerateArgs;
-use super::job::JobArgs;
+#[cfg(feature = "gpu")]
 use super::light::LightArgs;
-use super::report::ReportArgs;
-use super::stop_rule::StopArgs;
 use super::verify_help::AFTER_HELP;
-use super::view::ViewArguments;
 use pinhole::accel::AccelChoice;
 use pinhole::load::Format;
-
-/// Ray traces spheres with compute shaders, without a display, and checks its pictures.
-#[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
-#[command(
-    after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
-    4 a check could not decide; 5 the device was lost or did not answer; 130 stopped by a signal."
-)]
-pub(super) struct Arguments {
-    #[command(subcommand)]
-    pub(super) command: Command,
-}
-
-#[derive(Debug, Subcommand)]
-pub(super) enum Command {
-    /// Render a picture of a scene file or a data file
-    Render(Box<RenderArgs>),
-    /// Show a file in a window, from all sides, and give the command that renders what is seen
-    View(Box<ViewArguments>),
-    /// Render on an adapter, and check for every pixel whether a conforming device may have made it
-    Verify(Box<VerifyArgs>),
-    /// Check the ids, depths and normals that any renderer made of a scene
-    Certify(Box<CertifyArgs>),
-    /// Show how much memory a render would need on the device and the machine, and whether it fits
-    #[cfg(feature = "gpu")]
-    Plan(Box<PlanArgs>),
-    /// Measure how fast an adapter traces rays with different acceleration structures
-    #[cfg(feature = "gpu")]
-    Bench(BenchArgs),
-    /// Render on many machines: divide pictures into parts, render each, see what is done, and join them
-    Job(JobArgs),
-    /// Sort the spheres of a data file into compact bricks, for data that does not fit into memory
-    Sort(SortArgs),
-    /// Write an example scene file into the current folder and render it
-    Demo(DemoArgs),
-    /// Write a file of generated spheres, for tests and measurements
-    Generate(GenerateArgs),
-    /// Say what a data file or a scene file holds; or list the adapters of this machine with drivers, limits and features
-    Info(InfoArgs),
-}
-
-#[derive(Debug, Args)]
-pub(super) struct RenderArgs {
-    #[command(flatten)]
-    pub(super) input: InputArgs,
-    /// File for the picture (.png or .exr), or - to write PNG to standard output; see also --frames
-    #[arg(short, long, value_name = "OUT.png", required_unless_present = "print_scene")]
-    pub(super) output: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) frames: FramesArgs,
-    #[command(flatten)]
-    pub(super) encoding: EncodingArgs,
-    #[command(flatten)]
-    pub(super) structure: super::structure_flags::StructureArgs,
-    #[command(flatten)]
-    pub(super) color: super::color_flags::ColorArgs,
-    #[command(flatten)]
-    pub(super) light: LightArgs,
-    #[command(flatten)]
-    pub(super) stop_rule: StopArgs,
-    #[command(flatten)]
-    pub(super) device: DeviceArgs,
-    #[command(flatten)]
-    pub(super) accel: AccelArgs,
-    /// Data layer to write in addition: LAYER=FILE.npy writes a NumPy array, and LAYER alone adds it to an .exr
-    /// picture. Layers are color, alpha, depth, normal, position, albedo, id, samples and variance; may be repeated
-    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
-    pub(super) layers: Vec<String>,
-    /// How the two pictures of a stereo camera are written [default: side-by-side]
-    #[arg(long, value_enum)]
-    pub(super) stereo: Option<Stereo>,
-    /// Judge the samples of the picture before they are written, and write the certificate into the file, for
-    /// `pinhole verify PICTURE --scene SCENE`. Pictures with light are compared with the CPU reference's, which takes as
-    /// long as that takes
-    #[arg(long, conflicts_with_all = ["print_scene", "stereo"])]
-    pub(super) certify: bool,
-    #[cfg(feature = "gpu")]
-    #[command(flatten)]
-    pub(super) profile: super::profile::ProfileArgs,
-    #[command(flatten)]
-    pub(super) report: ReportArgs,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Stereo {
@@ -345,46 +255,4 @@ pub(super) enum Backend {
     Gpu,
     /// The CPU reference, which is slower
     Cpu,
-}
-
-#[derive(Debug, Args)]
-#[command(after_help = super::info::HELP)]
-pub(super) struct InfoArgs {
-    #[command(flatten)]
-    pub(super) file: FileArgs,
-    /// Test whether an adapter computes as precisely as the error bounds of `verify` assume
-    #[cfg(feature = "gpu")]
-    #[arg(long)]
-    pub(super) self_test: bool,
-    /// Test the adapter whose name contains this text [default: the adapter that `render` would use]
-    #[cfg(feature = "gpu")]
-    #[arg(long, value_name = "NAME")]
-    pub(super) adapter: Option<String>,
-    /// Write every shader as a device is given it, one WGSL file for each kernel, into this folder; it is created if it is
-    /// missing. Needs no adapter
-    #[cfg(feature = "gpu")]
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["self_test", "adapter", "json"])]
-    pub(super) dump_shaders: Option<PathBuf>,
-    /// Print the results as JSON
-    #[arg(long)]
-    pub(super) json: bool,
-}
-
-#[cfg(test)]
-mod tests {
-    use clap::CommandFactory;
-
-    use super::*;
-
-    #[test]
-    fn replay_excludes_all_arguments_that_describe_the_picture() {
-        let arguments = Arguments::command();
-        let verify = arguments.find_subcommand("verify").unwrap();
-        let others = ["json", "report", "replay", "scene", "help"];
-        let ids = verify.get_arguments().map(|argument| argument.get_id().as_str());
-        let rendering: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
-        let excluded: Vec<_> = RENDERING.into_iter().chain(CAMERA).collect();
-        assert!(rendering.iter().all(|id| excluded.contains(id)), "{rendering:?}");
-        assert_eq!(rendering.len(), excluded.len());
-    }
 }

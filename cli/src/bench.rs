@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
-use super::adapter::AdapterReport;
+use super::adapter::{AdapterReport, DEVICE_CLOCK};
 use super::args::BenchArgs;
-use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
+use super::bench_report::{BenchReport, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
-use super::input::parse_size;
+use super::input_format::parse_size;
 use super::speak::{answer, tell};
 use super::with_scene::watch_upload;
 use super::{interrupt, memory, process, progress, threads};

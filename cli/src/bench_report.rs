@@ -4,16 +4,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::adapter::AdapterReport;
+use super::adapter::{AdapterReport, DEVICE_CLOCK};
 use super::bench_scene::BenchScene;
 use super::memory::readable;
 use super::table::table;
-
-/// Name of the device's own clock.
-pub(super) const DEVICE_CLOCK: &str = "device";
-
-/// Name of the host's clock. The clock of a software device measures when commands were queued, not when they ran.
-pub(super) const HOST_CLOCK: &str = "host";
 
 /// The JSON document.
 #[derive(Serialize)]

@@ -4,12 +4,12 @@ use anyhow::{Context, Result, anyhow};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory};
 
-use super::args::Arguments;
 use super::device::Opened;
 use super::failure::Failure;
 use super::input::Input;
 use super::progress;
 use super::render;
+use super::render_args::RenderLine;
 use super::views::Views;
 use pinhole::image::denoise;
 use pinhole::image::encoding::Encoding;
@@ -339,7 +339,7 @@ pub(super) fn check_scene(certificate: &PictureCertificate, input: &Input) -> Re
 
 /// The arguments of this process from which the picture follows, apart from the scene.
 pub(super) fn arguments() -> Result<Vec<String>> {
-    let command = Arguments::command();
+    let command = RenderLine::command();
     let matches = command.clone().try_get_matches_from(std::env::args_os())?;
     let of_render = matches.subcommand_matches("render");
     of_render.map_or_else(|| Ok(Vec::new()), |matches| picture_arguments(&command, matches))
@@ -383,7 +383,7 @@ mod tests {
 
     #[test]
     fn what_is_left_out_exists() {
-        let command = Arguments::command();
+        let command = RenderLine::command();
         let render = command.find_subcommand("render").unwrap();
         for id in NOT_OF_THE_PICTURE {
             assert!(render.get_arguments().any(|argument| argument.get_id() == id), "{id}");
@@ -392,7 +392,7 @@ mod tests {
 
     #[test]
     fn arguments_mean_the_same_when_they_are_given_again() {
-        let command = Arguments::command();
+        let command = RenderLine::command();
         let given = "pinhole render a.csv -o b.png --eye 1,2,3 --size=30x20 --columns x,y,z --transparent \
                      --exposure -1.5 --certify --quiet --adapter gpu";
         let matches = command.clone().try_get_matches_from(given.split_whitespace()).unwrap();

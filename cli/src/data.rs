@@ -10,7 +10,8 @@ use pinhole::load::{
 };
 
 use super::failure::Failure;
-use super::{input, memory};
+use super::memory;
+use super::read_file::read as read_bytes;
 
 /// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Debug, Default)]
@@ -150,7 +151,7 @@ pub(super) fn named(path: &Path, error: LoadError) -> Error {
 }
 
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {
-    let bytes = &input::read(path)?;
+    let bytes = &read_bytes(path)?;
     let file_name = || path.display().to_string();
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {

@@ -4,18 +4,18 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use serde::Serialize;
 
 use super::bricks;
 use super::data::{self, DataOptions, as_usage, format_parser};
 use super::failure::Failure;
 use super::file_info_text as text;
+use super::file_report::{ColumnReport, DataReport, Kind, Report, SceneReport};
 use super::input::{self, Source};
 use super::input_format;
 use super::read_file;
 use super::speak::answer;
 use pinhole::LinearRgb;
-use pinhole::load::{Column, ColumnValues, Format, Loaded};
+use pinhole::load::{Format, Loaded};
 
 /// The file to describe, and how it is read.
 #[derive(Debug, Args)]
@@ -39,80 +39,6 @@ pub(super) struct FileArgs {
     /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R", requires = "path", allow_hyphen_values = true)]
     pub(super) radius: Option<f64>,
-}
-
-/// The report on a file.
-#[derive(Serialize)]
-pub(super) struct Report {
-    version: &'static str,
-    pub(super) file: String,
-    /// Size of the file; `None` on standard input.
-    pub(super) bytes: Option<u64>,
-    #[serde(flatten)]
-    pub(super) kind: Kind,
-    pub(super) spheres: usize,
-    /// The corners of the box of all spheres.
-    pub(super) min: Option<[f64; 3]>,
-    pub(super) max: Option<[f64; 3]>,
-    pub(super) radius_min: Option<f64>,
-    pub(super) radius_max: Option<f64>,
-    pub(super) notes: Vec<String>,
-}
-
-/// What only one of the two kinds of file has.
-#[derive(Serialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-pub(super) enum Kind {
-    Data(DataReport),
-    Scene(SceneReport),
-}
-
-#[derive(Serialize)]
-pub(super) struct DataReport {
-    pub(super) format: &'static str,
-    #[serde(skip)]
-    pub(super) about: &'static str,
-    /// Whether the file is compressed with gzip; `None` on standard input.
-    pub(super) compressed: Option<bool>,
-    /// Number of frames; `None` if files of this format have none, or it is not known.
-    pub(super) frames: Option<usize>,
-    /// The frame that the rest describes.
-    pub(super) frame: Option<usize>,
-    /// What is wrong after the last complete frame.
-    pub(super) problem: Option<String>,
-    pub(super) colors: bool,
-    pub(super) opacities: bool,
-    pub(super) cell: Option<[[f64; 3]; 3]>,
-    /// The corner from which the edges of the cell start.
-    pub(super) cell_origin: Option<[f64; 3]>,
-    pub(super) columns: Vec<ColumnReport>,
-}
-
-#[derive(Serialize)]
-pub(super) struct ColumnReport {
-    pub(super) name: String,
-    #[serde(flatten)]
-    pub(super) values: ValuesReport,
-}
-
-#[derive(Serialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-pub(super) enum ValuesReport {
-    Numbers { min: Option<f64>, max: Option<f64>, nan: usize },
-    Text { different: usize, first: Vec<String> },
-}
-
-#[derive(Serialize)]
-pub(super) struct SceneReport {
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) camera: &'static str,
-    pub(super) stereo: bool,
-    pub(super) integrator: &'static str,
-    pub(super) samples: u32,
-    pub(super) lights: usize,
-    /// Other files that the scene names.
-    pub(super) files: Vec<String>,
 }
 
 const BRICKS: input_format::Format = input_format::Format::Bricks;
@@ -221,29 +147,6 @@ fn with_spheres(path: &Path, kind: Kind, loaded: &Loaded) -> Report {
         radius_min: is_any.then_some(radii[0]),
         radius_max: is_any.then_some(radii[1]),
         notes,
-    }
-}
-
-impl ColumnReport {
-    fn new(Column { name, values }: &Column) -> Self {
-        /// How many texts are shown.
-        const SHOWN: usize = 6;
-        let values = match values {
-            ColumnValues::Numbers(numbers) => {
-                let known = || numbers.iter().copied().filter(|number| !number.is_nan());
-                ValuesReport::Numbers {
-                    min: known().reduce(f64::min),
-                    max: known().reduce(f64::max),
-                    nan: numbers.len() - known().count(),
-                }
-            }
-            ColumnValues::Labels(labels) => ValuesReport::Text {
-                different: labels.names.len(),
-                first: labels.names.iter().take(SHOWN).cloned().collect(),
-            },
-            _ => ValuesReport::Text { different: 0, first: Vec::new() },
-        };
-        Self { name: name.clone(), values }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The report of `pinhole info FILE` as text.
 
-use super::file_info::{ColumnReport, DataReport, Kind, Report, SceneReport, ValuesReport};
+use super::file_report::{ColumnReport, DataReport, Kind, Report, SceneReport, ValuesReport};
 use pinhole::internals::text::one_line;
 
 /// Formats the report. Text from the file has its control characters escaped.

@@ -1,15 +1,18 @@
 //! `pinhole info`: lists the adapters of the machine, and tests one, or describes a file.
 
+#[cfg(feature = "gpu")]
+use std::path::PathBuf;
+
 use anyhow::Context;
+use clap::Args;
 use serde::Serialize;
 
-use super::args::InfoArgs;
 #[cfg(feature = "gpu")]
 use super::device::WantedAdapter;
 #[cfg(feature = "gpu")]
 use super::dump_shaders::dump;
 use super::failure::Failure;
-use super::file_info;
+use super::file_info::{self, FileArgs};
 #[cfg(feature = "gpu")]
 use super::self_test::SelfTested;
 use super::speak::answer;
@@ -27,6 +30,29 @@ pub(super) const HELP: &str = "The self-test runs computations on the adapter an
     `height`, `camera`, `stereo`, `integrator`, `samples`, `lights`, `files`. Of bricks also `source`, \
     `bricks`, `largest_brick_spheres`, `largest_brick_bytes`, `outer_spheres`, `colors`, and no `notes`. New versions may add keys, but do not \
     change these.";
+
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub(super) struct InfoArgs {
+    #[command(flatten)]
+    pub(super) file: FileArgs,
+    /// Test whether an adapter computes as precisely as the error bounds of `verify` assume
+    #[cfg(feature = "gpu")]
+    #[arg(long)]
+    pub(super) self_test: bool,
+    /// Test the adapter whose name contains this text [default: the adapter that `render` would use]
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME")]
+    pub(super) adapter: Option<String>,
+    /// Write every shader as a device is given it, one WGSL file for each kernel, into this folder; it is created if it is
+    /// missing. Needs no adapter
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["self_test", "adapter", "json"])]
+    pub(super) dump_shaders: Option<PathBuf>,
+    /// Print the results as JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
 
 /// The report on this program and the machine.
 #[derive(Serialize)]

@@ -1,45 +1,34 @@
-//! Reads the input: from a path to a scene with its camera and settings.
+//! The input: from a path to a scene with its camera and settings.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::Result;
-
-use super::annotation::AnnotationFlags;
-#[cfg(feature = "gpu")]
-use super::args::BenchArgs;
-use super::args::{InputArgs, ViewArgs};
 use super::bricks::BrickFile;
-use super::camera::CameraFlags;
-use super::color_flags::ColorFlags;
-use super::data::DataOptions;
-use super::failure::Failure;
 pub(super) use super::input_format::extension;
-pub(super) use super::input_format::parse_size;
-use super::input_format::{Format, data_format};
-use super::light::LightFlags;
 pub(super) use super::read_file::read;
 use super::report::Report;
-use super::structure_flags::StructureFlags;
-use contents::Contents;
-pub(super) use frames::{FoundFrames, OpenFrames};
 pub(super) use look::{Framed, Look};
+pub(super) use open_frames::FoundFrames;
+#[cfg(feature = "gpu")]
+pub(super) use open_frames::OpenFrames;
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};
-use pinhole::color_by::{ColorBy, ColorKey};
+use pinhole::color_by::ColorKey;
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
-use pinhole::load;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene::sphere::Sphere;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
-use pinhole::style::Style;
+use pinhole::scene_file::Data;
+pub(super) use source::{Source, check_flags, default_color};
 
 pub(super) mod contents;
 mod frames;
+mod load;
 mod look;
+mod open_frames;
+mod source;
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -83,244 +72,4 @@ impl Input {
     pub(super) fn view(&self) -> View<'_> {
         View::new(self.camera.as_ref(), self.film)
     }
-}
-
-/// Checks that flags apply to a file of this format.
-pub(super) fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
-    if let Some(radius) = options.radius
-        && !(radius.is_finite() && radius > 0.0)
-    {
-        return Err(Failure::usage(format!(
-            "--radius {radius}: a radius must be finite and greater than 0"
-        )));
-    }
-    match format {
-        Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
-        Format::Scene => Ok(()),
-        Format::Bricks => match options.given() {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag} applies when data is sorted into bricks; give it to `pinhole sort`"
-            ))),
-            None => Ok(()),
-        },
-    }
-}
-
-/// An input file with its flags, checked as far as is possible before the file is read.
-pub(super) struct Source {
-    path: PathBuf,
-    format: Format,
-    size: Option<(u32, u32)>,
-    options: DataOptions,
-    camera: CameraFlags,
-    light: LightFlags,
-    /// The style of data files.
-    style: Style,
-    color: ColorFlags,
-    structure: StructureFlags,
-    annotation: AnnotationFlags,
-    /// The colors by kind that all frames of a movie have, although no flag asks for them.
-    kinds: Option<ColorBy>,
-    /// The open file, if several of its frames are read.
-    frames: Option<Arc<OpenFrames>>,
-    /// Whether the columns of the data are kept, for the viewer.
-    keeps_columns: bool,
-    /// The file of bricks, if the input is one.
-    bricks: Option<Arc<BrickFile>>,
-}
-
-impl Source {
-    pub(super) fn new(InputArgs { path, view }: &InputArgs) -> Result<Self, Failure> {
-        Self::of_view(path, view)
-    }
-
-    /// Makes a source from a path and its flags.
-    pub(super) fn of_view(path: &Path, args: &ViewArgs) -> Result<Self, Failure> {
-        let format = match args.format {
-            Some(format) => Format::Data(format),
-            None => Format::of(path).map_err(Failure::Usage)?,
-        };
-        let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
-        let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
-        let (topology, columns) = (args.topology.clone(), args.columns.clone());
-        let options =
-            DataOptions { frame: args.frame, radius: args.radius, color, topology, columns };
-        check_flags(format, &options)?;
-        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
-        Ok(Self {
-            bricks,
-            path: path.to_path_buf(),
-            format,
-            size: args.size.as_deref().map(parse_size).transpose()?,
-            options,
-            camera: args.camera.flags()?,
-            ..Self::of_scene(path)
-        })
-    }
-
-    /// Returns this source with light flags. Without them, data files have one ray for each pixel.
-    pub(super) fn with_light(self, light: LightFlags) -> Self {
-        let style = match &self.bricks {
-            // Bricks have one ray for each pixel, unless a flag asks for light, which is refused with a reason.
-            Some(_) => light.style_of_bricks(),
-            None => light.style_of_data(),
-        };
-        Self { light, style, ..self }
-    }
-
-    /// Returns this source with flags for colors from data.
-    pub(super) fn with_color(self, color: ColorFlags) -> Self {
-        Self { color, ..self }
-    }
-
-    /// Returns this source with flags that select spheres and add others.
-    pub(super) fn with_structure(self, structure: StructureFlags) -> Self {
-        Self { structure, ..self }
-    }
-
-    /// Returns this source with flags for annotations, for which the camera leaves room.
-    pub(super) fn with_annotation(self, annotation: AnnotationFlags) -> Self {
-        Self { annotation, ..self }
-    }
-
-    /// Makes a source from a scene file without flags.
-    pub(super) fn of_scene(path: &Path) -> Self {
-        let options = DataOptions::default();
-        Self {
-            path: path.to_path_buf(),
-            format: Format::Scene,
-            size: None,
-            options,
-            camera: CameraFlags::default(),
-            light: LightFlags::default(),
-            style: Style::Fast,
-            color: ColorFlags::default(),
-            structure: StructureFlags::default(),
-            annotation: AnnotationFlags::default(),
-            kinds: None,
-            frames: None,
-            keeps_columns: false,
-            bricks: None,
-        }
-    }
-
-    /// Returns this source with the size of a picture, such as `800x600`.
-    pub(super) fn with_size(self, size: Option<&str>) -> Result<Self, Failure> {
-        Ok(Self { size: size.map(parse_size).transpose()?, ..self })
-    }
-
-    /// Returns this source with a size, if it is a data file, and no flag gives its size.
-    pub(super) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Self {
-        match (self.format, self.size) {
-            (Format::Data(_) | Format::Bricks, None) => {
-                Self { size: Some((width, height)), ..self }
-            }
-            _ => self,
-        }
-    }
-
-    /// Makes a source from a file that `bench` measures.
-    #[cfg(feature = "gpu")]
-    pub(super) fn of_bench(
-        path: &Path,
-        args: &BenchArgs,
-        size: Option<(u32, u32)>,
-    ) -> Result<Self, Failure> {
-        let format = match args.format {
-            Some(format) if Format::of(path).ok() != Some(Format::Scene) => Format::Data(format),
-            _ => Format::of(path).map_err(Failure::Usage)?,
-        };
-        let options = DataOptions { radius: args.radius, ..DataOptions::default() };
-        check_flags(format, &options)?;
-        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
-        let source = Self { format, size, options, bricks, ..Self::of_scene(path) };
-        source.without_bricks("`bench`")
-    }
-
-    /// Reads the file, and the data files that it names.
-    pub(super) fn load(&self) -> Result<Input, Failure> {
-        self.input(self.contents()?)
-    }
-
-    /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
-    /// other paths.
-    pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
-        self.input(self.contents_of_text(text)?)
-    }
-
-    fn input(&self, mut contents: Contents) -> Result<Input, Failure> {
-        if contents.file.camera_path().is_some() {
-            contents.add_note(format!(
-                "{}: `camera_path` is not used, because this is one picture; for all, write a movie such as -o movie.apng, \
-                 or --frames : with -o f%04d.png",
-                self.path.display()
-            ));
-        }
-        let sky = self.sky(&contents)?;
-        let framed = Framed::new(&contents.scene, contents.color_key());
-        let look = self.look(&contents.file, framed, sky, None)?;
-        self.input_with(contents, look)
-    }
-
-    /// Returns the data with its keys, over which flags take precedence.
-    fn data(&self, file: &SceneFile, kinds: Option<ColorBy>) -> Result<Option<Data>, Failure> {
-        let flags = self.options.clone();
-        let mut data = match self.format {
-            Format::Data(format) => Data {
-                format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
-                ..Data::of_file(self.path.to_string_lossy())
-            },
-            Format::Bricks => return Ok(None),
-            Format::Scene => {
-                let Some(data) = file.data().cloned() else { return Ok(None) };
-                let resolved = |file: &String| self.resolve(file).to_string_lossy().into_owned();
-                Data {
-                    file: resolved(&data.file),
-                    topology: data.topology.as_ref().map(resolved),
-                    ..data
-                }
-            }
-        };
-        data.frame = flags.frame.or(data.frame);
-        data.radius = flags.radius.or(data.radius);
-        data.color = flags.color.or(data.color);
-        let topology = flags.topology.map(|file| file.to_string_lossy().into_owned());
-        data.topology = topology.or(data.topology);
-        if !flags.columns.is_empty() {
-            data.columns = flags.columns;
-        }
-        data.mapping = self.color.apply_to(&data.mapping)?;
-        data.mapping.color = data.mapping.color.or(kinds);
-        data.select = self.structure.select.clone().or(data.select);
-        data.additions = self.structure.additions(&data.additions, false);
-        Ok(Some(data))
-    }
-
-    /// The format of a data file.
-    pub(super) fn data_format(&self) -> Option<&'static load::Format> {
-        match self.format {
-            Format::Data(format) => Some(format),
-            Format::Scene | Format::Bricks => None,
-        }
-    }
-
-    /// Refuses a file of bricks, for what needs all spheres at once.
-    pub(super) fn without_bricks(self, what: &str) -> Result<Self, Failure> {
-        match self.bricks {
-            None => Ok(self),
-            Some(_) => Err(Failure::usage(format!(
-                "{}: {what} needs all spheres in memory, and bricks are read one by one; name the data that was sorted",
-                self.path.display()
-            ))),
-        }
-    }
-
-    /// Resolves a path that is relative to the folder of the scene file.
-    fn resolve(&self, path: &str) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(path)
-    }
-}
-
-pub(super) fn default_color() -> LinearRgb {
-    LinearRgb::from_srgb8(DEFAULT_COLOR)
 }

@@ -11,7 +11,6 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use clap::error::ErrorKind;
 
 mod adapter;
 mod annotation;
@@ -28,17 +27,22 @@ mod certified;
 mod certify;
 mod certify_report;
 mod color_flags;
+mod commands;
 mod data;
 mod deadline;
 mod demo;
 mod device;
 #[cfg(feature = "gpu")]
+mod device_error;
+#[cfg(feature = "gpu")]
 mod dump_shaders;
 mod encoding;
 mod excluded_flags;
+mod explain;
 mod failure;
 mod file_info;
 mod file_info_text;
+mod file_report;
 mod frames;
 mod generate;
 mod info;
@@ -61,10 +65,15 @@ mod profile;
 #[cfg(feature = "gpu")]
 mod profile;
 mod progress;
+mod progress_line;
+#[cfg(feature = "gpu")]
+mod quick_test;
 mod read_file;
 mod removed;
 mod render;
+mod render_args;
 mod render_certified;
+mod render_command;
 mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
@@ -81,6 +90,7 @@ mod verify_denoiser;
 mod verify_help;
 mod verify_kept;
 mod verify_light;
+mod verify_listed;
 mod verify_lit;
 mod verify_open;
 mod verify_output;
@@ -95,8 +105,9 @@ mod views;
 #[cfg(feature = "gpu")]
 mod with_scene;
 
-use args::{Arguments, Command};
-use speak::{answer, tell, tell_all};
+use commands::{Arguments, Command};
+use explain::explain;
+use speak::tell;
 
 /// Runs the program with the arguments of the process. This must be the first thing that the process does.
 ///
@@ -147,7 +158,7 @@ fn run() -> ExitCode {
         }
     };
     let result = interrupt::install().and_then(|()| match arguments.command {
-        Command::Render(args) => render::run(&args),
+        Command::Render(args) => render_command::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Certify(args) => certify::run(&args),
         #[cfg(feature = "gpu")]
@@ -169,38 +180,4 @@ fn run() -> ExitCode {
             failure.exit_code()
         }
     }
-}
-
-/// Prints the help or the version as clap formats it, and an error on one line. `arguments` are those of the program,
-/// without its name.
-fn explain(error: &clap::Error, arguments: &[String]) -> ExitCode {
-    if let Some(message) = removed::message(error, arguments) {
-        tell(message);
-        return failure::USAGE.into();
-    }
-    let text = error.to_string();
-    match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match answer(text.as_bytes()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(_) => failure::FAILED.into(),
-        },
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            tell_all(&text);
-            failure::USAGE.into()
-        }
-        ErrorKind::UnknownArgument => {
-            tell(unknown_flag::message(error, arguments).as_deref().unwrap_or(one_message(&text)));
-            failure::USAGE.into()
-        }
-        _ => {
-            tell(one_message(&text));
-            failure::USAGE.into()
-        }
-    }
-}
-
-/// The message of an error without the usage, which would make it longer than a line.
-fn one_message(text: &str) -> &str {
-    let message = text.split("\n\nUsage:").next().unwrap_or_default();
-    message.split("\n\nFor more information").next().unwrap_or_default()
 }

@@ -1,14 +1,13 @@
-//! `pinhole render`: renders a scene file or a data file.
+//! A job of `pinhole render`, and the pictures that a device or the CPU renders for it.
 
 use std::path::Path;
 #[cfg(feature = "gpu")]
 use std::sync::Once;
-use std::time::Instant;
 
 use anyhow::Context;
 
 use super::annotation::AnnotationFlags;
-use super::args::{RenderArgs, Stereo};
+use super::args::Stereo;
 use super::bricks;
 use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
@@ -16,20 +15,17 @@ use super::device::explained;
 use super::device::{Device, Opened};
 use super::encoding::EncodingFlags;
 use super::failure::Failure;
-use super::frames;
 use super::input::{Input, Source};
 use super::interrupt;
 use super::light::LightFlags;
 use super::memory;
 use super::picture::Outputs;
-use super::print_scene;
 use super::profile;
 use super::progress;
-use super::render_certified;
+use super::render_args::RenderArgs;
 use super::speak::tell;
 use super::stop_rule::{StopRule, Watching};
 use super::structure_flags::StructureFlags;
-use super::threads;
 use super::views::Views;
 #[cfg(feature = "gpu")]
 use super::with_scene::{upload, watch_upload, with_structures};
@@ -102,86 +98,6 @@ impl Job {
     }
 }
 
-pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    #[cfg(feature = "gpu")]
-    profile::start(&args.profile);
-    run_measured(args)?;
-    #[cfg(feature = "gpu")]
-    profile::finish();
-    Ok(())
-}
-
-fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
-    if let Some(wanted) = frames::Wanted::new(args)? {
-        if args.certify {
-            return Err(Failure::usage(
-                "--certify: only single pictures are certified; render the frames one by one",
-            ));
-        }
-        let mut job = Job::new(args, wanted.picture())?;
-        job.source = job.source.without_bricks("a series of pictures")?;
-        return frames::run(args, &wanted, job);
-    }
-    let started = Instant::now();
-    let quiet = args.report.quiet;
-    let mut job = Job::new(args, args.output.as_deref().unwrap_or(Path::new("-")))?;
-    if quiet {
-        progress::close();
-    }
-    let note = |note: &dyn std::fmt::Display| {
-        if !quiet {
-            tell(format_args!("note: {note}"));
-        }
-    };
-    threads::start()?;
-    if args.certify || args.report.print_scene {
-        let flag = if args.certify { "--certify" } else { "--print-scene" };
-        job.source = job.source.without_bricks(flag)?;
-    }
-    if args.report.print_scene {
-        let input = job.source.load()?;
-        input.notes.iter().for_each(|text| note(text));
-        let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
-        return Ok(print_scene::print(
-            &input,
-            encoding,
-            job.annotation.plan_over(&input.annotations),
-        )?);
-    }
-    // The driver is loaded while the file is read, which saves time.
-    let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
-    job.outputs.check_not_inputs(&input.files)?;
-    input.notes.iter().for_each(|text| note(text));
-    let (encoding, annotations) = job.finish(&mut input, note)?;
-    let outputs = job.outputs.with_annotations(annotations);
-    let layers = outputs.layers(&encoding);
-    let views = Views::of(&input);
-    if job.stereo.is_some() && views.count() == 1 {
-        return Err(Failure::usage(
-            "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
-        ));
-    }
-    let adapter = opened.adapter();
-    if job.stereo == Some(Stereo::TwoFiles) {
-        let outputs = outputs.of_eyes()?;
-        outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
-        let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
-        Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
-        said(quiet, &input, started);
-        return Ok(());
-    }
-    if args.certify {
-        let verdict =
-            render_certified::run(&mut input, &job.stop_rule, outputs, &encoding, &opened)?;
-        said(quiet, &input, started);
-        return verdict;
-    }
-    let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
-    outputs.write(&image, &encoding, adapter, None)?;
-    said(quiet, &input, started);
-    Ok(())
-}
-
 /// Renders a part of the picture of each eye: the raw values, before noise is removed and outlines are drawn.
 pub(super) fn render_part(
     input: &mut Input,
@@ -225,13 +141,6 @@ pub(super) fn finish_views(
     }
 }
 
-/// Says in one line what was rendered, with which look, and how long it took.
-fn said(quiet: bool, input: &Input, started: Instant) {
-    if !quiet {
-        tell(input.report.line(started.elapsed()));
-    }
-}
-
 /// Renders the view of the camera, or of the middle between two eyes.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
     let view = Views::One(input.view());
@@ -267,7 +176,7 @@ fn tell_once(text: impl FnOnce() -> String) {
 }
 
 /// Renders on the device, and tells the user if it is not the expected one.
-fn render_views(
+pub(super) fn render_views(
     input: &Input,
     stop_rule: &StopRule,
     views: &Views<View<'_>>,

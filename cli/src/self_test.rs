@@ -1,4 +1,4 @@
-//! The self-test of an adapter: the full test for `pinhole info` and `verify`, and a quick part before a render.
+//! The full self-test of an adapter, for `pinhole info` and `verify`.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,9 @@ use serde::Serialize;
 use super::adapter::AdapterReport;
 use super::device::{WantedAdapter, explained_alone};
 use super::failure::Failure;
+use super::quick_test::failure;
 use super::{interrupt, progress};
-use pinhole::gpu::{
-    GpuError, Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty,
-};
+use pinhole::gpu::{Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
 
 /// The results of the self-test of an adapter.
 #[derive(Serialize)]
@@ -94,34 +93,6 @@ impl PropertyReport {
     }
 }
 
-/// Returns a message about the first property that failed.
-fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
-    let failure = report.first_failure()?;
-    Some(format!("{adapter} fails the self-test ({failure})"))
-}
-
-/// Runs the quick part of the test. Returns a warning if the pictures of the adapter may be wrong.
-///
-/// # Errors
-/// If the device was lost or does not answer, so that it cannot render either.
-pub(super) fn quick_warning(headless: &Headless) -> Result<Option<String>, Failure> {
-    match headless.self_test(SelfTestExtent::Quick) {
-        Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => {
-            Err(explained_alone(headless, &error))
-        }
-        tested => Ok(warning(&headless.adapter_info().name, tested)),
-    }
-}
-
-fn warning(adapter: &str, tested: Result<SelfTestReport, GpuError>) -> Option<String> {
-    let failure = match tested {
-        Ok(report) => failure(adapter, &report)?,
-        // The render may still succeed; if not, it reports the error again.
-        Err(error) => format!("{adapter} cannot run the self-test ({error})"),
-    };
-    Some(format!("warning: {failure}; check its pictures with `pinhole verify`"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,27 +134,5 @@ mod tests {
         let passed = tested(None);
         assert!(passed.readable().contains("\n  ok      fence: the words\n"));
         assert!(passed.verdict().is_ok());
-    }
-
-    #[test]
-    fn a_warning_names_adapter_and_property() {
-        let report = |outcome| {
-            let words = "the words".to_owned();
-            SelfTestReport::new(vec![TestedProperty {
-                name: "fence",
-                outcome,
-                words,
-                figures: vec![],
-            }])
-        };
-        for good in [PropertyOutcome::Passed, PropertyOutcome::Noted] {
-            assert_eq!(warning("some", Ok(report(good))), None);
-        }
-        assert_eq!(
-            warning("some", Ok(report(PropertyOutcome::Failed))).unwrap(),
-            "warning: some fails the self-test (fence: the words); check its pictures with `pinhole verify`"
-        );
-        let failed = warning("some", Err(GpuError::OutOfMemory));
-        assert!(failed.unwrap().contains("cannot run the self-test"));
     }
 }

@@ -3,13 +3,13 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use super::progress;
+use super::progress_line::while_hidden;
 use pinhole::internals::text::one_line;
 
 /// Prints one line on standard error, with control characters escaped.
 pub(super) fn tell(line: impl fmt::Display) {
     let line = one_line(&line.to_string());
-    progress::while_hidden(|| {
+    while_hidden(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });
 }

@@ -3,8 +3,8 @@
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory};
 
-use super::args::Arguments;
 use super::color_flags;
+use super::commands::Arguments;
 
 /// Commands that take scene files and have no flags for columns of data.
 const SCENES: [&str; 3] = ["verify", "plan", "bench"];

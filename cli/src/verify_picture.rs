@@ -6,13 +6,14 @@ use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use serde::Serialize;
 
-use super::args::{Arguments, Command, VerifyArgs};
+use super::args::VerifyArgs;
 use super::certified::{self, Judged, Written};
 use super::failure::Failure;
 use super::input::read;
 use super::output::{check_not_inputs, check_writable, name_all, unnamed};
 use super::picture::{Outputs, PictureFormat};
 use super::render::Job;
+use super::render_args::{RenderCommand, RenderLine};
 use super::speak::{answer, tell};
 use super::verify_report::command_line;
 use super::{progress, threads};
@@ -96,8 +97,8 @@ fn job(
             certificate.version
         )
     };
-    let parsed = Arguments::try_parse_from(words.into_iter().chain(flags).chain(ends));
-    let Ok(Arguments { command: Command::Render(args) }) = parsed else {
+    let parsed = RenderLine::try_parse_from(words.into_iter().chain(flags).chain(ends));
+    let Ok(RenderLine { command: RenderCommand::Render(args) }) = parsed else {
         return Err(refused().into());
     };
     if !args.layers.is_empty() {

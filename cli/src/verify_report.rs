@@ -8,14 +8,12 @@ use super::adapter::AdapterReport;
 use super::shell::in_quotes;
 use super::verify_denoiser::DenoiserReport;
 use super::verify_light::LightReport;
+use super::verify_listed::{LISTED, Listed};
 use super::verify_open::OpenPixel;
 use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{Run, scene_sha256};
-use pinhole::verify::{Certificate, Deviations, LitCertificate, Outcome, Verdict, Violation};
-
-/// The largest number of violations in the JSON document.
-pub(super) const LISTED: usize = 100;
+use pinhole::verify::{Certificate, Deviations, LitCertificate, Outcome, Verdict};
 
 /// The JSON document.
 #[derive(Serialize)]
@@ -74,20 +72,6 @@ pub(super) struct Picture {
     pub(super) y_axis: &'static str,
     pub(super) shading: &'static str,
     pub(super) structure: String,
-}
-
-/// A violation with its message.
-#[derive(Serialize)]
-pub(super) struct Listed {
-    pub(super) pixel: [u32; 2],
-    pub(super) stage: &'static str,
-    pub(super) message: String,
-}
-
-impl From<&Violation> for Listed {
-    fn from(Violation { pixel, kind }: &Violation) -> Self {
-        Self { pixel: *pixel, stage: kind.stage(), message: kind.to_string() }
-    }
 }
 
 impl Report {

@@ -7,10 +7,13 @@ use pinhole::verify::{LitCertificate, Outcome};
 use crate::light::scenes::LitView;
 use crate::planted::{Fault, named};
 
+/// Makes a view.
+type Make = fn() -> LitView;
+
 /// Asserts that the fault is found in the stage in which it was inserted.
 pub(crate) fn is_found(
     fault: &Fault,
-    views: &[(&str, fn() -> LitView)],
+    views: &[(&str, Make)],
     certify: impl Fn(&Headless, &LitView) -> Result<LitCertificate, Failed>,
 ) -> Result<(), Failed> {
     let [view, stage] = fault.setup();

@@ -1,8 +1,8 @@
 //! Which pictures there are: the frames of a file, or the moments of a moving camera.
 
 use super::moving::WantedPath;
+use super::notes::Notes;
 use super::range::FrameRange;
-use super::series::Notes;
 use super::target::Target;
 use super::{Pictures, Wanted};
 use crate::failure::Failure;

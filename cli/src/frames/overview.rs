@@ -1,7 +1,7 @@
 //! What all frames of a file are together: what the camera frames, and what colors mean.
 
+use super::frame::frame;
 use super::numbers::Numbers;
-use super::series::frame;
 use super::union::{Union, scene_of};
 use crate::failure::Failure;
 use crate::input::Source;

@@ -1,13 +1,14 @@
 //! Several pictures of one input, one after the other: the next one is read while work on one is done.
 
-use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
 
 use anyhow::Context;
 
+use super::frame::frame;
 use super::moving::{Moving, WantedPath};
+use super::notes::Notes;
 use super::numbers::Numbers;
 use super::overview::Overview;
 use super::turn::{Axis, turned, up_of};
@@ -15,31 +16,11 @@ use super::union::{Union, swept};
 use crate::failure::Failure;
 use crate::input::contents::Contents;
 use crate::input::{Framed, Input, Look, Source};
-use crate::speak::tell;
 use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
 use pinhole::scene_file::SceneFile;
-
-/// Notes that were told, each of them once.
-pub(crate) struct Notes {
-    told: HashSet<String>,
-    quiet: bool,
-}
-
-impl Notes {
-    pub(super) fn new(quiet: bool) -> Self {
-        Self { told: HashSet::new(), quiet }
-    }
-
-    pub(crate) fn tell(&mut self, note: String) {
-        if !self.quiet && !self.told.contains(&note) {
-            tell(format_args!("note: {note}"));
-            self.told.insert(note);
-        }
-    }
-}
 
 /// The pictures after the first, and how each of them differs from the one before.
 pub(super) enum Rest {
@@ -160,15 +141,6 @@ pub(super) fn still(
     let look = moving.view(source, first, index)?;
     let input = source.input_with(contents, look)?;
     Ok(Prepared { input, rest: Rest::Moving(Box::new(moving)) })
-}
-
-/// Reads one frame.
-pub(super) fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
-    source.set_frame(number);
-    source.contents().map_err(|failure| match failure {
-        Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
-        other => other,
-    })
 }
 
 /// Reads the scene, and frames the body that it sweeps while it turns.

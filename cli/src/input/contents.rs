@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
 
-use super::{Source, default_color, extension, read};
+use super::source::{Source, default_color};
+use super::{extension, read};
 use crate::bricks::BrickFile;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;

@@ -1,39 +1,17 @@
-//! Several frames of one file, of which one at a time is read.
+//! What an input has to say before it is read: its frames, its camera path and its name.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
 
-use anyhow::Result;
-
-use super::Source;
+use super::open_frames::{FoundFrames, OpenFrames};
+use super::source::Source;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::Format;
 use pinhole::camera::CameraPath;
 use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::glam::DVec3;
-use pinhole::load::{self, Loaded, Trajectory};
-
-/// A file whose frames were found.
-pub(crate) struct OpenFrames {
-    path: PathBuf,
-    file: Mutex<Trajectory>,
-}
-
-/// What was found about the frames of a file.
-pub(crate) struct FoundFrames {
-    pub(crate) count: usize,
-    /// What is wrong after the last frame, for the user.
-    pub(crate) note: Option<String>,
-}
-
-impl OpenFrames {
-    /// Reads the frame that the options name, or else the first.
-    pub(super) fn read(&self, options: &DataOptions) -> Result<Loaded> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        data::read_frame_of(&self.path, &mut file, options)
-    }
-}
+use pinhole::load;
 
 impl Source {
     /// Finds the frames of the file, or of the data of a scene. `Ok(None)` means that there are none, because of the

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use anyhow::{Context, Error, Result};
 
 use super::contents::{Contents, Found};
-use super::{Input, Source, read};
+use super::source::Source;
+use super::{Input, read};
 use crate::failure::Failure;
 use crate::input_format::Format;
 use crate::progress;

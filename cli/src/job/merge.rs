@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 
+use super::args::{MergeArgs, SplitArgs};
 use super::files;
 use super::folder::{Folder, PARTS};
 use super::manifest::layer_set;
@@ -13,7 +14,6 @@ use super::part::described;
 use super::part_file::{self, Header, Pictures, Problem};
 use super::recipe::{Recipe, check_same, split_args};
 use super::units::ranges;
-use super::{MergeArgs, SplitArgs};
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, is_movie, ready};

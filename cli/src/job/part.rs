@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
-use super::PartArgs;
+use super::args::PartArgs;
 use super::folder::{Folder, PARTS};
 use super::manifest::VERSION;
 use super::part_file::{self, Header, Pictures, payload};

@@ -3,22 +3,34 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use clap::Parser;
+use clap::{Parser, Subcommand};
 
+use super::args::{JobArgs, JobCommand, SplitArgs};
 use super::manifest::Manifest;
-use super::{JobArgs, JobCommand, SplitArgs};
-use crate::args::{Arguments, Command, RenderArgs};
 use crate::device::Device;
 use crate::failure::Failure;
 use crate::frames::Wanted;
 use crate::input::Input;
 use crate::render::Job;
+use crate::render_args::RenderArgs;
+
+/// A command line of `job`, without the other commands.
+#[derive(Debug, Parser)]
+struct JobLine {
+    #[command(subcommand)]
+    command: OnlyJob,
+}
+
+#[derive(Debug, Subcommand)]
+enum OnlyJob {
+    Job(JobArgs),
+}
 
 /// The flags of `split` that a job keeps.
 pub(super) fn split_args(arguments: &[String]) -> Result<SplitArgs, Failure> {
-    let parsed = Arguments::try_parse_from(arguments).ok().map(|parsed| parsed.command);
+    let parsed = JobLine::try_parse_from(arguments).ok().map(|parsed| parsed.command);
     match parsed {
-        Some(Command::Job(JobArgs { command: JobCommand::Split(args) })) => Ok(*args),
+        Some(OnlyJob::Job(JobArgs { command: JobCommand::Split(args) })) => Ok(*args),
         _ => Err(Failure::Job(anyhow!(
             "the job has arguments that this program does not know; split it again"
         ))),

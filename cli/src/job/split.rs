@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 
-use super::SplitArgs;
+use super::args::SplitArgs;
 use super::files::{self, InputFile};
 use super::folder::{Folder, OVERVIEW, PARTS, packed};
 use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};

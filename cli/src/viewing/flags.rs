@@ -8,12 +8,13 @@ use std::sync::OnceLock;
 
 use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
-use pinhole::geometry::bounds::Bounds;
-use pinhole::glam::DVec3;
 
-use super::{ViewCamera, ViewError};
-use crate::args::{Arguments, Command, RenderArgs};
-use crate::render::{self, Job};
+use super::ViewError;
+use crate::commands::Arguments;
+use crate::explain::{explain, one_message};
+use crate::render::Job;
+use crate::render_args::{RenderArgs, RenderCommand, RenderLine};
+use crate::render_command;
 use crate::{annotation, camera, light};
 
 /// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
@@ -50,7 +51,7 @@ impl RenderFlags {
         let mut arguments: Vec<String> = words.map(|word| word.to_string_lossy().into()).collect();
         arguments.insert(0, "view".to_owned());
         Self::matched(std::env::args_os().skip(1)).map_err(|error| match error {
-            Refusal::Clap(error) => crate::explain(&error, &arguments),
+            Refusal::Clap(error) => explain(&error, &arguments),
             Refusal::Other(error) => {
                 super::print_error(&error);
                 error.exit_code()
@@ -136,22 +137,6 @@ impl RenderFlags {
         self.flags.retain(|(other, _)| other != name);
     }
 
-    /// The camera of the flags, if they say where it is.
-    ///
-    /// # Errors
-    /// If the flags do not make a camera.
-    pub fn camera(&self) -> Result<Option<ViewCamera>, ViewError> {
-        if self.get("eye").is_none() {
-            return Ok(None);
-        }
-        let flags = self.render_args("-")?.input.view.camera.flags()?;
-        let parameters = flags.parameters(None, DVec3::Y).map_err(ViewError::usage)?;
-        // A camera with an eye depends on no spheres, so that these are any.
-        let any = Bounds::of_sphere(DVec3::ZERO, 1.0);
-        let placed = parameters.placed(1.0, &(&any).into());
-        Ok(ViewCamera::new(&placed.map_err(|error| ViewError::usage(error.to_string()))?))
-    }
-
     /// Removes all flags of the camera.
     pub fn remove_camera(&mut self) {
         self.flags.retain(|(name, _)| decides(name) != Decides::Camera);
@@ -210,7 +195,7 @@ impl RenderFlags {
         // A name that starts with a dash is a file here, not standard output.
         let output =
             if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
-        Ok(render::run(&*self.render_args(&output)?)?)
+        Ok(render_command::run(&*self.render_args(&output)?)?)
     }
 
     /// Checks the flags as far as is possible before the file is read.
@@ -221,14 +206,13 @@ impl RenderFlags {
         self.job().map(drop)
     }
 
-    fn render_args(&self, output: &str) -> Result<Box<RenderArgs>, ViewError> {
+    pub(super) fn render_args(&self, output: &str) -> Result<Box<RenderArgs>, ViewError> {
         let start = ["pinhole", "render"].map(str::to_owned);
         let end = ["-o".to_owned(), output.to_owned()];
         let words = start.into_iter().chain(self.words()).chain(end);
-        match Arguments::try_parse_from(words).map_err(|error| of_clap(&error))?.command {
-            Command::Render(args) => Ok(args),
-            _ => Err(ViewError::usage("these are not the flags of `render`")),
-        }
+        let line = RenderLine::try_parse_from(words).map_err(|error| of_clap(&error))?;
+        let RenderCommand::Render(args) = line.command;
+        Ok(args)
     }
 
     /// The job of `pinhole render` with these flags.
@@ -245,7 +229,7 @@ enum Refusal {
 
 fn of_clap(error: &clap::Error) -> ViewError {
     let text = error.to_string();
-    let message = crate::one_message(&text);
+    let message = one_message(&text);
     ViewError::usage(message.strip_prefix("error: ").unwrap_or(message))
 }
 

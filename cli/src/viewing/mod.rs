@@ -5,6 +5,7 @@
 //! `pinhole render` itself.
 
 mod camera;
+mod camera_flags;
 mod flags;
 mod shown;
 mod still;

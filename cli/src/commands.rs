@@ -1,0 +1,74 @@
+//! The whole command line, with all commands.
+
+use clap::{Parser, Subcommand};
+
+#[cfg(feature = "gpu")]
+use super::args::{BenchArgs, PlanArgs};
+use super::args::{DemoArgs, VerifyArgs};
+use super::bricks::SortArgs;
+use super::certify::CertifyArgs;
+use super::generate::GenerateArgs;
+use super::info::InfoArgs;
+use super::job::JobArgs;
+use super::render_args::RenderArgs;
+use super::view::ViewArguments;
+
+/// Ray traces spheres with compute shaders, without a display, and checks its pictures.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(
+    after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
+    4 a check could not decide; 5 the device was lost or did not answer; 130 stopped by a signal."
+)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Render a picture of a scene file or a data file
+    Render(Box<RenderArgs>),
+    /// Show a file in a window, from all sides, and give the command that renders what is seen
+    View(Box<ViewArguments>),
+    /// Render on an adapter, and check for every pixel whether a conforming device may have made it
+    Verify(Box<VerifyArgs>),
+    /// Check the ids, depths and normals that any renderer made of a scene
+    Certify(Box<CertifyArgs>),
+    /// Show how much memory a render would need on the device and the machine, and whether it fits
+    #[cfg(feature = "gpu")]
+    Plan(Box<PlanArgs>),
+    /// Measure how fast an adapter traces rays with different acceleration structures
+    #[cfg(feature = "gpu")]
+    Bench(BenchArgs),
+    /// Render on many machines: divide pictures into parts, render each, see what is done, and join them
+    Job(JobArgs),
+    /// Sort the spheres of a data file into compact bricks, for data that does not fit into memory
+    Sort(SortArgs),
+    /// Write an example scene file into the current folder and render it
+    Demo(DemoArgs),
+    /// Write a file of generated spheres, for tests and measurements
+    Generate(GenerateArgs),
+    /// Say what a data file or a scene file holds; or list the adapters of this machine with drivers, limits and features
+    Info(InfoArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+    use crate::excluded_flags::{CAMERA, RENDERING};
+
+    #[test]
+    fn replay_excludes_all_arguments_that_describe_the_picture() {
+        let arguments = Arguments::command();
+        let verify = arguments.find_subcommand("verify").unwrap();
+        let others = ["json", "report", "replay", "scene", "help"];
+        let ids = verify.get_arguments().map(|argument| argument.get_id().as_str());
+        let rendering: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
+        let excluded: Vec<_> = RENDERING.into_iter().chain(CAMERA).collect();
+        assert!(rendering.iter().all(|id| excluded.contains(id)), "{rendering:?}");
+        assert_eq!(rendering.len(), excluded.len());
+    }
+}
