@@ -175,7 +175,7 @@ fn hostile_contents_with_a_right_digest() {
         ("camera", 0, &1_f64.to_le_bytes()[..], request),
         ("palette", 0, &word(0), request),
         // Samples of no picture.
-        ("sample_0_place", 4, &word(2), "the rectangle of sample 0 is not in the picture"),
+        ("sample_0_place", 4, &word(10), "the rectangle of sample 0 is not in the picture"),
         ("sample_1_place", 12, &word(0), "the rectangle of sample 1 is not in the picture"),
         ("sample_1_place", 12, &word(u32::MAX), "the rectangle of sample 1"),
         ("sample_0_place", 16, &word(2), "the rectangle of sample 0"),

@@ -14,8 +14,8 @@ use safetensors::tensor::{Metadata, TensorInfo};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use super::error::{RunFileError, VERSION, hex};
 use super::numbers::{Array, Number, Sink};
-use super::{RunFileError, VERSION, hex};
 use crate::parallel::try_map;
 use crate::text::shortened;
 

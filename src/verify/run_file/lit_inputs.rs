@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::container::{Container, contradiction, sink_into};
+use super::error::{RunFileError, hex};
 use super::numbers::Array;
-use super::{RunFileError, hex};
 use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
 use crate::light::environment::Environment;
