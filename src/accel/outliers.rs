@@ -122,6 +122,7 @@ fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
 }
 
 /// How much wider the boxes of a tree's spheres must be for rays that start far away from most of them.
+#[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NearRays {
     /// The box of the spheres that have the smaller margin.
@@ -131,6 +132,7 @@ pub(crate) struct NearRays {
     pub(crate) margin: f32,
 }
 
+#[cfg(feature = "gpu")]
 impl NearRays {
     /// All rays are near: no margin is too small for any.
     pub(crate) const ALL: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO, margin: 1e30 };
@@ -158,6 +160,7 @@ impl Margins {
         }
     }
 
+    #[cfg(feature = "gpu")]
     pub(super) fn near(&self) -> NearRays {
         self.crowd.map_or(NearRays::ALL, |crowd| NearRays {
             min: crowd.min,

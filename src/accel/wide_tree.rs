@@ -1,7 +1,9 @@
 //! The compressed 8-wide tree, which needs few bytes per sphere and few nodes per ray.
 
 use super::extent::Item;
-use super::outliers::{Margins, NearRays};
+use super::outliers::Margins;
+#[cfg(feature = "gpu")]
+use super::outliers::NearRays;
 use super::wide_node::WideNode;
 use super::wide_tree_build;
 
@@ -36,7 +38,8 @@ impl WideTree {
         Self { nodes, ids, levels, margins }
     }
 
-    /// By which rays boxes need not be widened, and how much for others.
+    /// Which rays use boxes as stored, and the widening for all others.
+    #[cfg(feature = "gpu")]
     pub(crate) fn near_rays(&self) -> NearRays {
         self.margins.near()
     }
