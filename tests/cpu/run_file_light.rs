@@ -178,7 +178,8 @@ fn hostile_contents_with_a_right_digest() {
         ("sample_0_place", 4, &word(10), "the rectangle of sample 0 is not in the picture"),
         ("sample_1_place", 12, &word(0), "the rectangle of sample 1 is not in the picture"),
         ("sample_1_place", 12, &word(u32::MAX), "the rectangle of sample 1"),
-        ("sample_0_place", 16, &word(2), "the rectangle of sample 0"),
+        ("sample_0_place", 16, &word(2), "the array `sample_0_hits` is"),
+        ("sample_0_place", 16, &word(6), "the rectangle of sample 0"),
     ] {
         let error = replayed(&with_numbers(&bytes, name, at, numbers)).unwrap_err();
         is_contradiction(&error, words);
