@@ -8,6 +8,7 @@ use super::shade::shade;
 use super::trace::trace;
 use crate::camera::View;
 use crate::image::{Image, LayerSet, Pixel, RowMut};
+use crate::parallel::for_each;
 use crate::render::PrimarySettings;
 
 /// The number of rows that are processed together, on all cores.
@@ -68,6 +69,5 @@ pub(super) fn for_rows(
 }
 
 fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>) + Sync) {
-    use rayon::prelude::*;
-    rows.into_par_iter().enumerate().for_each(|(j, mut row)| render_row(j, &mut row));
+    for_each(rows.into_iter().enumerate().collect(), |(j, mut row)| render_row(j, &mut row));
 }
