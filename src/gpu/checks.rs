@@ -9,7 +9,7 @@ use std::fmt;
 use std::pin::Pin;
 use std::task::{Context, Poll, Waker};
 
-use wgpu::{Device, ErrorFilter, WasmNotSend};
+use wgpu::{Device, ErrorFilter, ErrorScopeGuard, WasmNotSend};
 
 use crate::gpu::error::GpuError;
 
@@ -29,19 +29,26 @@ impl fmt::Debug for Check {
 impl Check {
     /// Runs `create` in error scopes.
     fn of<T>(device: &Device, create: impl FnOnce() -> T) -> (T, Self) {
-        let memory = device.push_error_scope(ErrorFilter::OutOfMemory);
-        let validation = device.push_error_scope(ErrorFilter::Validation);
-        let internal = device.push_error_scope(ErrorFilter::Internal);
+        let scopes = Self::scopes(device);
         let created = create();
+        (created, Self::popped(scopes))
+    }
+
+    /// Opens the scopes for memory, validation and internal errors.
+    fn scopes(device: &Device) -> [ErrorScopeGuard; 3] {
+        [ErrorFilter::OutOfMemory, ErrorFilter::Validation, ErrorFilter::Internal]
+            .map(|filter| device.push_error_scope(filter))
+    }
+
+    fn popped([memory, validation, internal]: [ErrorScopeGuard; 3]) -> Self {
         // Scopes nest, so they are popped in reverse order.
         let (internal, validation, memory) = (internal.pop(), validation.pop(), memory.pop());
-        let caught = async move {
+        Self(Box::pin(async move {
             // A resource without memory also causes validation errors wherever it is used, so the scope for memory is
             // reported first.
             let errors = [memory.await, validation.await, internal.await];
             errors.iter().flatten().next().map(GpuError::from_wgpu)
-        };
-        (created, Self(Box::pin(caught)))
+        }))
     }
 
     /// The same check, with errors that `explain` has changed.
