@@ -2,8 +2,6 @@
 //!
 //! No other file of the library submits work to a device, polls it, or waits for it.
 
-#[cfg(not(target_arch = "wasm32"))]
-mod blocking;
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
 pub(in crate::gpu) mod device_limits;
@@ -30,7 +28,6 @@ pub(in crate::gpu) mod renderers;
 mod studio_recording;
 pub(in crate::gpu) mod submission_size;
 pub(in crate::gpu) mod tile_textures;
-pub(in crate::gpu) mod timer;
 pub(in crate::gpu) mod uploading;
 pub(in crate::gpu) mod waiting;
 
@@ -71,7 +68,9 @@ pub struct Headless {
     device: Device,
     queue: Queue,
     timeout: Duration,
+    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     is_indirect: bool,
+    /// Whether one pass takes whole samples where it can.
     is_one_pass: bool,
     faults: Arc<Faults>,
     profile: Option<Profile>,
@@ -83,7 +82,7 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Opens a device on the first of [`adapter::candidates_async`] that can open one, without blocking the thread.
+    /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
     ///
     /// # Errors
     /// If there is no such adapter, or if none can open a device; the error is then that of the first.
@@ -183,31 +182,16 @@ impl Headless {
         DeviceShape::of(self.info.device_type)
     }
 
-    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
-    pub(in crate::gpu) fn is_indirect(&self) -> bool {
-        self.is_indirect
-    }
-
-    pub(in crate::gpu) fn profile(&self) -> Option<&Profile> {
-        self.profile.as_ref()
-    }
-
-    /// Whether one pass takes whole samples where it can.
-    pub(in crate::gpu) fn is_one_pass(&self) -> bool {
-        self.is_one_pass
-    }
-
     /// Returns the queue, for callers that record their own commands.
     #[must_use]
     pub fn queue(&self) -> &Queue {
         &self.queue
     }
 
-    /// Tests the arithmetic of the device like [`Headless::self_test`], without blocking the thread while the device
-    /// works.
+    /// Tests whether the arithmetic of the device has the properties that the error bounds of the checker assume.
     ///
     /// # Errors
-    /// The same as for [`Headless::self_test`].
+    /// If the device fails. A property that the device lacks is not an error; the report contains it.
     pub async fn self_test_async(
         &self,
         extent: SelfTestExtent,
@@ -227,11 +211,15 @@ impl Headless {
         })
     }
 
-    /// Renders a picture like [`Headless::render`], without blocking the thread while the device works. Other work of
-    /// the device waits for its turn.
+    /// Renders a picture.
+    ///
+    /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
+    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data,
+    /// another structure is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`].
+    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
+    /// device or of the host, or if the device fails.
     pub async fn render_async(
         &self,
         scene: &Scene,
@@ -284,11 +272,13 @@ impl Headless {
         }
     }
 
-    /// Renders a picture of a scene that is already on this device like [`Headless::render_uploaded`], without blocking
-    /// the thread while the device works.
+    /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
+    /// submission, and decides how the render continues.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_uploaded`].
+    /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
+    /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
+    /// uploaded without the structure of the spheres that cast shadows.
     pub async fn render_uploaded_async(
         &self,
         scene: &SceneBuffers,

@@ -14,10 +14,12 @@ use crate::render::{Nearest, RenderSettings};
 use crate::scene::Scene;
 
 impl Headless {
-    /// Renders a part of a scene like [`Headless::render_nearest`], without blocking the thread while the device works.
+    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`]), with what is needed to put it together
+    /// with those of the other parts. Each planned brick is built, traced and dropped before the next. A large picture is
+    /// rendered in tiles, for each of which the bricks are built again.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_nearest`].
+    /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
     pub async fn render_nearest_async(
         &self,
         scene: &Scene,

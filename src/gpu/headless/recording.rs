@@ -61,10 +61,12 @@ pub(super) fn new_recording(
 }
 
 impl Headless {
-    /// Records a picture like [`Headless::record`], without blocking the thread.
+    /// Renders a picture of primary rays with all layers and keeps the ray and the hit of every pixel, from which
+    /// [`Checker::certify`](crate::verify::Checker::certify) judges the device.
     ///
     /// # Errors
-    /// The same as for [`Headless::record`].
+    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
+    /// picture. [`Headless::record_lit`] records such pictures.
     pub async fn record_async(
         &self,
         scene: &SceneBuffers,
@@ -80,7 +82,7 @@ impl Headless {
             ..RendererKey::new(scene, view.camera)
         };
         self.with_renderer(key, async |renderer: &Renderer| {
-            let mut recording = new_recording(scene.space(), view, primary)?;
+            let mut recording = new_recording(&scene.space, view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
             self.render_tiles(renderer, scene, view, &primary, output, watch).await?;
@@ -89,7 +91,8 @@ impl Headless {
         .await
     }
 
-    /// Records and renders a picture like [`Headless::record_and_render`], without blocking the thread.
+    /// Records a picture like [`Headless::record`], and renders the view a second time with
+    /// [`Headless::render_uploaded`], whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
     ///
     /// # Errors
     /// The same as for [`Headless::record`].
@@ -107,10 +110,12 @@ impl Headless {
         Ok(recording)
     }
 
-    /// Renders and checks a picture like [`Headless::verify`], without blocking the thread while the device works.
+    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels
+    /// of [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
     ///
     /// # Errors
-    /// The same as for [`Headless::verify`].
+    /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
+    /// picture that is not legal is not an error.
     pub async fn verify_async(
         &self,
         scene: &Scene,

@@ -32,10 +32,11 @@ impl RenderPlan {
 }
 
 impl Headless {
-    /// Copies a scene to the device like [`Headless::upload`], without blocking the thread while the device works.
+    /// Copies a scene to the device, brick by brick, with the structures that were built for it. They come from
+    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from a single [`Accel`](crate::accel::Accel).
     ///
     /// # Errors
-    /// The same as for [`Headless::upload`].
+    /// If the scene does not fit into the device's memory or limits, or if the device fails.
     pub async fn upload_async(
         &self,
         scene: &Scene,
@@ -57,11 +58,13 @@ impl Headless {
         .await
     }
 
-    /// Builds the planned structures of a scene and copies them to the device like [`Headless::upload_planned`],
-    /// without blocking the thread while the device works. The bricks are built by the thread that polls the future.
+    /// Builds the planned structures of a scene and copies them to the device, brick by brick. Each brick is dropped
+    /// before the next is built, so that this needs less memory than [`Headless::upload`]. `watch` is called before each
+    /// step. The plans come from [`RenderPlan::structures`](crate::gpu::RenderPlan::structures).
     ///
     /// # Errors
-    /// The same as for [`Headless::upload_planned`].
+    /// If the scene does not fit into the device's memory or limits, or if the device fails; [`GpuError::Stopped`] if
+    /// `watch` stops the copy.
     pub async fn upload_planned_async(
         &self,
         scene: &Scene,

@@ -11,8 +11,6 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene, LiveKey, LivePasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
@@ -58,21 +56,6 @@ impl LitRenderer {
     ///
     /// [`LitPicture::new`]: crate::gpu::LitPicture::new
     /// [`LitPicture::set`]: crate::gpu::LitPicture::set
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn build(
-        &self,
-        device: &Device,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Result<(), GpuError> {
-        block_on(self.build_async(device, scene, view, settings))
-    }
-
-    /// Builds pipelines like [`LitRenderer::build`], without blocking the thread while a browser builds them.
-    ///
-    /// # Errors
-    /// The same as for [`LitRenderer::build`].
     pub async fn build_async(
         &self,
         device: &Device,
@@ -80,7 +63,7 @@ impl LitRenderer {
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Result<(), GpuError> {
-        let (_, key) = lit_key(device, scene, view, settings)?;
+        let (.., key) = lit_key(device, scene, view, settings)?;
         self.passes(device, key).await?;
         self.resolve(device).await?;
         Ok(())
@@ -98,7 +81,7 @@ impl LitRenderer {
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Result<bool, GpuError> {
-        let (_, key) = lit_key(device, scene, view, settings)?;
+        let (.., key) = lit_key(device, scene, view, settings)?;
         Ok(self.built_passes(&key).is_some() && self.built_resolve().is_some())
     }
 
@@ -119,7 +102,7 @@ impl LitRenderer {
             return Ok(passes);
         }
         // The lock is not held while they are built. If two threads build them, one of the two is dropped.
-        let built = Arc::new(LitPasses::new(device, key, self.renderer.edits()).await?);
+        let built = Arc::new(LitPasses::new(device, key, &self.renderer.edits).await?);
         let mut passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(Arc::clone(passes.entry(key).or_insert(built)))
     }
@@ -135,7 +118,7 @@ impl LitRenderer {
         }
         let Renderer { color, data_layers, layouts, .. } = &self.renderer;
         let targets = (*color, *data_layers, &layouts.targets);
-        let built = LivePasses::new(device, key, targets, self.renderer.edits()).await?;
+        let built = LivePasses::new(device, key, targets, &self.renderer.edits).await?;
         let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(Arc::clone(live.entry(key).or_insert(Arc::new(built))))
     }
@@ -146,25 +129,24 @@ impl LitRenderer {
         }
         let Renderer { color, layouts, .. } = &self.renderer;
         let built =
-            resolve_pipeline(device, *color, &layouts.targets, self.renderer.edits()).await?;
+            resolve_pipeline(device, *color, &layouts.targets, &self.renderer.edits).await?;
         let mut resolve = self.resolve.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(resolve.insert(built).clone())
     }
 }
 
-/// The light of a picture, and the key of the passes that it needs.
-pub(in crate::gpu::host) fn lit_key(
+/// A lit picture, its light, and the key of the passes that it needs.
+pub(in crate::gpu::host) fn lit_key<'a>(
     device: &Device,
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    settings: &RenderSettings,
-) -> Result<(LightingData, LitKey), GpuError> {
+    scene: &'a SceneBuffers,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+) -> Result<(LitScene<'a>, LightingData, LitKey), GpuError> {
     if settings.primary().is_some() {
         return Err(GpuError::NotLit);
     }
-    settings.check_with(scene.appearance())?;
-    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-    let lighting = LightingData::new(settings, scene.summary(), view.camera);
-    let key = scenes.key(view, &lighting, &device.limits());
-    Ok((lighting, key))
+    let scenes = LitScene::new(scene, view, settings)?;
+    let lighting = scenes.lighting();
+    let key = scenes.key(&lighting, &device.limits());
+    Ok((scenes, lighting, key))
 }
