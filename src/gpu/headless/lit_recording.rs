@@ -11,7 +11,7 @@ use crate::gpu::headless::lit_flow::{Flow, LitWork};
 use crate::gpu::headless::lit_inputs::inputs;
 use crate::gpu::headless::lit_states::{Keep, LONGEST_SIDE, Reader};
 use crate::gpu::headless::path_recording::PathKeeper;
-use crate::gpu::headless::progress::{Decision, Progress, Watch};
+use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::studio_recording::{StudioKeeper, longest_side};
 use crate::gpu::passes::lit::{Attempt, LitPasses, LitScene, LitSizes, Moment};
 use crate::gpu::passes::tiles::Tile;
@@ -97,10 +97,7 @@ impl LitWork<'_> {
         for (done, &sample) in (0..).zip(samples) {
             let part = f64::from(done) / f64::from(total);
             let progress = Progress { samples: done, total, part, noise: None };
-            let mut after = || match watch(&progress) {
-                Decision::GoOn | Decision::MeasureNoise => Ok(()),
-                Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
-            };
+            let mut after = || unless_ended(watch(&progress));
             keep.begin(sample);
             flow.begin(0);
             for step in round.steps(sample..sample.saturating_add(1))? {

@@ -53,7 +53,6 @@ use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::query_structure;
-use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries_async;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
@@ -229,47 +228,11 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
-                Ok(self.render_planned_async(scene, plan, view, settings, layers, watches).await)
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => Ok(done?.image),
-            Err(never) => match never {},
-        }
-    }
-
-    /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
-    /// structures, this is repeated with others.
-    pub(in crate::gpu) async fn with_uploaded<T>(
-        &self,
-        scene: &Scene,
-        plan: impl Fn(AccelChoice) -> RenderPlan,
-        work: impl AsyncFn(&SceneBuffers) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let plans = plan.structures();
-                Ok(match self.upload_planned_async(scene, &plans, &mut go_on).await {
-                    Ok(buffers) => work(&buffers).await,
-                    Err(error) => Err(error),
-                })
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => done,
-            Err(never) => match never {},
-        }
+        let picture = retried(plan, async |plan: &RenderPlan| {
+            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
+            self.render_planned_async(scene, plan, view, settings, layers, watches).await
+        });
+        Ok(picture.await?.image)
     }
 
     /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
@@ -339,17 +302,6 @@ impl Headless {
         .await
     }
 
-    /// Calls `work` with the pass that writes new colours, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_recolor<T>(
-        &self,
-        work: impl AsyncFnOnce(&Recolor) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        self.alone(async |renderers: &mut Renderers| {
-            work(renderers.recolor(&self.device).await?).await
-        })
-        .await
-    }
-
     /// Calls `work` while nothing else uses this device.
     async fn alone<T>(
         &self,
@@ -414,5 +366,18 @@ impl Headless {
             }
         }
         self.faults.check()
+    }
+}
+
+/// Calls `work` with a plan for the structures that suit a scene. If rays need too many steps in them, this is repeated
+/// with others.
+async fn retried<T>(
+    plan: impl Fn(AccelChoice) -> RenderPlan,
+    work: impl AsyncFn(&RenderPlan) -> Result<T, GpuError>,
+) -> Result<T, GpuError> {
+    let work = async |plan: &RenderPlan| Ok::<_, Infallible>(work(plan).await);
+    match with_retries_async(AccelChoice::Auto, plan, |_| {}, work).await {
+        Ok(done) => done,
+        Err(never) => match never {},
     }
 }

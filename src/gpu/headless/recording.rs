@@ -4,10 +4,11 @@
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
 use crate::gpu::error::{GpuError, check_whole};
-use crate::gpu::headless::Headless;
+use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
 use crate::gpu::headless::renderers::RendererKey;
+use crate::gpu::headless::{Headless, retried};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::{self, SceneSpace};
@@ -126,10 +127,10 @@ impl Headless {
             return Err(GpuError::NotPrimary { integrator: settings.integrator.name() });
         }
         let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
-        let work = async |buffers: &SceneBuffers| {
-            self.record_and_render_async(buffers, view, settings, &mut go_on).await
-        };
-        let recording = self.with_uploaded(scene, plan, work).await?;
-        Ok(Checker::new(scene)?.certify(&recording))
+        let recording = retried(plan, async |plan: &RenderPlan| {
+            let buffers = self.upload_planned_async(scene, &plan.structures(), &mut go_on).await?;
+            self.record_and_render_async(&buffers, view, settings, &mut go_on).await
+        });
+        Ok(Checker::new(scene)?.certify(&recording.await?))
     }
 }

@@ -8,7 +8,7 @@ use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::host::composite_options::{CompositeOptions, Coverage, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
-use crate::gpu::passes::targets::Targets;
+use crate::gpu::passes::targets::{Targets, check_texture};
 use crate::gpu::resources::numbered_group;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
@@ -223,15 +223,8 @@ impl CompositePicture {
             }
         }
         for &(layer, view, format) in &layers {
-            let texture = view.texture();
-            let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
-            if texture.format() != format {
-                return refused(format!("{:?}", texture.format()), format!("{format:?}"));
-            }
-            if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-                let expected = "usable as TEXTURE_BINDING".to_owned();
-                return refused(format!("{:?}", texture.usage()), expected);
-            }
+            let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+            check_texture(layer, view, format, usage, "TEXTURE_BINDING")?;
         }
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];

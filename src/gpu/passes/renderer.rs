@@ -211,11 +211,7 @@ impl Renderer {
         })
     }
 
-    /// The pipeline for a purpose.
-    ///
-    /// # Errors
-    /// [`GpuError::NotReady`] if it is not built yet; [`GpuError::NoPipeline`] if it never will be. `kind` is that of
-    /// the brick it is needed for.
+    /// The pipeline for a purpose, and for a brick of a kind.
     pub(in crate::gpu) fn pipeline(
         &self,
         key: PassKey,

@@ -8,4 +8,3 @@ pub(in crate::gpu) mod scene_summary;
 pub(in crate::gpu) mod scene_upload;
 pub(in crate::gpu) mod shape_ids;
 pub(in crate::gpu) mod structures;
-pub(in crate::gpu) mod update;

@@ -216,9 +216,6 @@ impl SceneBuffers {
     }
 
     /// The buffers of the spheres that can hide lights from surfaces. In a studio these are only the opaque spheres.
-    ///
-    /// # Errors
-    /// [`GpuError::NoOccluders`] if a studio needs a separate structure and the scene was uploaded without.
     pub(in crate::gpu) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
         if settings.studio_parameters().is_none() { Ok(self) } else { self.studio_occluders() }
     }
@@ -233,9 +230,6 @@ impl SceneBuffers {
     }
 
     /// The settings by which primary rays are shaded.
-    ///
-    /// # Errors
-    /// [`GpuError::NotPrimary`] if the integrator is not `primary`; the errors of [`RenderSettings::check`].
     pub(in crate::gpu) fn primary_settings(
         &self,
         settings: &RenderSettings,

@@ -241,9 +241,6 @@ impl<'a> SceneUpload<'a> {
     }
 
     /// Returns the bricks, which are all searched as nested grids if any of them is one.
-    ///
-    /// # Errors
-    /// [`GpuError::NoStructure`] if the renderer was not built for the structure.
     pub(in crate::gpu) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
         let is_nested =

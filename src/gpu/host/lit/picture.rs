@@ -31,7 +31,7 @@ use crate::render::{PrimarySettings, RenderSettings};
 #[derive(Debug)]
 pub struct LitPicture {
     passes: Arc<LitPasses>,
-    resolve: ComputePipeline,
+    resolve: Arc<ComputePipeline>,
     key: LitKey,
     lighting: LightingData,
     frame: LitFrame,
