@@ -23,14 +23,7 @@ const PLATFORM_BACKEND: Backends = if cfg!(target_arch = "wasm32") {
 ///
 /// Only the backend of the platform is used: Metal, DX12, or Vulkan on all other systems. The environment variable
 /// `WGPU_BACKEND` names other backends, such as `vulkan` on Windows. Validation layers are loaded only if
-/// `WGPU_VALIDATION=1`.
-#[cfg(not(target_arch = "wasm32"))]
-#[must_use]
-pub fn adapters() -> Vec<Adapter> {
-    block_on(adapters_async())
-}
-
-/// Returns all adapters like [`adapters`], without blocking the thread. A browser offers one adapter or none.
+/// `WGPU_VALIDATION=1`. A browser offers one adapter or none.
 pub async fn adapters_async() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
         // The default would load validation layers in debug builds: they cost start-up time, and would have to be
@@ -66,15 +59,6 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
-    block_on(candidates_async(name))
-}
-
-/// Returns the adapters to try like [`candidates`], without blocking the thread.
-///
-/// # Errors
-/// The same as for [`index_of_choice`].
 pub async fn candidates_async(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     let mut adapters = adapters_async().await;
     let index = index_of_choice(&adapters, name)?;
@@ -84,21 +68,28 @@ pub async fn candidates_async(name: Option<&str>) -> Result<Vec<Adapter>, GpuErr
     Ok(adapters)
 }
 
-/// Returns the first of the [`candidates`].
-///
-/// # Errors
-/// The same as for [`index_of_choice`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
-    block_on(choose_async(name))
-}
-
 /// Returns the first of the [`candidates_async`].
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
 pub async fn choose_async(name: Option<&str>) -> Result<Adapter, GpuError> {
     candidates_async(name).await?.into_iter().next().ok_or(GpuError::NoAdapter)
+}
+
+/// Blocks the thread until [`adapters_async`] is done.
+#[cfg(not(target_arch = "wasm32"))]
+#[must_use]
+pub fn adapters() -> Vec<Adapter> {
+    block_on(adapters_async())
+}
+
+/// Blocks the thread until [`choose_async`] is done.
+///
+/// # Errors
+/// The same as for [`choose_async`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
+    block_on(choose_async(name))
 }
 
 /// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment

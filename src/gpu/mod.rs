@@ -13,6 +13,8 @@ pub use wgpu;
 pub const WGPU_VERSION: &str = "30.0";
 
 pub mod adapter;
+#[cfg(not(target_arch = "wasm32"))]
+mod blocking;
 mod checks;
 mod device_shape;
 pub(crate) mod edit;
@@ -25,26 +27,29 @@ mod options;
 pub(crate) mod passes;
 mod profile;
 mod quirks;
+mod resources;
 mod scene;
 mod self_test;
 mod shader;
 #[cfg(not(target_arch = "wasm32"))]
 mod waiting;
 
+#[cfg(not(target_arch = "wasm32"))]
+#[doc(hidden)]
+pub use blocking::edited_composite;
+#[cfg(not(target_arch = "wasm32"))]
+pub use blocking::with_retries;
 pub use error::GpuError;
 pub use headless::Headless;
 pub use headless::device_limits::DeviceLimits;
 pub use headless::lit_recording::{EachSample, LitPart};
+pub use headless::measure::TraceTime;
 pub use headless::plan::{HostPeak, PictureRequest, RenderPlan, StructurePlans};
 pub use headless::progress::{
     Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
 };
-pub use headless::timer::TraceTime;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::waiting::catches_panics;
-#[cfg(not(target_arch = "wasm32"))]
-#[doc(hidden)]
-pub use host::composite::edited_composite;
 pub use host::composite::{Composite, CompositePicture};
 pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
 pub use host::depth_test::{DepthTest, HostDepth};
@@ -63,8 +68,6 @@ pub use passes::targets::{DataTargets, Targets};
 pub use profile::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
-#[cfg(not(target_arch = "wasm32"))]
-pub use scene::structures::with_retries;
 pub use scene::structures::{Retry, Structures, with_retries_async};
 pub use self_test::{PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
 pub use shader::formats::ColorTarget;

@@ -156,6 +156,23 @@ impl Drop for ProfilePhase {
     }
 }
 
+/// The names of the passes of a submission, which are noted only for a profile.
+#[derive(Debug, Default)]
+pub(in crate::gpu) struct PassNames(pub(in crate::gpu) Option<Vec<&'static str>>);
+
+impl PassNames {
+    pub(in crate::gpu) fn note(&mut self, name: &'static str) {
+        self.0.iter_mut().for_each(|names| names.push(name));
+    }
+
+    /// The name of all passes of the submission.
+    pub(in crate::gpu) fn of_all(&self) -> Option<&'static str> {
+        let names = self.0.as_ref()?;
+        let first = *names.first()?;
+        Some(if names.iter().all(|name| *name == first) { first } else { "several passes" })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

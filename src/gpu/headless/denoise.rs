@@ -1,14 +1,16 @@
 //! Denoising a picture on a device, in strips that fit into a binding.
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::{Buffer, BufferUsages, ComputePassDescriptor};
+use wgpu::{Buffer, BufferUsages};
 
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::scene::scene_buffers::binding_limit;
-use crate::gpu::shader::layouts::{layout_of, storage, uniform};
+use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, part};
 use crate::image::Image;
@@ -31,10 +33,10 @@ pub(in crate::gpu) fn denoise_kernel() -> Kernel {
 }
 
 impl Headless {
-    /// Returns a picture with less noise like [`Headless::denoise`], without blocking the thread.
+    /// Returns a picture with less noise: light is averaged over pixels of similar shape and colour, in five passes.
     ///
     /// # Errors
-    /// The same as for [`Headless::denoise`].
+    /// If the picture lacks one of the layers in [`crate::image::denoise::GUIDES`], or if the device fails.
     pub async fn denoise_async(&self, image: &Image) -> Result<Image, GpuError> {
         let guided = Guided::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);
@@ -70,26 +72,15 @@ impl Headless {
         let phase = self.phase("create pipelines");
         let checks = Checks::default();
         let (filter, passes, result, back) = checks.create(device, || {
-            let vectors = storage::<[f32; 4]>(true);
-            let kinds = [
-                (0, uniform::<Denoise>()),
-                (1, vectors),
-                (2, vectors),
-                (3, vectors),
-                (4, storage::<[f32; 4]>(false)),
-            ];
-            let layout = layout_of(device, "pinhole denoise", &kinds);
+            let [read, written] = [true, false].map(storage::<[f32; 4]>);
+            let kinds = [uniform::<Denoise>(), read, read, read, written];
+            let layout = layout(device, "pinhole denoise", &kinds);
             let filter = pipeline(device, &kernel, &[&layout], &checks);
-            let buffer = |size, usage| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("pinhole denoise"),
-                    size,
-                    usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-                    mapped_at_creation: false,
-                })
+            let created = |size, usage| {
+                buffer(device, "pinhole denoise", size, usage | BufferUsages::COPY_SRC)
             };
             let [front, back, shapes, albedos] =
-                [(); 4].map(|()| buffer(bytes, BufferUsages::STORAGE));
+                [(); 4].map(|()| created(bytes, BufferUsages::STORAGE));
             for (target, contents) in
                 [(&front, &guided.lights), (&shapes, &guided.shapes), (&albedos, &guided.albedos)]
             {
@@ -97,21 +88,14 @@ impl Headless {
             }
             let passes: Vec<_> = (0..PASSES)
                 .map(|pass| {
-                    let record = buffer(size_of::<Denoise>() as u64, BufferUsages::UNIFORM);
+                    let record = created(size_of::<Denoise>() as u64, BufferUsages::UNIFORM);
                     let step = 1 << pass;
                     let contents = Denoise { size, step, zero: 0 };
                     queue.write_buffer(&record, 0, bytemuck::bytes_of(&contents));
                     let (from, to) = if pass & 1 == 0 { (&front, &back) } else { (&back, &front) };
                     let buffers = [&record, from, &shapes, &albedos, to];
-                    let entries: Vec<_> = (0..)
-                        .zip(buffers.map(Buffer::as_entire_binding))
-                        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                        .collect();
-                    device.create_bind_group(&wgpu::BindGroupDescriptor {
-                        label: Some("pinhole denoise"),
-                        layout: &layout,
-                        entries: &entries,
-                    })
+                    let buffers = buffers.map(Buffer::as_entire_binding);
+                    numbered_group(device, "pinhole denoise", &layout, buffers)
                 })
                 .collect();
             let result = if PASSES & 1 == 0 { front.clone() } else { back.clone() };
@@ -120,18 +104,15 @@ impl Headless {
         });
         checks.passed().await?;
         drop(phase);
-        let (mut encoder, mut times) = (self.encoder(), self.pass_times());
+        let (mut encoder, mut names) = (self.encoder(), self.pass_names());
         for group in &passes {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: None,
-                timestamp_writes: times.writes("denoise"),
-            });
+            let mut pass = begin_pass(&mut encoder, &mut names, "denoise");
             pass.set_pipeline(&filter);
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
         }
         back.record_copy(&mut encoder, &result);
-        self.run_timed(encoder, times, &[back.buffer()]).await?;
+        self.run_timed(encoder, names, &[&back.buffer]).await?;
         back.read(|lights: &[[f32; 4]]| lights.to_vec())
     }
 }

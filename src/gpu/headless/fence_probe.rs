@@ -48,7 +48,7 @@ impl Headless {
             probes_fences: true,
             ..RendererKey::new(&buffers, &camera)
         };
-        let mut recording = new_recording(buffers.space(), &view, primary)?;
+        let mut recording = new_recording(&buffers.space, &view, primary)?;
         self.with_renderer(key, async |renderer: &Renderer| {
             let output =
                 Output { image: &mut recording.image, pixels: Some(&mut recording.pixels) };

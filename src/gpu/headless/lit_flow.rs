@@ -5,13 +5,48 @@ use wgpu::{CommandEncoder, SubmissionIndex};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
-use crate::gpu::passes::lit::{LitFrame, LitPasses, MAX_DISPATCHES, Moment, Recorder, Step};
-use crate::gpu::passes::pass_times::PassTimes;
-use crate::gpu::passes::tiles::Groups;
+use crate::gpu::passes::lit::{
+    Attempt, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Moment,
+    RecordedBy, Recorder, Round, Step,
+};
+use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::gpu::profile::PassNames;
+use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 /// Callback after every submission. An error that it returns ends the work.
 pub(in crate::gpu) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
+
+/// The passes of a lit picture, and what they are given.
+#[derive(Clone, Copy)]
+pub(in crate::gpu) struct LitWork<'a> {
+    pub(in crate::gpu) headless: &'a Headless,
+    pub(in crate::gpu) passes: &'a LitPasses,
+    pub(in crate::gpu) scenes: LitScene<'a>,
+    pub(in crate::gpu) lighting: &'a LightingData,
+    pub(in crate::gpu) attempt: Attempt,
+}
+
+impl LitWork<'_> {
+    /// Creates the buffers for some tiles.
+    pub(in crate::gpu) async fn frame(
+        &self,
+        sizes: LitSizes,
+        tiles: impl Iterator<Item = Tile>,
+    ) -> Result<LitFrame, GpuError> {
+        let Self { headless: Headless { device, queue, .. }, passes, scenes, lighting, .. } = *self;
+        let (make, by) = (Make { device, queue }, RecordedBy::Headless);
+        let tiles = tiles.map(scenes.records(device));
+        LitFrame::new(make, passes, sizes, lighting, by, tiles).await
+    }
+
+    /// The dispatches of samples in these buffers.
+    pub(in crate::gpu) fn round(&self, frame: &LitFrame) -> Round<'_> {
+        let Self { passes, scenes: LitScene { all: scene, occluders, .. }, lighting, .. } = *self;
+        let (room, attempt) = (frame.sizes.room(), self.attempt);
+        Round { passes, lighting, scene, occluders, room, attempt }
+    }
+}
 
 /// Records and submits the dispatches of a lit picture. While the device executes one submission, the next is recorded.
 pub(in crate::gpu) struct Flow<'a> {
@@ -36,7 +71,7 @@ struct Submitted {
     index: SubmissionIndex,
     at: Instant,
     groups: u64,
-    times: PassTimes,
+    names: PassNames,
 }
 
 impl<'a> Flow<'a> {
@@ -46,8 +81,8 @@ impl<'a> Flow<'a> {
         passes: &'a LitPasses,
         scene: &'a SceneBuffers,
     ) -> Self {
-        let mut recorder = Recorder::new(frame, passes.advance(), headless.is_indirect());
-        recorder.replace_times(headless.pass_times());
+        let mut recorder = Recorder::new(frame, &passes.advance, headless.is_indirect, 0);
+        recorder.replace_names(headless.pass_names());
         Self {
             headless,
             frame,
@@ -68,20 +103,6 @@ impl<'a> Flow<'a> {
         self.encoder.get_or_insert_with(|| headless.encoder())
     }
 
-    /// Records the dispatches of some samples of a tile, up to `end`, and submits them whenever there are enough.
-    pub(in crate::gpu) async fn round(
-        &mut self,
-        tile: usize,
-        steps: &[Step<'a>],
-        after: &mut After<'_>,
-    ) -> Result<(), GpuError> {
-        self.begin(tile);
-        for step in steps {
-            self.step(step, after).await?;
-        }
-        Ok(())
-    }
-
     /// Starts new paths in a tile.
     pub(in crate::gpu) fn begin(&mut self, tile: usize) {
         self.recorder.tile = tile;
@@ -100,13 +121,11 @@ impl<'a> Flow<'a> {
             self.send(after).await?;
         }
         let whole = self.recorder.groups(step);
-        let weight = u64::from(step.layers()) * u64::from(step.rays());
+        let weight = step.rays_in_layers();
         let submission_size = self.scene.submission_size().groups();
-        if !step.is_search() || whole.count() * weight <= submission_size {
+        if whole.count() * weight <= submission_size {
             self.record(step, None);
-            if step.is_search() {
-                self.gathered += whole.count() * weight;
-            }
+            self.gathered += whole.count() * weight;
             self.note_samples(step);
             let is_enough = self.gathered >= submission_size || self.headless.submits_one_by_one();
             return match is_enough {
@@ -164,14 +183,14 @@ impl<'a> Flow<'a> {
         };
         let queue = self.headless.queue();
         self.frame.queue_parameters(queue, 0, &self.recorder.take_parameters());
-        let times = self.recorder.replace_times(self.headless.pass_times());
+        let names = self.recorder.replace_names(self.headless.pass_names());
         let at = Instant::now();
         let index = self.headless.start(encoder);
         for (tile, samples) in self.accumulated.drain(..) {
             self.samples[tile] = samples;
         }
         let groups = std::mem::take(&mut self.gathered);
-        let before = self.submitted.replace(Submitted { index, at, groups, times });
+        let before = self.submitted.replace(Submitted { index, at, groups, names });
         self.wait_for(before).await?;
         after()
     }
@@ -194,20 +213,28 @@ impl<'a> Flow<'a> {
         self.encoder = None;
         self.accumulated.clear();
         self.recorder.take_parameters();
-        self.recorder.replace_times(self.headless.pass_times());
+        self.recorder.replace_names(self.headless.pass_names());
         let last = self.submitted.take();
         self.wait_for(last).await
     }
 
+    /// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
+    pub(in crate::gpu) async fn check_spent(&mut self) -> Result<(), GpuError> {
+        let frame = self.frame;
+        frame.record_copy_spent(self.encoder());
+        self.finish(&[&frame.spent_back.buffer]).await?;
+        frame.read_spent()
+    }
+
     async fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
-        let Some(Submitted { index, at, groups, times }) = submitted else {
+        let Some(Submitted { index, at, groups, names }) = submitted else {
             return Ok(());
         };
         self.headless.wait(&[], index).await?;
         // The device began this work when it was submitted, or when the previous submission had finished.
         let began = at.max(self.last_done);
         let elapsed = began.elapsed();
-        self.headless.note_passes(&times, began);
+        self.headless.note_passes(&names, began);
         self.last_done = Instant::now();
         let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
         self.scene.adapt_submission_size(Groups { first: [0, 0], size }, elapsed);
@@ -225,9 +252,9 @@ impl<'a> Flow<'a> {
             self.recorder.tile = tile;
             let (headless, frame) = (self.headless, self.frame);
             let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
-            let written = self.recorder.record_noise(encoder, passes.noise(), samples);
+            let written = self.recorder.record_noise(encoder, &passes.noise, samples);
             frame.record_copy_variations(encoder);
-            self.finish(&[frame.variations_back.buffer()]).await?;
+            self.finish(&[&frame.variations_back.buffer]).await?;
             let _phase = headless.phase("read back");
             frame.variations_back.read(|found: &[[f32; 2]]| {
                 for [variance, light] in &found[..written] {

@@ -2,22 +2,31 @@
 
 use crate::camera::View;
 use crate::gpu::headless::recording::requested_view;
-use crate::gpu::passes::lit::LightingData;
 use crate::gpu::passes::lit::records::LightingParameters;
+use crate::gpu::passes::lit::{LightingData, LitScene};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::shader::records::SceneSpace;
 use crate::light::SkyLight;
 use crate::render::RenderSettings;
 use crate::verify::{LitInputs, UploadedLighting, UploadedSky};
 
-/// Collects the numbers that the device is given for a tile. The spaces are those of all spheres, and of those that cast
-/// shadows.
+/// Collects the numbers that the device is given for a tile.
 pub(super) fn inputs(
+    scenes: &LitScene<'_>,
+    lighting: &LightingData,
+    Tile { origin, size, .. }: Tile,
+) -> LitInputs {
+    let LitScene { all, occluders, view, settings } = *scenes;
+    inputs_in([&all.space, &occluders.space], view, settings, lighting, [origin, size])
+}
+
+/// The numbers for scenes in these spaces: that of all spheres, and that of those that cast shadows.
+fn inputs_in(
     [space, occluders]: [&SceneSpace; 2],
     view: &View<'_>,
     settings: &RenderSettings,
     lighting: &LightingData,
-    Tile { origin, size, .. }: Tile,
+    [origin, size]: [[u32; 2]; 2],
 ) -> LitInputs {
     let (camera, uploaded) = requested_view(space, view.camera);
     LitInputs {
@@ -107,9 +116,8 @@ mod tests {
             let space = SceneSpace { origin: random.scene.origin(), min, max };
             let summary = SceneSummary::of(&random.scene);
             let lighting = LightingData::new(&random.settings, &summary, view.camera);
-            let (origin, size) = ([0; 2], [view.film.width(), view.film.height()]);
-            let tile = Tile { origin, size, in_target: [0; 2] };
-            let given = inputs([&space; 2], &view, &random.settings, &lighting, tile);
+            let part = [[0; 2], [view.film.width(), view.film.height()]];
+            let given = inputs_in([&space; 2], &view, &random.settings, &lighting, part);
             let mut recording = PathRecording { given, samples: Vec::new() };
             let certificate = checker.certify_paths(&recording);
             assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);

@@ -7,17 +7,13 @@ use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::lit_flow::Flow;
+use crate::gpu::headless::lit_flow::{Flow, LitWork};
 use crate::gpu::headless::lit_inputs::inputs;
 use crate::gpu::headless::lit_states::{Keep, LONGEST_SIDE, Reader};
 use crate::gpu::headless::path_recording::PathKeeper;
-use crate::gpu::headless::progress::{Decision, Progress, Watch};
+use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::studio_recording::{StudioKeeper, longest_side};
-use crate::gpu::passes::frame::iteration_limit;
-use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, Moment, RecordedBy,
-    Round,
-};
+use crate::gpu::passes::lit::{Attempt, LitPasses, LitScene, LitSizes, Moment};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::RenderSettings;
@@ -26,38 +22,16 @@ use crate::verify::{LitRecording, RecordedFilm};
 /// Callback with the recording of each sample.
 pub type EachSample<'a> = dyn FnMut(LitRecording<'_>) + 'a;
 
-/// The inputs of a recording.
-struct Work<'a> {
-    headless: &'a Headless,
-    passes: &'a LitPasses,
-    scenes: LitScene<'a>,
-    view: &'a View<'a>,
-    settings: &'a RenderSettings,
-    lighting: &'a LightingData,
-    tile: Tile,
-}
-
 impl Headless {
-    /// Records lit pictures like [`Headless::record_lit`], without blocking the thread.
+    /// Takes some samples of a lit picture one by one and records the state of every path, or of every ray of a studio,
+    /// after every pass, from which [`Checker::certify_lit`](crate::verify::Checker::certify_lit) judges the device.
+    /// `each` is called with the recording of each sample; the sums of pixels go on from one to the next. If a side of
+    /// the film has more than 256 pixels, only a rectangle in the middle of the film is recorded, and in a studio with
+    /// many lights or directions of ambient light a smaller one. The passes are those that take samples step by step.
     ///
     /// # Errors
-    /// The same as for [`Headless::record_lit`].
-    pub async fn record_lit_async(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        samples: &[u32],
-        callbacks: (&mut EachSample<'_>, &mut Watch<'_>),
-    ) -> Result<(), GpuError> {
-        let part = LitPart::Middle;
-        self.record_lit_part_async(scene, view, settings, (part, samples), callbacks).await
-    }
-
-    /// Records a part of a lit picture like [`Headless::record_lit_part`], without blocking the thread.
-    ///
-    /// # Errors
-    /// The same as for [`Headless::record_lit`].
+    /// [`GpuError::NotLit`] if the integrator is `primary`; the same errors as for [`Headless::render_uploaded`];
+    /// [`GpuError::Stopped`] if `watch` finishes or stops the recording.
     pub async fn record_lit_part_async(
         &self,
         scene: &SceneBuffers,
@@ -70,73 +44,60 @@ impl Headless {
             return Err(GpuError::NotLit);
         }
         check_whole(&view.film)?;
-        settings.check_with(scene.appearance())?;
-        let lighting = LightingData::new(settings, scene.summary(), view.camera);
-        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-        let side = if lighting.mode.is_studio() { longest_side(&lighting) } else { LONGEST_SIDE };
+        let scenes = LitScene::new(scene, view, settings)?;
+        let lighting = &scenes.lighting();
+        let is_studio = lighting.mode.is_studio();
+        let side = if is_studio { longest_side(lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
-        let spaces = [scenes.all, scenes.occluders].map(SceneBuffers::space);
-        let given = inputs(spaces, view, settings, &lighting, tile);
-        let mut keep: Box<dyn Keep> = if lighting.mode.is_studio() {
-            Box::new(StudioKeeper::new(given))
-        } else {
-            Box::new(PathKeeper::new(given))
+        let given = inputs(&scenes, lighting, tile);
+        let mut keep: Box<dyn Keep> = match is_studio {
+            true => Box::new(StudioKeeper::new(given)),
+            false => Box::new(PathKeeper::new(given)),
         };
         // What is recorded lies between the passes.
-        let key = LitKey { one_pass: None, ..scenes.key(view, &lighting, &self.device().limits()) };
+        let mut attempt = Attempt::Steps;
+        let key = attempt.key(scenes.key(lighting, &self.device.limits()));
         self.with_lit_passes(key, async |passes: &LitPasses| {
-            let (headless, lighting) = (self, &lighting);
-            let work = Work { headless, passes, scenes, view, settings, lighting, tile };
             let is_first = Cell::new(true);
-            let each = &mut |recording: LitRecording<'_>| {
+            let mut each = |recording: LitRecording<'_>| {
                 is_first.set(false);
                 each(recording);
             };
-            match work.record(samples, AT_ONCE, &mut *keep, each, watch).await {
-                // Several directions of ambient light in one invocation need more steps than one direction.
-                Err(GpuError::Steps)
-                    if is_first.get() && lighting.parameters.occlusion_samples > 1 =>
-                {
-                    work.record(samples, 1, &mut *keep, each, watch).await
+            loop {
+                let work = LitWork { headless: self, passes, scenes, lighting, attempt };
+                let done = work.record(tile, samples, &mut *keep, &mut each, watch).await;
+                match (done, attempt.easier(lighting)) {
+                    (Err(GpuError::Steps), Some(easier)) if is_first.get() => attempt = easier,
+                    (done, _) => return done,
                 }
-                done => done,
             }
         })
         .await
     }
 }
 
-impl Work<'_> {
+impl LitWork<'_> {
     async fn record(
         &self,
+        tile: Tile,
         samples: &[u32],
-        at_once: u32,
         keep: &mut dyn Keep,
         each: &mut EachSample<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
-        let Self { headless, passes, scenes, view, settings, lighting, tile } = *self;
-        let device = headless.device();
-        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
-        let tiles = std::iter::once((tile, scenes.frames(view, region, tile, limit)));
+        let Self { headless, passes, scenes, lighting, .. } = *self;
         let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
-        let (devices, by) = ((device, headless.queue()), RecordedBy::Headless);
-        let frame = &LitFrame::new(devices, passes, sizes, lighting, by, tiles).await?;
-        let LitScene { all, occluders } = scenes;
-        let room = sizes.room();
-        let round = Round { passes, lighting, scene: all, occluders, room, at_once };
-        let reader = Reader::new(device, frame, room, lighting.mode);
+        let frame = &self.frame(sizes, std::iter::once(tile)).await?;
+        let round = self.round(frame);
+        let reader = Reader::new(&headless.device, frame, sizes.room(), lighting.mode);
         let total = samples.len() as u32;
-        let mut flow = Flow::new(headless, frame, passes, all);
+        let mut flow = Flow::new(headless, frame, passes, scenes.all);
         frame.record_clear_film(flow.encoder(), 0);
         let mut before = reader.film(&mut flow).await?;
         for (done, &sample) in (0..).zip(samples) {
             let part = f64::from(done) / f64::from(total);
             let progress = Progress { samples: done, total, part, noise: None };
-            let mut after = || match watch(&progress) {
-                Decision::GoOn | Decision::MeasureNoise => Ok(()),
-                Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
-            };
+            let mut after = || unless_ended(watch(&progress));
             keep.begin(sample);
             flow.begin(0);
             for step in round.steps(sample..sample.saturating_add(1))? {

@@ -133,7 +133,7 @@ impl<'a> Reader<'a> {
         let frame = self.frame;
         frame.record_copy_film(flow.encoder(), 0);
         frame.record_copy_spent(flow.encoder());
-        flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()]).await?;
+        flow.finish(&[&frame.film_back.buffer, &frame.spent_back.buffer]).await?;
         frame.read_spent()?;
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
     }
@@ -154,12 +154,12 @@ impl<'a> Reader<'a> {
                 SlotSource::Device(slot) => of_slot(slot),
                 SlotSource::Constant(_) => 0..0,
             },
-            Wanted::All => 0..self.paths.buffer().size(),
+            Wanted::All => 0..self.paths.buffer.size(),
         };
         let paths = &self.frame.paths;
         let (start, size) = (range.start, range.end - range.start);
-        flow.encoder().copy_buffer_to_buffer(paths, start, self.paths.buffer(), start, size);
-        flow.finish(&[self.paths.buffer()]).await?;
+        flow.encoder().copy_buffer_to_buffer(paths, start, &self.paths.buffer, start, size);
+        flow.finish(&[&self.paths.buffer]).await?;
         self.paths.read(|vectors: &[[u32; 4]]| keep(&States { vectors, pixels, slots }))
     }
 }

@@ -2,8 +2,6 @@
 //!
 //! No other file of the library submits work to a device, polls it, or waits for it.
 
-#[cfg(not(target_arch = "wasm32"))]
-mod blocking;
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
 pub(in crate::gpu) mod device_limits;
@@ -30,7 +28,6 @@ pub(in crate::gpu) mod renderers;
 mod studio_recording;
 pub(in crate::gpu) mod submission_size;
 pub(in crate::gpu) mod tile_textures;
-pub(in crate::gpu) mod timer;
 pub(in crate::gpu) mod uploading;
 pub(in crate::gpu) mod waiting;
 
@@ -56,7 +53,6 @@ use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::query_structure;
-use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries_async;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
@@ -71,7 +67,9 @@ pub struct Headless {
     device: Device,
     queue: Queue,
     timeout: Duration,
+    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     is_indirect: bool,
+    /// Whether one pass takes whole samples where it can.
     is_one_pass: bool,
     faults: Arc<Faults>,
     profile: Option<Profile>,
@@ -83,7 +81,7 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Opens a device on the first of [`adapter::candidates_async`] that can open one, without blocking the thread.
+    /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
     ///
     /// # Errors
     /// If there is no such adapter, or if none can open a device; the error is then that of the first.
@@ -183,31 +181,16 @@ impl Headless {
         DeviceShape::of(self.info.device_type)
     }
 
-    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
-    pub(in crate::gpu) fn is_indirect(&self) -> bool {
-        self.is_indirect
-    }
-
-    pub(in crate::gpu) fn profile(&self) -> Option<&Profile> {
-        self.profile.as_ref()
-    }
-
-    /// Whether one pass takes whole samples where it can.
-    pub(in crate::gpu) fn is_one_pass(&self) -> bool {
-        self.is_one_pass
-    }
-
     /// Returns the queue, for callers that record their own commands.
     #[must_use]
     pub fn queue(&self) -> &Queue {
         &self.queue
     }
 
-    /// Tests the arithmetic of the device like [`Headless::self_test`], without blocking the thread while the device
-    /// works.
+    /// Tests whether the arithmetic of the device has the properties that the error bounds of the checker assume.
     ///
     /// # Errors
-    /// The same as for [`Headless::self_test`].
+    /// If the device fails. A property that the device lacks is not an error; the report contains it.
     pub async fn self_test_async(
         &self,
         extent: SelfTestExtent,
@@ -227,11 +210,15 @@ impl Headless {
         })
     }
 
-    /// Renders a picture like [`Headless::render`], without blocking the thread while the device works. Other work of
-    /// the device waits for its turn.
+    /// Renders a picture.
+    ///
+    /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
+    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data,
+    /// another structure is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`].
+    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
+    /// device or of the host, or if the device fails.
     pub async fn render_async(
         &self,
         scene: &Scene,
@@ -241,54 +228,20 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
-                Ok(self.render_planned_async(scene, plan, view, settings, layers, watches).await)
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => Ok(done?.image),
-            Err(never) => match never {},
-        }
+        let picture = retried(plan, async |plan: &RenderPlan| {
+            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
+            self.render_planned_async(scene, plan, view, settings, layers, watches).await
+        });
+        Ok(picture.await?.image)
     }
 
-    /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
-    /// structures, this is repeated with others.
-    pub(in crate::gpu) async fn with_uploaded<T>(
-        &self,
-        scene: &Scene,
-        plan: impl Fn(AccelChoice) -> RenderPlan,
-        work: impl AsyncFn(&SceneBuffers) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let plans = plan.structures();
-                Ok(match self.upload_planned_async(scene, &plans, &mut go_on).await {
-                    Ok(buffers) => work(&buffers).await,
-                    Err(error) => Err(error),
-                })
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => done,
-            Err(never) => match never {},
-        }
-    }
-
-    /// Renders a picture of a scene that is already on this device like [`Headless::render_uploaded`], without blocking
-    /// the thread while the device works.
+    /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
+    /// submission, and decides how the render continues.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_uploaded`].
+    /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
+    /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
+    /// uploaded without the structure of the spheres that cast shadows.
     pub async fn render_uploaded_async(
         &self,
         scene: &SceneBuffers,
@@ -345,17 +298,6 @@ impl Headless {
             let passes = renderers.lit(&self.device, key).await?;
             drop(phase);
             work(passes).await
-        })
-        .await
-    }
-
-    /// Calls `work` with the pass that writes new colours, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_recolor<T>(
-        &self,
-        work: impl AsyncFnOnce(&Recolor) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        self.alone(async |renderers: &mut Renderers| {
-            work(renderers.recolor(&self.device).await?).await
         })
         .await
     }
@@ -424,5 +366,18 @@ impl Headless {
             }
         }
         self.faults.check()
+    }
+}
+
+/// Calls `work` with a plan for the structures that suit a scene. If rays need too many steps in them, this is repeated
+/// with others.
+async fn retried<T>(
+    plan: impl Fn(AccelChoice) -> RenderPlan,
+    work: impl AsyncFn(&RenderPlan) -> Result<T, GpuError>,
+) -> Result<T, GpuError> {
+    let work = async |plan: &RenderPlan| Ok::<_, Infallible>(work(plan).await);
+    match with_retries_async(AccelChoice::Auto, plan, |_| {}, work).await {
+        Ok(done) => done,
+        Err(never) => match never {},
     }
 }

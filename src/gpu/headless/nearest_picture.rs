@@ -3,7 +3,6 @@
 use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::one_picture::KeepHit;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::progress::{UploadWatch, Watch};
 use crate::gpu::passes::bands::{rows_per_band, tile_size};
@@ -14,10 +13,12 @@ use crate::render::{Nearest, RenderSettings};
 use crate::scene::Scene;
 
 impl Headless {
-    /// Renders a part of a scene like [`Headless::render_nearest`], without blocking the thread while the device works.
+    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`]), with what is needed to put it together
+    /// with those of the other parts. Each planned brick is built, traced and dropped before the next. A large picture is
+    /// rendered in tiles, for each of which the bricks are built again.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_nearest`].
+    /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
     pub async fn render_nearest_async(
         &self,
         scene: &Scene,
@@ -35,36 +36,23 @@ impl Headless {
         let rows = rows_per_band(&limits, [width, height], false);
         for tile in tiles(film, [width, rows]) {
             let part = film.part(tile.origin, tile.size)?;
-            let view = View::new(view.camera, part);
+            let pixels = part.pixel_count() as usize;
+            let mut t = vec![f64::INFINITY; pixels];
+            let (mut ids, mut distances) = (vec![NO_ID; pixels], vec![f32::INFINITY; pixels]);
+            let mut keep = |at: usize, [along, id, _, before]: &Hit| {
+                if *id != NO_ID {
+                    let (along, before) = (f32::from_bits(*along), f32::from_bits(*before));
+                    (t[at], ids[at], distances[at]) = (along.into(), *id, along + before);
+                }
+            };
+            let (view, traced) = (View::new(view.camera, part), Some(&mut keep as _));
             let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (upload_watch, watch);
-            let part = self.nearest_of_tile(scene, plan, &view, settings, layers, watches);
-            whole.put(&part.await?, tile.origin)?;
+            let image = self.render_by_brick(scene, plan, &view, settings, layers, watches, traced);
+            let image = image.await?;
+            let integrator = settings.integrator.name();
+            let part = Nearest::new(image, t, ids, distances);
+            whole.put(&part.ok_or(GpuError::NotPrimary { integrator })?, tile.origin)?;
         }
         Ok(whole)
-    }
-
-    async fn nearest_of_tile(
-        &self,
-        scene: &Scene,
-        plan: &RenderPlan,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
-    ) -> Result<Nearest, GpuError> {
-        let pixels = view.film.pixel_count() as usize;
-        let mut t = vec![f64::INFINITY; pixels];
-        let (mut ids, mut distances) = (vec![NO_ID; pixels], vec![f32::INFINITY; pixels]);
-        let mut keep = |at: usize, [along, id, _, before]: &Hit| {
-            if *id != NO_ID {
-                let (along, before) = (f32::from_bits(*along), f32::from_bits(*before));
-                (t[at], ids[at], distances[at]) = (along.into(), *id, along + before);
-            }
-        };
-        let traced: Option<&mut KeepHit<'_>> = Some(&mut keep);
-        let image = self.render_by_brick(scene, plan, view, settings, layers, watches, traced);
-        let image = image.await?;
-        Nearest::new(image, t, ids, distances)
-            .ok_or(GpuError::NotPrimary { integrator: settings.integrator.name() })
     }
 }

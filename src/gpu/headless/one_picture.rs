@@ -34,11 +34,14 @@ use crate::scene::Scene;
 pub(in crate::gpu) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
 
 impl Headless {
-    /// Builds the planned structures and renders one picture like [`Headless::render_planned`], without blocking the
-    /// thread while the device works.
+    /// Builds the planned structures of a scene and renders one picture, like [`Headless::upload_planned`] and
+    /// [`Headless::render_uploaded`], which call the two callbacks.
+    ///
+    /// If a picture by primary rays is a single tile and the scene has several bricks, each brick is traced as soon as
+    /// it is on the device, and dropped. Bricks that the picture does not show are not built.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_planned`].
+    /// The same as for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
     pub async fn render_planned_async(
         &self,
         scene: &Scene,
@@ -102,7 +105,8 @@ impl Headless {
         drop(phase);
         // The nearest of equal spheres has the smallest id in every brick, so the ids of the input do.
         let ids = ShapeIds::of_all(scene, false);
-        let (summary, no_bricks) = (SceneSummary::of(scene), UploadedBricks::none(brick_space));
+        let summary = SceneSummary::of(scene);
+        let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
         let kinds = [false, true].map(|nested| brick_space.structure.with_nested(nested));
         self.alone(async |renderers: &mut Renderers| {
             let layouts = self.layouts_of(kinds.to_vec()).await?;
@@ -110,7 +114,7 @@ impl Headless {
                 SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
             let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
             let primary = scene.primary_settings(settings)?;
-            let visible = VisibleBricks::of(view, scene.space(), &boxes);
+            let visible = VisibleBricks::of(view, &scene.space, &boxes);
             let textures = scoped(device, || TileTextures::new(device, size, data_layers)).await?;
             let key = |structure| RendererKey {
                 kinds: vec![BrickKind { structure, primitive: Primitive::Sphere }],
@@ -132,7 +136,7 @@ impl Headless {
             let mut seen: Option<SeenPixels> = None;
             for (number, part) in parts.iter().enumerate() {
                 let region = frame.traced_groups(part.slot);
-                let own = space_of(scene.space(), &boxes[part.brick]);
+                let own = space_of(&scene.space, &boxes[part.brick]);
                 if let (Some(seen), Some(own)) = (&seen, &own)
                     && seen.hide(view, own, region)
                 {
@@ -162,31 +166,31 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(queue, part.slot, groups.first);
-                    let (mut encoder, mut times) = (self.encoder(), self.pass_times());
-                    let mut pass = begin_pass(&mut encoder, &mut times, "trace");
+                    let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+                    let mut pass = begin_pass(&mut encoder, &mut names, "trace");
                     let slice = BandBrick { groups, brick: 0, ..*part };
                     renderer.record_trace(&mut pass, &scene, &frame, slice)?;
                     drop(pass);
-                    self.submit_slice(encoder, times, groups, &scene, &[]).await?;
+                    self.submit_slice(encoder, names, groups, &scene, &[]).await?;
                     done.add(groups, watch)?;
                 }
                 // What a later brick hides will be shaded again.
-                let (mut encoder, mut times) = (self.encoder(), self.pass_times());
-                let mut pass = begin_pass(&mut encoder, &mut times, "shade");
+                let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+                let mut pass = begin_pass(&mut encoder, &mut names, "shade");
                 renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
                 drop(pass);
                 if number + 1 == parts.len() {
-                    self.run_timed(encoder, times, &[]).await?;
+                    self.run_timed(encoder, names, &[]).await?;
                     break;
                 }
                 seen_buffer.record_copy(&mut encoder, frame.traced().0);
-                self.run_timed(encoder, times, &[seen_buffer.buffer()]).await?;
+                self.run_timed(encoder, names, &[&seen_buffer.buffer]).await?;
                 seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
             }
             if let (Some(traced), Some(first)) = (&mut traced, parts.first()) {
                 let mut encoder = self.encoder();
                 seen_buffer.record_copy(&mut encoder, frame.traced().0);
-                self.run(encoder, &[seen_buffer.buffer()]).await?;
+                self.run(encoder, &[&seen_buffer.buffer]).await?;
                 seen_buffer.read(|hits: &[Hit]| {
                     let groups = frame.traced_groups(first.slot);
                     groups.indices(size).for_each(|at| traced(at, &hits[at]));

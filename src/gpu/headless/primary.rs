@@ -13,10 +13,10 @@ use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
-use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_bricks::traced_pixels;
+use crate::gpu::profile::PassNames;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::{Image, LayerSet};
 use crate::render::PrimarySettings;
@@ -69,7 +69,7 @@ impl Headless {
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, primary);
-            let (mut encoder, mut times) = (self.encoder(), self.pass_times());
+            let (mut encoder, mut names) = (self.encoder(), self.pass_names());
             if renderer.keeps_rays {
                 // Pixels that are not traced are recognised by their cleared rays.
                 frame.record_clear(&mut encoder);
@@ -79,7 +79,7 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.slot, groups.first);
-                    let mut pass = begin_pass(&mut encoder, &mut times, "trace");
+                    let mut pass = begin_pass(&mut encoder, &mut names, "trace");
                     let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
@@ -88,12 +88,12 @@ impl Headless {
                         unfinished = groups;
                         break;
                     }
-                    self.submit_slice(encoder, times, groups, scene, &[]).await?;
+                    self.submit_slice(encoder, names, groups, scene, &[]).await?;
                     done.add(groups, watch)?;
-                    (encoder, times) = (self.encoder(), self.pass_times());
+                    (encoder, names) = (self.encoder(), self.pass_names());
                 }
                 if part.is_last_of_band {
-                    let mut pass = begin_pass(&mut encoder, &mut times, "shade");
+                    let mut pass = begin_pass(&mut encoder, &mut names, "shade");
                     renderer.record_shade(&mut pass, scene, &frame, part.band)?;
                 }
             }
@@ -102,7 +102,7 @@ impl Headless {
                 traced.record_copy(&mut encoder, &frame);
                 mapped.extend(traced.buffers());
             }
-            self.submit_slice(encoder, times, unfinished, scene, &mapped).await?;
+            self.submit_slice(encoder, names, unfinished, scene, &mapped).await?;
             let _phase = self.phase("read back");
             textures.read_into(output.image, tile, &derived)?;
             if let (Some(traced), Some(pixels)) = (&traced, &mut output.pixels) {
@@ -114,14 +114,12 @@ impl Headless {
     }
 }
 
-/// Begins a compute pass, and notes it in `times`.
+/// Begins a compute pass, and notes its name.
 pub(in crate::gpu) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    times: &mut PassTimes,
+    names: &mut PassNames,
     name: &'static str,
 ) -> wgpu::ComputePass<'a> {
-    encoder.begin_compute_pass(&ComputePassDescriptor {
-        label: None,
-        timestamp_writes: times.writes(name),
-    })
+    names.note(name);
+    encoder.begin_compute_pass(&ComputePassDescriptor::default())
 }

@@ -34,10 +34,15 @@ pub type UploadWatch<'a> = dyn FnMut(&UploadProgress) -> Decision + 'a;
 impl UploadProgress {
     /// Calls `watch`, and returns an error if it stops.
     pub(in crate::gpu) fn tell(self, watch: &mut UploadWatch<'_>) -> Result<(), GpuError> {
-        match watch(&self) {
-            Decision::GoOn | Decision::MeasureNoise => Ok(()),
-            Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
-        }
+        unless_ended(watch(&self))
+    }
+}
+
+/// Returns an error for a decision to finish or to stop.
+pub(in crate::gpu) fn unless_ended(decision: Decision) -> Result<(), GpuError> {
+    match decision {
+        Decision::GoOn | Decision::MeasureNoise => Ok(()),
+        Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
     }
 }
 
@@ -69,9 +74,8 @@ impl TracedPixels {
         // A picture without any pixels to trace is complete at once.
         let part = if is_done { 1.0 } else { self.done as f64 / self.total as f64 };
         match watch(&Progress { samples: is_done.into(), total: 1, part, noise: None }) {
-            Decision::GoOn | Decision::MeasureNoise => Ok(()),
             Decision::Finish if is_done => Ok(()),
-            Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
+            decision => unless_ended(decision),
         }
     }
 }

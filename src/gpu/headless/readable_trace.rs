@@ -28,7 +28,7 @@ impl ReadableTrace {
     }
 
     pub(in crate::gpu) fn buffers(&self) -> [&Buffer; 2] {
-        [self.hits.buffer(), self.rays.buffer()]
+        [&self.hits.buffer, &self.rays.buffer]
     }
 
     pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {

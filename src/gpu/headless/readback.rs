@@ -3,13 +3,14 @@
 use wgpu::{Buffer, Device, Texture, TextureFormat, TextureView};
 
 use crate::gpu::error::GpuError;
+use crate::gpu::resources::{buffer, extent, texture};
 
 /// A texture that kernels write, with a buffer through which the host reads it.
 #[derive(Debug)]
 pub(in crate::gpu) struct ReadableTexture {
     texture: Texture,
-    view: TextureView,
-    buffer: Buffer,
+    pub(in crate::gpu) view: TextureView,
+    pub(in crate::gpu) buffer: Buffer,
     bytes_per_pixel: u32,
 }
 
@@ -18,26 +19,14 @@ impl ReadableTexture {
         device: &Device,
         label: &'static str,
         format: TextureFormat,
-        [width, height]: [u32; 2],
+        size: [u32; 2],
     ) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: extent([width, height]),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let texture = texture(device, label, format, size, usage);
         let bytes_per_pixel = bytes_per_pixel(format);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: Self::buffer_bytes(format, [width, height]),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let ReadableBuffer { buffer } =
+            ReadableBuffer::new(device, label, Self::buffer_bytes(format, size));
         Self { texture, view, buffer, bytes_per_pixel }
     }
 
@@ -49,14 +38,6 @@ impl ReadableTexture {
     /// Size of the buffer in bytes.
     pub(in crate::gpu) fn buffer_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
         u64::from(padded_row(width, bytes_per_pixel(format))) * u64::from(height)
-    }
-
-    pub(in crate::gpu) fn view(&self) -> &TextureView {
-        &self.view
-    }
-
-    pub(in crate::gpu) fn buffer(&self) -> &Buffer {
-        &self.buffer
     }
 
     /// Records a copy of the upper left part of the texture to the buffer.
@@ -99,22 +80,12 @@ impl ReadableTexture {
 /// A buffer through which the host reads a buffer that kernels write.
 #[derive(Debug)]
 pub(in crate::gpu) struct ReadableBuffer {
-    buffer: Buffer,
+    pub(in crate::gpu) buffer: Buffer,
 }
 
 impl ReadableBuffer {
     pub(in crate::gpu) fn new(device: &Device, label: &'static str, size: u64) -> Self {
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        Self { buffer }
-    }
-
-    pub(in crate::gpu) fn buffer(&self) -> &Buffer {
-        &self.buffer
+        Self { buffer: buffer(device, label, size, wgpu::BufferUsages::MAP_READ) }
     }
 
     /// Records a copy of a buffer of the same size, or of the start of a larger one, to this buffer.
@@ -136,10 +107,6 @@ impl ReadableBuffer {
         self.buffer.unmap();
         Ok(result)
     }
-}
-
-fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
-    wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }
 
 /// Size of a texel in bytes. Every format in use is a single uncompressed colour plane.

@@ -4,10 +4,11 @@
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
 use crate::gpu::error::{GpuError, check_whole};
-use crate::gpu::headless::Headless;
+use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
 use crate::gpu::headless::renderers::RendererKey;
+use crate::gpu::headless::{Headless, retried};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::{self, SceneSpace};
@@ -61,10 +62,12 @@ pub(super) fn new_recording(
 }
 
 impl Headless {
-    /// Records a picture like [`Headless::record`], without blocking the thread.
+    /// Renders a picture of primary rays with all layers and keeps the ray and the hit of every pixel, from which
+    /// [`Checker::certify`](crate::verify::Checker::certify) judges the device.
     ///
     /// # Errors
-    /// The same as for [`Headless::record`].
+    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
+    /// picture. [`Headless::record_lit`] records such pictures.
     pub async fn record_async(
         &self,
         scene: &SceneBuffers,
@@ -80,7 +83,7 @@ impl Headless {
             ..RendererKey::new(scene, view.camera)
         };
         self.with_renderer(key, async |renderer: &Renderer| {
-            let mut recording = new_recording(scene.space(), view, primary)?;
+            let mut recording = new_recording(&scene.space, view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
             self.render_tiles(renderer, scene, view, &primary, output, watch).await?;
@@ -89,7 +92,8 @@ impl Headless {
         .await
     }
 
-    /// Records and renders a picture like [`Headless::record_and_render`], without blocking the thread.
+    /// Records a picture like [`Headless::record`], and renders the view a second time with
+    /// [`Headless::render_uploaded`], whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
     ///
     /// # Errors
     /// The same as for [`Headless::record`].
@@ -107,10 +111,12 @@ impl Headless {
         Ok(recording)
     }
 
-    /// Renders and checks a picture like [`Headless::verify`], without blocking the thread while the device works.
+    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels
+    /// of [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
     ///
     /// # Errors
-    /// The same as for [`Headless::verify`].
+    /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
+    /// picture that is not legal is not an error.
     pub async fn verify_async(
         &self,
         scene: &Scene,
@@ -121,10 +127,10 @@ impl Headless {
             return Err(GpuError::NotPrimary { integrator: settings.integrator.name() });
         }
         let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
-        let work = async |buffers: &SceneBuffers| {
-            self.record_and_render_async(buffers, view, settings, &mut go_on).await
-        };
-        let recording = self.with_uploaded(scene, plan, work).await?;
-        Ok(Checker::new(scene)?.certify(&recording))
+        let recording = retried(plan, async |plan: &RenderPlan| {
+            let buffers = self.upload_planned_async(scene, &plan.structures(), &mut go_on).await?;
+            self.record_and_render_async(&buffers, view, settings, &mut go_on).await
+        });
+        Ok(Checker::new(scene)?.certify(&recording.await?))
     }
 }

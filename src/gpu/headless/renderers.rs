@@ -40,7 +40,7 @@ pub(in crate::gpu) struct RendererKey {
 impl RendererKey {
     /// The key of a renderer for pictures without data layers.
     pub(in crate::gpu) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
-        Self::of_picture(scene.kinds(), scene.bricks().len() > 1, camera, LayerSet::COLOR)
+        Self::of_picture(scene.kinds(), scene.bricks.len() > 1, camera, LayerSet::COLOR)
     }
 
     /// The key of a renderer for pictures of bricks of these kinds, of which there may be several.

@@ -13,106 +13,56 @@ use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_F
 use crate::gpu::shader::records::{self, NO_HIT};
 use crate::image::Image;
 
-/// Description of a texture of a tile and of the buffer that it is copied to.
-struct TileTexture {
-    label: &'static str,
-    /// Name of the texture in plans.
-    texture: &'static str,
-    /// Name of the buffer in plans.
-    read_back: &'static str,
-    format: TextureFormat,
-}
+/// The label of a texture of a tile, its format, and the names of the texture and of its read-back buffer in plans.
+type TileTexture = (&'static str, TextureFormat, [&'static str; 2]);
 
-const COLOR: TileTexture = TileTexture {
-    label: "pinhole color",
-    texture: "color texture",
-    read_back: "color read-back",
-    format: ColorTarget::Linear32.texture_format(),
-};
-const DEPTH: TileTexture = TileTexture {
-    label: "pinhole depth",
-    texture: "depth texture",
-    read_back: "depth read-back",
-    format: DEPTH_FORMAT,
-};
-const NORMAL: TileTexture = TileTexture {
-    label: "pinhole normal",
-    texture: "normal texture",
-    read_back: "normal read-back",
-    format: NORMAL_FORMAT,
-};
-const ID: TileTexture = TileTexture {
-    label: "pinhole id",
-    texture: "id texture",
-    read_back: "id read-back",
-    format: ID_FORMAT,
-};
-
-impl TileTexture {
-    fn planned(&self, size: [u32; 2]) -> [PlannedBuffer; 2] {
-        [
-            PlannedBuffer::one(self.texture, ReadableTexture::texture_bytes(self.format, size)),
-            PlannedBuffer::one(self.read_back, ReadableTexture::buffer_bytes(self.format, size)),
-        ]
-    }
-
-    fn create(&self, device: &Device, size: [u32; 2]) -> ReadableTexture {
-        ReadableTexture::new(device, self.label, self.format, size)
-    }
-}
+const COLOR: TileTexture =
+    ("pinhole color", ColorTarget::Linear32.texture_format(), ["color texture", "color read-back"]);
+/// Depth, normal and id.
+const DATA: [TileTexture; 3] = [
+    ("pinhole depth", DEPTH_FORMAT, ["depth texture", "depth read-back"]),
+    ("pinhole normal", NORMAL_FORMAT, ["normal texture", "normal read-back"]),
+    ("pinhole id", ID_FORMAT, ["id texture", "id read-back"]),
+];
 
 /// Sizes of the textures of a tile and of the buffers that they are copied to.
 pub(in crate::gpu) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
-    let data = [DEPTH, NORMAL, ID].into_iter().filter(|_| data_layers);
-    std::iter::once(COLOR).chain(data).flat_map(|texture| texture.planned(size)).collect()
+    let textures = std::iter::once(COLOR).chain(DATA.into_iter().filter(|_| data_layers));
+    let planned = textures.map(|(_, format, [texture, read_back])| {
+        [
+            PlannedBuffer::one(texture, ReadableTexture::texture_bytes(format, size)),
+            PlannedBuffer::one(read_back, ReadableTexture::buffer_bytes(format, size)),
+        ]
+    });
+    planned.flatten().collect()
 }
 
 /// The textures of a tile, with the buffers through which the host reads them.
 #[derive(Debug)]
 pub(in crate::gpu) struct TileTextures {
     color: ReadableTexture,
-    data: Option<DataTextures>,
-    status: ReadableBuffer,
-}
-
-#[derive(Debug)]
-struct DataTextures {
-    depth: ReadableTexture,
-    normal: ReadableTexture,
-    id: ReadableTexture,
+    /// Depth, normal and id.
+    data: Option<[ReadableTexture; 3]>,
+    /// Through which the host reads the status word of the kernels.
+    pub(in crate::gpu) status: ReadableBuffer,
 }
 
 impl TileTextures {
     pub(in crate::gpu) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
+        let create =
+            |(label, format, _): TileTexture| ReadableTexture::new(device, label, format, size);
+        let status = size_of::<records::Status>() as u64;
         Self {
-            color: COLOR.create(device, size),
-            data: data_layers.then(|| DataTextures {
-                depth: DEPTH.create(device, size),
-                normal: NORMAL.create(device, size),
-                id: ID.create(device, size),
-            }),
-            status: ReadableBuffer::new(
-                device,
-                "pinhole status",
-                size_of::<records::Status>() as u64,
-            ),
+            color: create(COLOR),
+            data: data_layers.then(|| DATA.map(create)),
+            status: ReadableBuffer::new(device, "pinhole status", status),
         }
     }
 
     pub(in crate::gpu) fn targets(&self) -> Targets<'_> {
-        Targets {
-            color: self.color.view(),
-            data: self.data.as_ref().map(|data| DataTargets {
-                depth: data.depth.view(),
-                normal: data.normal.view(),
-                id: data.id.view(),
-            }),
-        }
-    }
-
-    /// Buffer through which the host reads the status word of the kernels.
-    pub(in crate::gpu) fn status(&self) -> &ReadableBuffer {
-        &self.status
+        let data = self.data.as_ref().map(|data| data.each_ref().map(|texture| &texture.view));
+        let data = data.map(|[depth, normal, id]| DataTargets { depth, normal, id });
+        Targets { color: &self.color.view, data }
     }
 
     /// Records the copies of the part of a tile, and of the status word of its frame, to the buffers through which the
@@ -127,12 +77,11 @@ impl TileTextures {
             texture.record_copy(encoder, size);
         }
         self.status.record_copy(encoder, frame.status());
-        self.all().map(ReadableTexture::buffer).chain([self.status.buffer()]).collect()
+        self.all().map(|texture| &texture.buffer).chain([&self.status.buffer]).collect()
     }
 
     fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
-        let data = self.data.as_ref().map(|data| [&data.depth, &data.normal, &data.id]);
-        std::iter::once(&self.color).chain(data.into_iter().flatten())
+        std::iter::once(&self.color).chain(self.data.iter().flatten())
     }
 
     /// Returns an error if rays took too many steps, according to the mapped status word.
@@ -161,10 +110,10 @@ impl TileTextures {
                 *pixel = [*r, *g, *b];
             }
         })?;
-        let Some(data) = &self.data else {
+        let Some([depth, normal, id]) = &self.data else {
             return Ok(());
         };
-        data.depth.read_rows(tile.size, |j, depths: &[f32]| {
+        depth.read_rows(tile.size, |j, depths: &[f32]| {
             derived.set_by_depths(&mut rows[j], columns.clone(), y + j, depths);
             let Some(row) = &mut rows[j].depth else {
                 return;
@@ -173,7 +122,7 @@ impl TileTextures {
                 *pixel = if *t >= NO_HIT { f32::INFINITY } else { *t };
             }
         })?;
-        data.normal.read_rows(tile.size, |j, normals: &[[f32; 4]]| {
+        normal.read_rows(tile.size, |j, normals: &[[f32; 4]]| {
             let Some(row) = &mut rows[j].normal else {
                 return;
             };
@@ -181,7 +130,7 @@ impl TileTextures {
                 *pixel = [*x, *y, *z];
             }
         })?;
-        data.id.read_rows(tile.size, |j, ids: &[u32]| {
+        id.read_rows(tile.size, |j, ids: &[u32]| {
             derived.set_by_ids(&mut rows[j], columns.clone(), ids);
             let Some(row) = &mut rows[j].id else { return };
             row[columns.clone()].copy_from_slice(ids);

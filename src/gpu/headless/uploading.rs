@@ -1,4 +1,4 @@
-//! Copying scenes to the library's own device.
+//! Copying scenes to the library's own device, and updating them there.
 
 use std::borrow::Borrow;
 
@@ -10,12 +10,13 @@ use crate::gpu::headless::progress::{UploadProgress, UploadStep, UploadWatch, go
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
 use crate::gpu::scene::shape_ids::ShapeIds;
 use crate::gpu::scene::structures::Structures;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneUpdate};
 
 /// The renderer that a picture needs for bricks of a kind, of which there may be several.
 pub(in crate::gpu) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
@@ -32,10 +33,11 @@ impl RenderPlan {
 }
 
 impl Headless {
-    /// Copies a scene to the device like [`Headless::upload`], without blocking the thread while the device works.
+    /// Copies a scene to the device, brick by brick, with the structures that were built for it. They come from
+    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from a single [`Accel`](crate::accel::Accel).
     ///
     /// # Errors
-    /// The same as for [`Headless::upload`].
+    /// If the scene does not fit into the device's memory or limits, or if the device fails.
     pub async fn upload_async(
         &self,
         scene: &Scene,
@@ -57,11 +59,13 @@ impl Headless {
         .await
     }
 
-    /// Builds the planned structures of a scene and copies them to the device like [`Headless::upload_planned`],
-    /// without blocking the thread while the device works. The bricks are built by the thread that polls the future.
+    /// Builds the planned structures of a scene and copies them to the device, brick by brick. Each brick is dropped
+    /// before the next is built, so that this needs less memory than [`Headless::upload`]. `watch` is called before each
+    /// step. The plans come from [`RenderPlan::structures`](crate::gpu::RenderPlan::structures).
     ///
     /// # Errors
-    /// The same as for [`Headless::upload_planned`].
+    /// If the scene does not fit into the device's memory or limits, or if the device fails; [`GpuError::Stopped`] if
+    /// `watch` stops the copy.
     pub async fn upload_planned_async(
         &self,
         scene: &Scene,
@@ -104,6 +108,47 @@ impl Headless {
             Ok(all.with_occluders(some))
         })
         .await
+    }
+
+    /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with
+    /// [`Scene::apply`].
+    ///
+    /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a new
+    /// structure of the same kind is built on the host and copied to the device; the views of frames that show the
+    /// scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` lists
+    /// the cost of both.
+    ///
+    /// # Errors
+    /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.
+    pub async fn update_async(
+        &self,
+        buffers: &mut SceneBuffers,
+        scene: &Scene,
+        update: &SceneUpdate<'_>,
+    ) -> Result<(), GpuError> {
+        // If the first sphere ceases to be opaque, a studio may need a separate structure of occluders.
+        let loses_opacity =
+            buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
+        if buffers.takes_in_place(scene, update) && !loses_opacity {
+            let work = async |renderers: &mut Renderers| {
+                let recolor = renderers.recolor(&self.device).await?;
+                let make = Make { device: &self.device, queue: &self.queue };
+                let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+                let recorded = (&mut encoder, &mut names);
+                recolor.record_noted(make, recorded, buffers, scene, update).await?;
+                self.run_timed(encoder, names, &[]).await
+            };
+            return self.alone(work).await;
+        }
+        let choice = buffers.structure().choice();
+        let accel = self.plan_accel(scene, choice);
+        let opaque =
+            (loses_opacity || buffers.occluders.is_some()).then(|| scene.opaque()).flatten();
+        let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
+        let plans = StructurePlans { accel, occluders };
+        let copy = self.upload_planned_async(scene, &plans, &mut go_on).await?;
+        buffers.replace(copy);
+        Ok(())
     }
 
     /// A renderer that only provides the bind group layouts of structures. Equal layouts of one device are compatible.

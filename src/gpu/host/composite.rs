@@ -5,17 +5,14 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, RenderPass, Render
 use crate::camera::HostCamera;
 use crate::gpu::checks::scoped;
 use crate::gpu::edit::Edits;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
 use crate::gpu::host::composite_options::{CompositeOptions, Coverage, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
-use crate::gpu::passes::targets::Targets;
+use crate::gpu::passes::targets::{Targets, check_texture};
+use crate::gpu::resources::numbered_group;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::{Kernel, Part, part, with_constants};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 
 /// The pipeline that draws pictures into a host's render pass. One is enough for a device and a kind of render pass.
 #[derive(Debug)]
@@ -81,39 +78,17 @@ pub(in crate::gpu) fn composite_kernel(
     Kernel::new("composite", parts).with([("ENCODING", constant)])
 }
 
-/// Builds the pipeline like [`Composite::new`], but with edited shaders.
-///
-/// # Errors
-/// The same as for [`Composite::new`], and if a shader lacks the text of its edit.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn edited_composite(
-    device: &Device,
-    options: &CompositeOptions,
-    edits: Vec<ShaderEdit>,
-) -> Result<Composite, GpuError> {
-    let edits = Edits { replacements: edits, ..Edits::default() };
-    block_on(Composite::edited(device, options, &edits))
-}
-
 impl Composite {
     /// Builds the pipeline on a device that the caller owns.
     ///
     /// # Errors
     /// If the device cannot render to these formats, or not with this number of samples.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
-        block_on(Self::new_async(device, options))
-    }
-
-    /// Builds the pipeline like [`Composite::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`Composite::new`].
     pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
         Self::edited(device, options, &Edits::default()).await
     }
 
-    async fn edited(
+    /// Builds the pipeline of edited shaders.
+    pub(in crate::gpu) async fn edited(
         device: &Device,
         options: &CompositeOptions,
         edits: &Edits,
@@ -230,19 +205,6 @@ impl CompositePicture {
     ///
     /// # Errors
     /// If there are no data layers but the pass has depth, or a texture has another format or usage.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        composite: &Composite,
-        device: &Device,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(composite, device, targets))
-    }
-
-    /// A picture like that of [`CompositePicture::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`CompositePicture::new`].
     pub async fn new_async(
         composite: &Composite,
         device: &Device,
@@ -261,15 +223,8 @@ impl CompositePicture {
             }
         }
         for &(layer, view, format) in &layers {
-            let texture = view.texture();
-            let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
-            if texture.format() != format {
-                return refused(format!("{:?}", texture.format()), format!("{format:?}"));
-            }
-            if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-                let expected = "usable as TEXTURE_BINDING".to_owned();
-                return refused(format!("{:?}", texture.usage()), expected);
-            }
+            let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+            check_texture(layer, view, format, usage, "TEXTURE_BINDING")?;
         }
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
@@ -278,15 +233,7 @@ impl CompositePicture {
             let textures =
                 layers.iter().map(|(_, view, _)| wgpu::BindingResource::TextureView(view));
             let resources = std::iter::once(view.as_entire_binding()).chain(textures);
-            let entries: Vec<_> = (0..)
-                .zip(resources)
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                .collect();
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole composite"),
-                layout: &composite.layout,
-                entries: &entries,
-            });
+            let group = numbered_group(device, "pinhole composite", &composite.layout, resources);
             (view, group)
         })
         .await?;

@@ -8,12 +8,11 @@ use crate::gpu::error::GpuError;
 use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::frame::{BandBrick, Frame, Slot};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::resources::numbered_group;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::shader::layouts::uniform;
+use crate::gpu::shader::layouts::{layout, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, Part, camera_constant, camera_parts, part};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 
 /// The passes that end rays at the depth of a host, and remove hits behind it. One is enough for a renderer.
 #[derive(Debug)]
@@ -75,34 +74,15 @@ impl DepthTest {
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device))
-    }
-
-    /// Builds the pipeline like [`DepthTest::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`DepthTest::new`].
     pub async fn new_async(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        };
         let depth = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
         let checks = Checks::default();
-        let layout = checks.create(device, || {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("pinhole host depth"),
-                entries: &[entry(0, uniform::<HostView>()), entry(1, depth)],
-            })
-        });
+        let kinds = [uniform::<HostView>(), depth];
+        let layout = checks.create(device, || layout(device, "pinhole host depth", &kinds));
         let groups = [&renderer.layouts.frame, &layout];
         let create = |kernel: Kernel| -> Result<ComputePipeline, GpuError> {
             Ok(pipeline(device, &kernel.edited(&renderer.edits)?, &groups, &checks))
@@ -150,19 +130,6 @@ impl HostDepth {
     ///
     /// # Errors
     /// If the texture cannot be bound, for one of these reasons.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        test: &DepthTest,
-        device: &Device,
-        texture: &wgpu::TextureView,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(test, device, texture))
-    }
-
-    /// The depth like that of [`HostDepth::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`HostDepth::new`].
     pub async fn new_async(
         test: &DepthTest,
         device: &Device,
@@ -170,17 +137,8 @@ impl HostDepth {
     ) -> Result<Self, GpuError> {
         let (view, group) = scoped(device, || {
             let view = HostView::buffer(device, &HostView::without_camera([0, 0], [0, 0]));
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole host depth"),
-                layout: &test.layout,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::TextureView(texture),
-                    },
-                ],
-            });
+            let bound = [view.as_entire_binding(), wgpu::BindingResource::TextureView(texture)];
+            let group = numbered_group(device, "pinhole host depth", &test.layout, bound);
             (view, group)
         })
         .await?;

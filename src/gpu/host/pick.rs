@@ -11,8 +11,7 @@ use crate::geometry::ray::Ray;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::targets::Targets;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
+use crate::gpu::resources::buffer;
 use crate::image::NO_ID;
 use crate::verify::NO_HIT;
 
@@ -114,24 +113,10 @@ impl Picker {
     ///
     /// # Errors
     /// If the device has no memory left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(device: &Device, capacity: usize) -> Result<Self, GpuError> {
-        block_on(Self::new_async(device, capacity))
-    }
-
-    /// A ring like that of [`Picker::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`Picker::new`].
     pub async fn new_async(device: &Device, capacity: usize) -> Result<Self, GpuError> {
         let slots = scoped(device, || {
             let slot = |_| Slot {
-                buffer: device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("pinhole pick"),
-                    size: 8,
-                    usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-                    mapped_at_creation: false,
-                }),
+                buffer: buffer(device, "pinhole pick", 8, BufferUsages::MAP_READ),
                 state: Arc::new(AtomicU8::new(WAITING)),
                 asked: None,
             };

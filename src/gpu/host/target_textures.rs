@@ -1,14 +1,13 @@
 //! Textures that a host has only for the pictures of spheres.
 
-use wgpu::{Device, TextureFormat, TextureUsages, TextureView};
+use wgpu::{Device, TextureUsages, TextureView};
 
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::{DataTargets, Targets};
+use crate::gpu::resources::texture;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 
 /// Textures for the targets of a frame, in the formats of a renderer. They are for hosts that have no textures of their
 /// own to be written to; a host whose picture changes its size makes new ones.
@@ -28,33 +27,16 @@ impl TargetTextures {
     ///
     /// # Errors
     /// If the size is zero or more than the device allows, or if the device has no memory left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(renderer: &Renderer, device: &Device, size: [u32; 2]) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device, size))
-    }
-
-    /// Creates textures like [`TargetTextures::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`TargetTextures::new`].
     pub async fn new_async(
         renderer: &Renderer,
         device: &Device,
         size: [u32; 2],
     ) -> Result<Self, GpuError> {
-        let texture = |label, format: TextureFormat| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: TextureUsages::STORAGE_BINDING
-                    | TextureUsages::TEXTURE_BINDING
-                    | TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
+        let usage = TextureUsages::STORAGE_BINDING
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC;
+        let texture = |label, format| {
+            let texture = texture(device, label, format, size, usage);
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
         let (color, data) = scoped(device, || {

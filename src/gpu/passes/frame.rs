@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use wgpu::{BindGroup, Buffer, Device, Queue};
+use wgpu::{BindGroup, BindingResource, Buffer, BufferUsages, Device, Queue};
 
 use crate::camera::{CameraKind, View};
 use crate::gpu::checks::scoped;
@@ -12,11 +12,10 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::{Targets, checked_targets, describe_size};
 use crate::gpu::passes::tiles::{self, Groups, Tile};
 use crate::gpu::passes::visible_bricks::VisibleBricks;
-use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
+use crate::gpu::resources::{buffer, numbered_group, part};
+use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId};
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::records::{self, FrameParameters};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
 
@@ -98,19 +97,6 @@ impl Frame {
     /// # Errors
     /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory
     /// left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        renderer: &Renderer,
-        device: &Device,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device, targets))
-    }
-
-    /// Creates a frame like [`Frame::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`Frame::new`].
     pub async fn new_async(
         renderer: &Renderer,
         device: &Device,
@@ -131,59 +117,23 @@ impl Frame {
         let bands = size[1].div_ceil(rows_per_band) as usize;
         let slots = bands * if renderer.several_bricks { SLOTS } else { 1 };
         let (records, hits, rays, status, groups, target_group) = scoped(device, || {
-            let status = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole status"),
-                size: size_of::<records::Status>() as u64,
-                usage: wgpu::BufferUsages::STORAGE
-                    | wgpu::BufferUsages::COPY_SRC
-                    | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            let records = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole frame"),
-                size: (slots * stride) as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            let of_pixels = |label, size| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size,
-                    usage: wgpu::BufferUsages::STORAGE
-                        | wgpu::BufferUsages::COPY_SRC
-                        | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            };
-            let hits = of_pixels("pinhole hits", band.hits);
-            let rays = band.rays.map(|bytes| of_pixels("pinhole rays", bytes));
+            let uniform = BufferUsages::UNIFORM;
+            let records = buffer(device, "pinhole frame", (slots * stride) as u64, uniform);
+            let read_back = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let storage = |label, bytes| buffer(device, label, bytes, read_back);
+            let status = storage("pinhole status", size_of::<records::Status>() as u64);
+            let hits = storage("pinhole hits", band.hits);
+            let rays = band.rays.map(|bytes| storage("pinhole rays", bytes));
             let group = |slot| {
                 let buffers = [&hits, &status].into_iter().chain(&rays);
                 let resources = std::iter::once(part(&records, slot * stride, record_size))
                     .chain(buffers.map(Buffer::as_entire_binding));
-                let entries: Vec<_> = (0..)
-                    .zip(resources)
-                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                    .collect();
-                device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("pinhole frame"),
-                    layout: &renderer.layouts.frame,
-                    entries: &entries,
-                })
+                numbered_group(device, "pinhole frame", &renderer.layouts.frame, resources)
             };
             let groups = (0..slots).map(group).collect();
-            let entries: Vec<_> = (0..)
-                .zip(views)
-                .map(|(binding, view)| wgpu::BindGroupEntry {
-                    binding,
-                    resource: wgpu::BindingResource::TextureView(view),
-                })
-                .collect();
-            let target_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole targets"),
-                layout: &renderer.layouts.targets,
-                entries: &entries,
-            });
+            let views = views.into_iter().map(BindingResource::TextureView);
+            let target_group =
+                numbered_group(device, "pinhole targets", &renderer.layouts.targets, views);
             (records, hits, rays, status, groups, target_group)
         })
         .await?;
@@ -262,7 +212,7 @@ impl Frame {
         tile: Tile,
         primary: &PrimarySettings,
     ) {
-        let visible = VisibleBricks::of(view, scene.space(), &scene.brick_bounds());
+        let visible = VisibleBricks::of(view, &scene.space, &scene.brick_bounds());
         self.set_bricks(queue, scene, &visible, view, tile, primary);
     }
 
@@ -276,10 +226,10 @@ impl Frame {
         tile: Tile,
         primary: &PrimarySettings,
     ) {
-        let space = scene.space();
+        let space = &scene.space;
         let camera = RequestedCamera::of(view.camera);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
-        let device_shape = scene.shape();
+        let device_shape = scene.shape;
         let slots = self.groups.len() / self.bands;
         let (mut records, mut parts) = (HashMap::new(), Vec::new());
         for (band, tile) in bands.iter().enumerate() {
@@ -315,7 +265,7 @@ impl Frame {
         }
         queue.write_buffer(&self.records, 0, &bytes);
         let bands = bands.into_iter().map(|band| band.size).collect();
-        let (camera, scene) = (camera.kind, scene.id());
+        let (camera, scene) = (camera.kind, scene.id);
         self.view = Some(SetView { camera, scene, bands, records, parts });
     }
 
@@ -388,7 +338,7 @@ impl Frame {
     ) -> Result<&SetView, GpuError> {
         let view = self.view.as_ref().ok_or(GpuError::NoView)?;
         self.check_renderer(renderer)?;
-        if view.scene != scene.id() {
+        if view.scene != scene.id {
             return Err(GpuError::OtherScene);
         }
         Ok(view)

@@ -5,7 +5,6 @@ pub(in crate::gpu) mod emitter_table;
 pub(in crate::gpu) mod frame;
 pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod order;
-pub(in crate::gpu) mod pass_times;
 pub(in crate::gpu) mod record;
 pub(in crate::gpu) mod renderer;
 pub(in crate::gpu) mod renderer_options;

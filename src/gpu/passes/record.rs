@@ -52,10 +52,10 @@ impl Renderer {
     /// If the frame has no view of this scene, or was made for other targets.
     pub fn build_first(&mut self, scene: &SceneBuffers, frame: &Frame) -> Result<usize, GpuError> {
         let camera = frame.view(self, scene)?.camera;
-        let shades = scene.bricks().iter().map(|brick| brick.kind.primitive);
+        let shades = scene.bricks.iter().map(|brick| brick.kind.primitive);
         let mut needed: Vec<_> = shades.map(|of| PassKey::Shade(camera, of)).collect();
         needed.extend(frame.parts().map(|part| {
-            let kind = scene.bricks()[part.brick].kind;
+            let kind = scene.bricks[part.brick].kind;
             PassKey::Trace(camera, kind, brick_pass(part))
         }));
         Ok(self.put_first(&needed))
@@ -70,9 +70,9 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
         for part in frame.parts().filter(|part| part.groups.count() > 0).map(traced) {
-            self.trace_pipeline(camera, scene.bricks()[part.brick].kind, part)?;
+            self.trace_pipeline(camera, scene.bricks[part.brick].kind, part)?;
         }
-        for brick in scene.bricks() {
+        for brick in &scene.bricks {
             self.pipeline(PassKey::Shade(camera, brick.kind.primitive), brick.kind)?;
         }
         Ok(())
@@ -100,7 +100,7 @@ impl Renderer {
         if part.groups.count() == 0 {
             return Ok(());
         }
-        let brick = &scene.bricks()[part.brick];
+        let brick = &scene.bricks[part.brick];
         let pipeline = self.trace_pipeline(camera, brick.kind, part)?;
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, frame.group(part.slot), &[]);
@@ -123,7 +123,7 @@ impl Renderer {
         pass.set_bind_group(0, frame.group(Slot::of_scene(band)), &[]);
         pass.set_bind_group(2, frame.target_group(), &[]);
         let mut bound = None;
-        for brick in scene.bricks() {
+        for brick in &scene.bricks {
             let kind = brick.kind;
             if bound != Some(kind.primitive) {
                 let shade = PassKey::Shade(camera, kind.primitive);

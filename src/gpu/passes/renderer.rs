@@ -16,8 +16,6 @@ use crate::gpu::scene::query_structure;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::Layouts;
 use crate::gpu::shader::{self, BrickPass, Kernel, pipeline};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 
 /// The pipelines of primary rays for a device and a kind of target. All scenes and frames can share one renderer.
 #[derive(Debug)]
@@ -53,15 +51,6 @@ pub(in crate::gpu) enum PassKey {
 impl Renderer {
     /// Builds the pipelines on a device that the caller owns. This takes from milliseconds to seconds;
     /// [`Renderer::begin`] does it in pieces, and another thread can do it as well.
-    ///
-    /// # Errors
-    /// If the device rejects a kernel, which is a defect of this crate or of the driver.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
-        block_on(Self::new_async(device, options))
-    }
-
-    /// Builds the pipelines on a device that the caller owns, without blocking the thread while a browser builds them.
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
@@ -176,11 +165,6 @@ impl Renderer {
         self.building.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The edits of the shader source.
-    pub(in crate::gpu) fn edits(&self) -> &Edits {
-        &self.edits
-    }
-
     /// Whether there are pipelines that continue tracing from hits that another pass has written, for a camera.
     pub(in crate::gpu) fn continues_hits(&self, camera: CameraKind) -> bool {
         let built = self.built.iter().map(|(key, _)| key);
@@ -227,11 +211,7 @@ impl Renderer {
         })
     }
 
-    /// The pipeline for a purpose.
-    ///
-    /// # Errors
-    /// [`GpuError::NotReady`] if it is not built yet; [`GpuError::NoPipeline`] if it never will be. `kind` is that of
-    /// the brick it is needed for.
+    /// The pipeline for a purpose, and for a brick of a kind.
     pub(in crate::gpu) fn pipeline(
         &self,
         key: PassKey,
@@ -251,6 +231,8 @@ impl Renderer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::waiting::block_on;
+
     /// wgpu checks shaders, layouts, access modes and record sizes without any driver.
     #[test]
     fn every_pipeline_is_accepted_by_a_device_with_webgpu_limits() {

@@ -1,6 +1,6 @@
 //! The textures of the caller that pictures are written to.
 
-use wgpu::TextureView;
+use wgpu::{TextureFormat, TextureUsages, TextureView};
 
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
@@ -52,26 +52,35 @@ pub(super) fn checked_targets<'a>(
     }
     let size = targets.color.texture().size();
     for &(layer, view, format) in &wanted {
+        check_texture(layer, view, format, TextureUsages::STORAGE_BINDING, "STORAGE_BINDING")?;
         let texture = view.texture();
-        let refused =
-            |found: String, expected: String| Err(GpuError::Target { layer, found, expected });
-        if texture.format() != format {
-            return refused(format!("{:?}", texture.format()), format!("{format:?}"));
-        }
-        if !texture.usage().contains(wgpu::TextureUsages::STORAGE_BINDING) {
-            return refused(format!("{:?}", texture.usage()), "usable as STORAGE_BINDING".into());
-        }
         if texture.size() != size {
-            return refused(
-                describe_size([texture.width(), texture.height()]),
-                format!(
-                    "as large as the color target, {}",
-                    describe_size([size.width, size.height])
-                ),
-            );
+            let found = describe_size([texture.width(), texture.height()]);
+            let size = describe_size([size.width, size.height]);
+            let expected = format!("as large as the color target, {size}");
+            return Err(GpuError::Target { layer, found, expected });
         }
     }
     Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
+}
+
+/// Returns an error if a texture has another format or lacks a usage, which has this name.
+pub(in crate::gpu) fn check_texture(
+    layer: &'static str,
+    view: &TextureView,
+    format: TextureFormat,
+    usage: TextureUsages,
+    name: &str,
+) -> Result<(), GpuError> {
+    let texture = view.texture();
+    let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
+    if texture.format() != format {
+        return refused(format!("{:?}", texture.format()), format!("{format:?}"));
+    }
+    if !texture.usage().contains(usage) {
+        return refused(format!("{:?}", texture.usage()), format!("usable as {name}"));
+    }
+    Ok(())
 }
 
 pub(super) fn describe_size([width, height]: [u32; 2]) -> String {

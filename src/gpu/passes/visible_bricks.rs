@@ -63,7 +63,7 @@ pub(in crate::gpu) fn traced_pixels(
     view: &View<'_>,
     tile_size: [u32; 2],
 ) -> u64 {
-    let bricks = VisibleBricks::of(view, scene.space(), &scene.brick_bounds());
+    let bricks = VisibleBricks::of(view, &scene.space, &scene.brick_bounds());
     let parts = tiles(&view.film, tile_size).flat_map(|tile| bricks.parts_of(tile));
     parts.map(|(_, groups)| groups.pixels()).sum()
 }

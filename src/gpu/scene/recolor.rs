@@ -5,16 +5,15 @@ use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipelin
 
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::pass_times::PassTimes;
+use crate::gpu::profile::PassNames;
+use crate::gpu::resources::{Make, numbered_group};
 use crate::gpu::scene::appearance::color_words;
-use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
 use crate::gpu::scene::scene_summary::SceneSummary;
-use crate::gpu::shader::layouts::{layout_of, storage, uniform};
+use crate::gpu::scene::scene_upload::BrickBuffers;
+use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, part};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
@@ -47,21 +46,11 @@ impl Recolor {
     ///
     /// # Errors
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(device: &Device) -> Result<Self, GpuError> {
-        block_on(Self::new_async(device))
-    }
-
-    /// Builds the pipeline like [`Recolor::new`], without blocking the thread while a browser builds it.
-    ///
-    /// # Errors
-    /// The same as for [`Recolor::new`].
     pub async fn new_async(device: &Device) -> Result<Self, GpuError> {
-        let words = storage::<u32>(true);
-        let kinds =
-            [(0, uniform::<RecolorRange>()), (1, words), (2, words), (3, storage::<u32>(false))];
+        let [read, written] = [true, false].map(storage::<u32>);
+        let kinds = [uniform::<RecolorRange>(), read, read, written];
         let checks = Checks::default();
-        let layout = checks.create(device, || layout_of(device, "pinhole recolor", &kinds));
+        let layout = checks.create(device, || layout(device, "pinhole recolor", &kinds));
         let pipeline = pipeline(device, &recolor_kernel(), &[&layout], &checks);
         checks.passed().await?;
         Ok(Self { layout, pipeline })
@@ -76,24 +65,6 @@ impl Recolor {
     /// # Errors
     /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no
     /// memory left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn record(
-        &self,
-        device: &Device,
-        queue: &Queue,
-        encoder: &mut CommandEncoder,
-        buffers: &mut SceneBuffers,
-        scene: &Scene,
-        update: &SceneUpdate<'_>,
-    ) -> Result<(), GpuError> {
-        block_on(self.record_async(device, queue, encoder, buffers, scene, update))
-    }
-
-    /// Records the new colours like [`Recolor::record`], without blocking the thread while a browser answers. All
-    /// commands are recorded when the future is first polled.
-    ///
-    /// # Errors
-    /// The same as for [`Recolor::record`].
     pub async fn record_async(
         &self,
         device: &Device,
@@ -103,15 +74,15 @@ impl Recolor {
         scene: &Scene,
         update: &SceneUpdate<'_>,
     ) -> Result<(), GpuError> {
-        let recorded = (encoder, &mut PassTimes::default());
-        self.record_timed((device, queue), recorded, buffers, scene, update).await
+        let (make, names) = (Make { device, queue }, &mut PassNames::default());
+        self.record_noted(make, (encoder, names), buffers, scene, update).await
     }
 
-    /// Records the new colours like [`Recolor::record_async`], and notes the passes.
-    pub(in crate::gpu) async fn record_timed(
+    /// Records the new colours like [`Recolor::record_async`], and notes the names of the passes.
+    pub(in crate::gpu) async fn record_noted(
         &self,
-        (device, queue): (&Device, &Queue),
-        (encoder, times): (&mut CommandEncoder, &mut PassTimes),
+        make: Make<'_>,
+        (encoder, names): (&mut CommandEncoder, &mut PassNames),
         buffers: &mut SceneBuffers,
         scene: &Scene,
         update: &SceneUpdate<'_>,
@@ -120,14 +91,14 @@ impl Recolor {
             return Err(GpuError::NotInPlace);
         }
         // The words of this number of spheres, with four bytes each, fit into a binding.
-        let max_count = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
+        let max_count = u32::try_from(binding_limit(&make.device.limits()) / 4).unwrap_or(u32::MAX);
         let range = update.range();
         let checks = Checks::default();
         for first in range.clone().step_by(max_count as usize) {
             let ids = first..range.end.min(first.saturating_add(max_count));
             let words = color_words(scene.appearance().colors(), ids);
-            checks.create(device, || {
-                self.record_range((device, queue), (encoder, times), buffers, first, &words);
+            checks.create(make.device, || {
+                self.record_range(make, (encoder, names), buffers, first, &words);
             });
         }
         checks.passed().await?;
@@ -137,40 +108,25 @@ impl Recolor {
 
     fn record_range(
         &self,
-        (device, queue): (&Device, &Queue),
-        (encoder, times): (&mut CommandEncoder, &mut PassTimes),
+        make: Make<'_>,
+        (encoder, names): (&mut CommandEncoder, &mut PassNames),
         buffers: &SceneBuffers,
         first: u32,
         words: &[u32],
     ) {
-        let of_contents = |contents: &[u8], usage| {
-            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole recolor"),
-                size: contents.len() as u64,
-                usage: usage | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            queue.write_buffer(&buffer, 0, contents);
-            buffer
-        };
-        let new_words = of_contents(bytemuck::cast_slice(words), BufferUsages::STORAGE);
-        for brick in buffers.bricks() {
+        let label = "pinhole recolor";
+        let new_words = make.filled(label, bytemuck::cast_slice(words), BufferUsages::STORAGE);
+        for brick in &buffers.bricks {
             let BrickBuffers { ids, appearances, shape_count, .. } = brick;
             let (count, shape_count) = (words.len() as u32, *shape_count);
             let record = RecolorRange { first, count, shape_count, zero: 0 };
-            let range = of_contents(bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
-            let entries: Vec<_> = (0..)
-                .zip([&range, &new_words, ids, appearances].map(Buffer::as_entire_binding))
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                .collect();
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole recolor"),
-                layout: &self.layout,
-                entries: &entries,
-            });
+            let range = make.filled(label, bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
+            let bound = [&range, &new_words, ids, appearances].map(Buffer::as_entire_binding);
+            let group = numbered_group(make.device, label, &self.layout, bound);
+            names.note("recolor");
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("pinhole recolor"),
-                timestamp_writes: times.writes("recolor"),
+                label: Some(label),
+                timestamp_writes: None,
             });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
@@ -206,6 +162,6 @@ impl SceneBuffers {
             && before.sphere_count() == scene.len()
             && before.surfaces() == after.surfaces()
             && !after.surfaces().iter().any(absorbs)
-            && (!self.has_occluders() || hides_the_same())
+            && (!self.occluders.is_some() || hides_the_same())
     }
 }

@@ -1,12 +1,11 @@
 //! The buffers of a scene on a device.
 
 use std::borrow::Borrow;
-use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use wgpu::{Buffer, Device, Queue};
+use wgpu::{Device, Queue};
 
 use crate::accel::{
     Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure,
@@ -16,13 +15,12 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::submission_size::SubmissionSize;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
-use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
-use crate::gpu::scene::scene_upload::{BrickSource, BrickSpace, SceneUpload, UploadedBricks};
+use crate::gpu::scene::scene_upload::{
+    BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks,
+};
 use crate::gpu::scene::shape_ids::{ExcludeBy, ShapeIds};
 use crate::gpu::shader::records::SceneSpace;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -52,23 +50,26 @@ impl SceneId {
 /// The buffers of a scene on a device. Any number of frames can use them.
 #[derive(Debug)]
 pub struct SceneBuffers {
-    id: SceneId,
+    pub(in crate::gpu) id: SceneId,
     colors: u64,
-    space: SceneSpace,
+    pub(in crate::gpu) space: SceneSpace,
     /// The data of the host's scene that pictures need.
-    summary: SceneSummary,
+    pub(in crate::gpu) summary: SceneSummary,
     structure: Structure,
     /// How lit pictures exclude the sphere that a ray starts on from its search.
-    exclude_by: ExcludeBy,
-    bricks: Vec<BrickBuffers>,
+    pub(in crate::gpu) exclude_by: ExcludeBy,
+    /// In the order in which they were copied. There is at least one, so that the rays of an empty scene are marked as
+    /// misses.
+    pub(in crate::gpu) bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
     tests_per_ray: usize,
-    shape: DeviceShape,
+    /// The order and the amounts of work that suit the device.
+    pub(in crate::gpu) shape: DeviceShape,
     /// The submission size at the end of the last picture of the scene.
     submission_size: Mutex<SubmissionSize>,
     /// The spheres that cast shadows in a studio, if some do not and a studio was planned for.
-    occluders: Option<Box<Self>>,
+    pub(in crate::gpu) occluders: Option<Box<Self>>,
 }
 
 impl SceneBuffers {
@@ -78,21 +79,6 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        renderer: &Renderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &Scene,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device, queue, scene))
-    }
-
-    /// Copies a scene like [`SceneBuffers::new`], without blocking the thread while a browser answers. The structure is
-    /// built by the thread that first polls the future.
-    ///
-    /// # Errors
-    /// The same as for [`SceneBuffers::with_accel_async`].
     pub async fn new_async(
         renderer: &Renderer,
         device: &Device,
@@ -112,22 +98,6 @@ impl SceneBuffers {
     /// # Errors
     /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
     /// the scene does not fit into its memory.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn with_accel(
-        renderer: &Renderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &Scene,
-        accel: &Accel,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::with_accel_async(renderer, device, queue, scene, accel))
-    }
-
-    /// Copies a scene like [`SceneBuffers::with_accel`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
-    /// the scene does not fit into its memory.
     pub async fn with_accel_async(
         renderer: &Renderer,
         device: &Device,
@@ -141,20 +111,6 @@ impl SceneBuffers {
 
     /// Copies a scene like [`SceneBuffers::new`], with a second structure of the spheres that cast shadows if some do
     /// not, because they are not opaque. Studios of such scenes need it.
-    ///
-    /// # Errors
-    /// The same as for [`SceneBuffers::with_accel`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn for_studio(
-        renderer: &Renderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &Scene,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::for_studio_async(renderer, device, queue, scene))
-    }
-
-    /// Copies a scene like [`SceneBuffers::for_studio`], without blocking the thread while a browser answers.
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
@@ -224,11 +180,6 @@ impl SceneBuffers {
         }
     }
 
-    /// The order and the amounts of work that suit the device.
-    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
-        self.shape
-    }
-
     /// The same scene together with those of its spheres that cast shadows in a studio.
     pub(in crate::gpu) fn with_occluders(self, occluders: Self) -> Self {
         Self { occluders: Some(Box::new(occluders)), ..self }
@@ -258,11 +209,6 @@ impl SceneBuffers {
         *self = Self { id, submission_size: Mutex::new(submission_size), ..copy };
     }
 
-    /// Whether there is a separate structure of the spheres that cast shadows in a studio.
-    pub(in crate::gpu) fn has_occluders(&self) -> bool {
-        self.occluders.is_some()
-    }
-
     /// Returns the number of bytes of all buffers on the device.
     #[must_use]
     pub fn bytes(&self) -> u64 {
@@ -270,9 +216,6 @@ impl SceneBuffers {
     }
 
     /// The buffers of the spheres that can hide lights from surfaces. In a studio these are only the opaque spheres.
-    ///
-    /// # Errors
-    /// [`GpuError::NoOccluders`] if a studio needs a separate structure and the scene was uploaded without.
     pub(in crate::gpu) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
         if settings.studio_parameters().is_none() { Ok(self) } else { self.studio_occluders() }
     }
@@ -287,9 +230,6 @@ impl SceneBuffers {
     }
 
     /// The settings by which primary rays are shaded.
-    ///
-    /// # Errors
-    /// [`GpuError::NotPrimary`] if the integrator is not `primary`; the errors of [`RenderSettings::check`].
     pub(in crate::gpu) fn primary_settings(
         &self,
         settings: &RenderSettings,
@@ -298,14 +238,6 @@ impl SceneBuffers {
         let primary = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
         settings.check_with(&self.summary.appearance)?;
         Ok(primary)
-    }
-
-    pub(in crate::gpu) fn summary(&self) -> &SceneSummary {
-        &self.summary
-    }
-
-    pub(in crate::gpu) fn id(&self) -> SceneId {
-        self.id
     }
 
     pub(in crate::gpu) fn look(&self) -> SceneLook {
@@ -337,18 +269,10 @@ impl SceneBuffers {
         &self.summary.appearance
     }
 
-    pub(in crate::gpu) fn space(&self) -> &SceneSpace {
-        &self.space
-    }
-
     /// Returns the structure of the bricks.
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.structure
-    }
-
-    pub(in crate::gpu) fn exclude_by(&self) -> ExcludeBy {
-        self.exclude_by
     }
 
     /// The kinds of the bricks, without repetition.
@@ -360,12 +284,6 @@ impl SceneBuffers {
             }
         }
         kinds
-    }
-
-    /// The bricks in the order in which they were copied. There is at least one, so that the rays of an empty scene are
-    /// marked as misses.
-    pub(in crate::gpu) fn bricks(&self) -> &[BrickBuffers] {
-        &self.bricks
     }
 
     /// The boxes of the bricks, in the same order.
@@ -382,17 +300,4 @@ pub(in crate::gpu) fn binding_limit(limits: &wgpu::Limits) -> u64 {
 /// Plans the structure of a scene for a device.
 fn plan_of(device: &Device, scene: &Scene) -> AccelPlan {
     AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding_limit(&device.limits()))
-}
-
-/// A binding of a part of a buffer. `offset` and `size` are in bytes.
-pub(in crate::gpu) fn part(
-    buffer: &Buffer,
-    offset: usize,
-    size: usize,
-) -> wgpu::BindingResource<'_> {
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-        buffer,
-        offset: offset as u64,
-        size: NonZeroU64::new(size as u64),
-    })
 }

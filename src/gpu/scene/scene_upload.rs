@@ -1,18 +1,41 @@
-//! Copying the bricks of a scene to a device, one after the other.
+//! The buffers of the bricks of a scene, and copying bricks to a device, one after the other.
 
 use std::sync::Arc;
 
 use glam::Vec3;
-use wgpu::{Buffer, CommandEncoder, Device, Queue};
+use wgpu::{BindGroup, BindingResource, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
-use crate::accel::{Accel, Brick, BrickKind, Bricks, Primitive, Structure};
+use crate::accel::{Accel, Brick, BrickBounds, BrickKind, Bricks, Index, Primitive, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::scene::appearance;
-use crate::gpu::scene::brick_buffers::{BrickBuffers, BrickContents, Upload};
+use crate::gpu::resources::numbered_group;
+use crate::gpu::scene::appearance::{self, AppearanceWords};
+use crate::gpu::scene::query_structure;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::shape_ids::ShapeIds;
+use crate::gpu::shader::records;
+use crate::scene::SceneAppearance;
+
+/// Buffers and bind groups of a brick.
+#[derive(Debug)]
+pub(in crate::gpu) struct BrickBuffers {
+    /// Structure and primitive, which determine the kernels.
+    pub(in crate::gpu) kind: BrickKind,
+    /// The boxes of the shapes, by which bricks are sorted and looked for in pictures.
+    pub(in crate::gpu) bounds: BrickBounds,
+    /// Bind group 1 of `trace`.
+    pub(in crate::gpu) trace_group: BindGroup,
+    /// Bind group 1 of `shade`.
+    pub(in crate::gpu) surface_group: BindGroup,
+    /// Bind group 3 of kernels that search the brick and shade its shapes.
+    pub(in crate::gpu) appearance_group: BindGroup,
+    /// The id of every sphere, in the order of the structure, and after them words of some structures.
+    pub(in crate::gpu) ids: Buffer,
+    /// The appearance words of the spheres.
+    pub(in crate::gpu) appearances: Buffer,
+    pub(in crate::gpu) shape_count: u32,
+}
 
 /// What all bricks of a scene have in common.
 #[derive(Clone, Copy, Debug)]
@@ -45,15 +68,6 @@ impl<'a> From<Bricks<'a>> for BrickSource<Bricks<'a>> {
     }
 }
 
-/// The state of copying the bricks of a scene to a device.
-pub(in crate::gpu) struct SceneUpload<'a> {
-    upload: Upload<'a>,
-    palette: Buffer,
-    ids: &'a ShapeIds,
-    space: BrickSpace,
-    bricks: Vec<BrickBuffers>,
-}
-
 /// The bricks of a scene on a device.
 #[derive(Debug)]
 pub(in crate::gpu) struct UploadedBricks {
@@ -63,12 +77,22 @@ pub(in crate::gpu) struct UploadedBricks {
     pub(in crate::gpu) bytes: u64,
 }
 
-impl UploadedBricks {
-    /// No bricks.
-    pub(in crate::gpu) fn none(space: BrickSpace) -> Self {
-        Self { space, bricks: Vec::new(), bytes: 0 }
-    }
+/// The state of copying the bricks of a scene to a device.
+pub(in crate::gpu) struct SceneUpload<'a> {
+    renderer: &'a Renderer,
+    device: &'a Device,
+    queue: &'a Queue,
+    appearance: Arc<SceneAppearance>,
+    ids: &'a ShapeIds,
+    palette: Buffer,
+    first_shape: u32,
+    uploaded: UploadedBricks,
+    /// Work that the device has to do before the bricks can be searched.
+    work: Vec<CommandEncoder>,
 }
+
+/// A size that no shape of any primitive exceeds, in bytes.
+const LARGEST_SHAPE: usize = 64;
 
 impl<'a> SceneUpload<'a> {
     pub(in crate::gpu) async fn new(
@@ -79,48 +103,191 @@ impl<'a> SceneUpload<'a> {
         space: BrickSpace,
         ids: &'a ShapeIds,
     ) -> Result<Self, GpuError> {
-        let appearance = Arc::clone(&summary.appearance);
-        let palette = appearance::palette(&appearance);
-        let (first_shape, bytes, work) = (0, 0, Vec::new());
-        let mut upload = Upload { renderer, device, queue, appearance, first_shape, bytes, work };
-        check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
-        let palette = scoped(device, || upload.storage("pinhole palette", &palette)).await?;
-        Ok(Self { upload, palette, ids, space, bricks: Vec::new() })
+        let palette = appearance::palette(&summary.appearance);
+        let palette = [bytemuck::cast_slice(&palette)];
+        check_storage_size(device, "the palette", palette[0].len() as u64)?;
+        let mut bytes = 0;
+        let palette = scoped(device, || {
+            let usage = BufferUsages::STORAGE;
+            joined((device, queue), &mut bytes, "pinhole palette", usage, &palette)
+        });
+        Ok(Self {
+            renderer,
+            device,
+            queue,
+            appearance: Arc::clone(&summary.appearance),
+            ids,
+            palette: palette.await?,
+            first_shape: 0,
+            uploaded: UploadedBricks { space, bricks: Vec::new(), bytes },
+            work: Vec::new(),
+        })
     }
 
     /// Queues the copy of a brick. The brick can be dropped afterwards.
     pub(in crate::gpu) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
+        let (renderer, device, queue) = (self.renderer, self.device, self.queue);
+        let Self { palette, uploaded, .. } = self;
         let ids = self.ids.of(&brick.ids);
-        let structure = self.space.structure.with_nested(brick.is_nested());
+        let structure = uploaded.space.structure.with_nested(brick.is_nested());
         let kind = BrickKind { structure, primitive: Primitive::Sphere };
-        let contents = BrickContents::of_spheres(brick, &ids, kind);
-        self.bricks.push(self.upload.brick(&contents, &self.palette).await?);
+        let layouts = &renderer.layouts;
+        let trace_layout = layouts.brick_like(kind)?;
+        let appearances = AppearanceWords::of(&self.appearance, &ids);
+        let mut record = records::Brick {
+            shape_count: ids.len() as u32,
+            first_shape: self.first_shape,
+            is_first: u32::from(self.first_shape == 0),
+            last_appearance: appearances.words.len() as u32 - 1,
+            color_shift: appearances.color_shift,
+            color_mask: appearances.color_mask,
+            material_first: appearances.material_first,
+            material_mask: appearances.material_mask,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        // A buffer binding must not be empty.
+        let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
+        let shapes = bytemuck::cast_slice(&brick.spheres);
+        let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
+        let ids = if ids.is_empty() { &no_word[..] } else { &ids };
+        // What shares a buffer with the ids, so that a kernel has enough bindings.
+        let mut with_ids: Vec<&[u8]> = vec![bytemuck::cast_slice(ids)];
+        let mut words: Option<&[u8]> = None;
+        let mut boxes = None;
+        match &brick.index {
+            Index::List => {}
+            Index::Grid(grid) => {
+                record.min = grid.min.to_array();
+                record.cell_size = grid.cell_size;
+                record.cell_counts = grid.cell_counts;
+                record.first_reference = record.shape_count + grid.cells.len() as u32;
+                with_ids.extend([&grid.cells, &grid.references].map(|of| bytemuck::cast_slice(of)));
+                words = Some(bytemuck::cast_slice(&grid.balls));
+            }
+            Index::WideTree(tree) => {
+                let near = tree.near_rays();
+                record.crowd_min = near.min.to_array();
+                record.crowd_margin = near.margin;
+                record.crowd_max = near.max.to_array();
+                words = Some(bytemuck::cast_slice(tree.nodes()));
+            }
+            Index::RayQuery(own) => boxes = Some(own.boxes()),
+        }
+        let appearances = bytemuck::cast_slice(&appearances.words);
+        let all_ids = with_ids.iter().map(|of| of.len()).sum();
+        self.first_shape += record.shape_count;
+        for (what, bytes) in [
+            ("the buffer of spheres", shapes.len()),
+            ("the buffer of ids", all_ids),
+            ("the buffer of colors", appearances.len()),
+        ]
+        .into_iter()
+        .chain(words.map(|words| ("the buffer of the structure", words.len())))
+        {
+            check_storage_size(device, what, bytes as u64)?;
+        }
+        let buffers = scoped(device, || {
+            let mut filled = |label, usage, slices: &[&[u8]]| {
+                joined((device, queue), &mut uploaded.bytes, label, usage, slices)
+            };
+            let storage = BufferUsages::STORAGE;
+            let uniform = BufferUsages::UNIFORM;
+            let shape_count = record.shape_count;
+            let record = filled("pinhole brick", uniform, &[bytemuck::bytes_of(&record)]);
+            let shapes = filled("pinhole shapes", storage, &[shapes]);
+            let ids = filled("pinhole ids", storage, &with_ids);
+            let appearances = filled("pinhole appearances", storage, &[appearances]);
+            let words = words.map(|words| filled("pinhole structure", storage, &[words]));
+            let query = boxes.map(|boxes| {
+                let (query, work) = query_structure::begin(device, boxes);
+                uploaded.bytes += size_of_val(boxes) as u64;
+                self.work.push(work);
+                query
+            });
+            let group = |label, layout, buffers: &[&Buffer], more: Option<BindingResource<'_>>| {
+                let whole = buffers.iter().map(|buffer| buffer.as_entire_binding());
+                numbered_group(device, label, layout, whole.chain(more))
+            };
+            let of_structure = words.as_ref().map(Buffer::as_entire_binding);
+            let of_structure = of_structure.or(query.as_ref().map(wgpu::Tlas::as_binding));
+            let traced = [&record, &shapes, &ids];
+            let shaded = [&record, &shapes, &appearances, palette];
+            let surface_layout = layouts.surface_of(kind.primitive);
+            let seen = [&appearances, palette];
+            BrickBuffers {
+                kind,
+                bounds: BrickBounds::of_spheres(&brick.spheres),
+                trace_group: group("pinhole brick", trace_layout, &traced, of_structure),
+                surface_group: group("pinhole surface", surface_layout, &shaded, None),
+                appearance_group: group("pinhole appearance", &layouts.appearance, &seen, None),
+                ids,
+                appearances,
+                shape_count,
+            }
+        });
+        let buffers = buffers.await?;
+        self.uploaded.bricks.push(buffers);
         Ok(())
     }
 
     /// Returns the work since the last call that has to be submitted before the bricks are searched.
     pub(in crate::gpu) fn take_work(&mut self) -> Vec<CommandEncoder> {
-        std::mem::take(&mut self.upload.work)
+        std::mem::take(&mut self.work)
     }
 
     /// Returns the bricks since the last call, each of which is searched as what it is.
     pub(in crate::gpu) fn take_bricks(&mut self) -> Vec<BrickBuffers> {
-        std::mem::take(&mut self.bricks)
+        std::mem::take(&mut self.uploaded.bricks)
     }
 
     /// Returns the bricks, which are all searched as nested grids if any of them is one.
-    ///
-    /// # Errors
-    /// [`GpuError::NoStructure`] if the renderer was not built for the structure.
     pub(in crate::gpu) fn finish(self) -> Result<UploadedBricks, GpuError> {
-        let Self { upload, mut bricks, mut space, .. } = self;
+        let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
         let is_nested =
             |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
         space.structure = space.structure.with_nested(bricks.iter().any(is_nested));
         for brick in &mut bricks {
             brick.kind.structure = space.structure;
-            upload.renderer.layouts.brick_of(brick.kind)?;
+            self.renderer.layouts.brick_of(brick.kind)?;
         }
-        Ok(UploadedBricks { space, bricks, bytes: upload.bytes })
+        Ok(UploadedBricks { space, bricks, bytes })
     }
+}
+
+/// A buffer of slices, one after another, whose size is added to `bytes`.
+fn joined(
+    (device, queue): (&Device, &Queue),
+    bytes: &mut u64,
+    label: &'static str,
+    usage: BufferUsages,
+    slices: &[&[u8]],
+) -> Buffer {
+    let size = slices.iter().map(|slice| slice.len() as u64).sum();
+    *bytes += size;
+    // If device and host share their memory, the contents are written directly to the buffer.
+    let is_shared = device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
+    let written = if is_shared { BufferUsages::MAP_WRITE } else { BufferUsages::COPY_DST };
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: usage | written,
+        mapped_at_creation: is_shared,
+    });
+    let starts = slices.iter().scan(0, |end, slice| {
+        *end += slice.len();
+        Some(*end - slice.len())
+    });
+    if !is_shared {
+        for (start, slice) in starts.zip(slices) {
+            queue.write_buffer(&buffer, start as u64, slice);
+        }
+    } else if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
+        // If the buffer could not be created, the enclosing error scope has recorded it.
+        for (start, slice) in starts.zip(slices) {
+            target.slice(start..start + slice.len()).copy_from_slice(slice);
+        }
+        drop(target);
+        buffer.unmap();
+    }
+    buffer
 }

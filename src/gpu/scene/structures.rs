@@ -3,8 +3,6 @@
 use crate::accel::{Accel, AccelChoice, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::scene::Scene;
 
 /// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them; they can also be made
@@ -64,20 +62,6 @@ pub struct Retry {
 ///
 /// # Errors
 /// The outer error is the caller's own and ends the function at once; the inner error is that of the device.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn with_retries<T, E>(
-    choice: AccelChoice,
-    plan: impl Fn(AccelChoice) -> RenderPlan,
-    retrying: impl FnMut(Retry),
-    mut work: impl FnMut(&RenderPlan) -> Result<Result<T, GpuError>, E>,
-) -> Result<Result<T, GpuError>, E> {
-    block_on(with_retries_async(choice, plan, retrying, async |plan: &RenderPlan| work(plan)))
-}
-
-/// Repeats `work` like [`with_retries`], without blocking the thread.
-///
-/// # Errors
-/// The same as for [`with_retries`].
 pub async fn with_retries_async<T, E>(
     choice: AccelChoice,
     plan: impl Fn(AccelChoice) -> RenderPlan,
@@ -105,6 +89,7 @@ mod tests {
     use crate::camera::{PinholeCamera, Pose, View};
     use crate::gpu::headless::device_limits::DeviceLimits;
     use crate::gpu::headless::plan::{PictureRequest, StructurePlans};
+    use crate::gpu::waiting::block_on;
     use crate::image::LayerSet;
     use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;
@@ -150,15 +135,15 @@ mod tests {
         let attempts = |choice| {
             let (mut tried, mut told) = (Vec::new(), Vec::new());
             let planned = |choice| plan([choice; 2]);
-            let done: Result<Result<(), GpuError>, ()> = with_retries(
+            let done: Result<Result<(), GpuError>, ()> = block_on(with_retries_async(
                 choice,
                 planned,
                 |retry| told.push(retry.next),
-                |plan| {
+                async |plan: &RenderPlan| {
                     tried.push(plan.accel.structure.name());
                     Ok(Err(GpuError::Steps))
                 },
-            );
+            ));
             assert_eq!(done, Ok(Err(GpuError::Steps)));
             (tried.len(), told)
         };
@@ -169,8 +154,12 @@ mod tests {
     #[test]
     fn a_callers_own_error_ends_it() {
         let planned = |choice| plan([choice; 2]);
-        let done: Result<Result<(), GpuError>, &str> =
-            with_retries(AccelChoice::Auto, planned, |_| {}, |_| Err("enough"));
+        let done: Result<Result<(), GpuError>, &str> = block_on(with_retries_async(
+            AccelChoice::Auto,
+            planned,
+            |_| {},
+            async |_: &_| Err("enough"),
+        ));
         assert_eq!(done, Err("enough"));
     }
 }

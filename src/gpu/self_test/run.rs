@@ -14,6 +14,7 @@ use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::frame::iteration_limit;
+use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Probe, self_test_kernel};
@@ -76,7 +77,7 @@ impl SelfTestRun {
 
     /// The buffers that must be mapped before [`SelfTestRun::judge`].
     pub(in crate::gpu) fn buffers(&self) -> Vec<&Buffer> {
-        self.dispatches().map(|dispatch| dispatch.readable.buffer()).collect()
+        self.dispatches().map(|dispatch| &dispatch.readable.buffer).collect()
     }
 
     /// Judges the results of the device.
@@ -160,25 +161,11 @@ impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
                 filled("pinhole self-test inputs", cast_slice(inputs), BufferUsages::STORAGE);
             let (label, size) =
                 ("pinhole self-test answers", (inputs.len() * size_of::<Answer>()) as u64);
-            let answers = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            });
+            let answers =
+                buffer(device, label, size, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
             let readable = ReadableBuffer::new(device, label, size);
-            let entries: Vec<_> = (0..)
-                .zip([&uniform, &input, &answers])
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding,
-                    resource: buffer.as_entire_binding(),
-                })
-                .collect();
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole self-test"),
-                layout: &self.layout,
-                entries: &entries,
-            });
+            let bound = [&uniform, &input, &answers].map(Buffer::as_entire_binding);
+            let group = numbered_group(device, "pinhole self-test", &self.layout, bound);
             let pipeline = self.pipeline.clone();
             let workgroups = (inputs.len() as u32).div_ceil(WORKGROUP);
             Dispatch { pipeline, group, answers, readable, workgroups }

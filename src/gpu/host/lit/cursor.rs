@@ -100,8 +100,7 @@ impl Cursor {
         step: &Step<'a>,
     ) -> Result<bool, GpuError> {
         let whole = recorder.groups(step);
-        let rays =
-            if step.is_search() { u64::from(step.layers()) * u64::from(step.rays()) } else { 0 };
+        let rays = step.rays_in_layers();
         if self.step == 0 && self.left.is_none() {
             // The first step of a round finds empty lists.
             frame.record_clear_lists(encoder);

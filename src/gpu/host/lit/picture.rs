@@ -10,19 +10,17 @@ use super::renderer::{LitRenderer, lit_key};
 use super::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::camera::View;
 use crate::gpu::checks::scoped;
-use crate::gpu::device_shape::DeviceShape;
-use crate::gpu::error::{GpuError, check_whole};
-use crate::gpu::passes::frame::{BandBrick, Frame, iteration_limit};
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::lit::{
-    AT_ONCE, Frames, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy,
-    Recorder, Round,
+    Attempt, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder,
+    Round,
 };
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::Targets;
-use crate::gpu::passes::tiles::{Groups, Tile, tiles};
+use crate::gpu::passes::tiles::{Groups, tiles};
+use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneLook};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 
 /// A studio or a picture of paths that a host shows while samples accumulate: some with each of its frames, until the
@@ -33,7 +31,7 @@ use crate::render::{PrimarySettings, RenderSettings};
 #[derive(Debug)]
 pub struct LitPicture {
     passes: Arc<LitPasses>,
-    resolve: ComputePipeline,
+    resolve: Arc<ComputePipeline>,
     key: LitKey,
     lighting: LightingData,
     frame: LitFrame,
@@ -46,7 +44,7 @@ pub struct LitPicture {
     cursor: Cursor,
     is_cleared: bool,
     tickets: Tickets,
-    caution: Caution,
+    attempt: Attempt,
     is_indirect: bool,
 }
 
@@ -59,16 +57,6 @@ struct DataCursor {
     left: Vec<Groups>,
 }
 
-/// How few iterations an invocation must need. Each step is taken when a search was abandoned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Caution {
-    None,
-    /// A ray for each invocation, except those towards ambient light.
-    Steps,
-    /// A ray for each invocation.
-    OneByOne,
-}
-
 impl LitPicture {
     /// Creates the buffers of a picture in the targets, which must be those of the renderer's options, as large as the
     /// film, and with the usage `STORAGE_BINDING`. Pipelines are built if [`LitRenderer::build`] has not built them.
@@ -77,23 +65,6 @@ impl LitPicture {
     /// [`GpuError::NotLit`] for the integrator `primary`; the errors of [`RenderSettings::check`];
     /// [`GpuError::NoOccluders`]; [`GpuError::Target`] if a target is not as described; an error if the device has no
     /// memory left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        renderer: &LitRenderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device, queue, scene, view, settings, targets))
-    }
-
-    /// Creates the buffers like [`LitPicture::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`LitPicture::new`].
     pub async fn new_async(
         renderer: &LitRenderer,
         device: &Device,
@@ -103,13 +74,13 @@ impl LitPicture {
         settings: &RenderSettings,
         targets: &Targets<'_>,
     ) -> Result<Self, GpuError> {
-        let (lighting, key) = lit_key(device, scene, view, settings)?;
+        let (scenes, lighting, key) = lit_key(device, scene, view, settings)?;
         let mut data = Frame::new_async(renderer.renderer(), device, targets).await?;
         let primary = primary_of(settings);
         data.set_primary(queue, scene, view, &primary)?;
         let passes = renderer.passes(device, key).await?;
         let resolve = renderer.resolve(device).await?;
-        let frame = new_frame((device, queue), &passes, &lighting, scene, view, settings).await?;
+        let frame = new_frame(Make { device, queue }, &passes, &lighting, scenes).await?;
         let tickets = scoped(device, || Tickets::new(device)).await?;
         Ok(Self {
             passes,
@@ -125,7 +96,7 @@ impl LitPicture {
             cursor: Cursor::default(),
             is_cleared: false,
             tickets,
-            caution: Caution::None,
+            attempt: Attempt::OnePass,
             is_indirect: renderer.renderer().is_indirect,
         })
     }
@@ -139,23 +110,6 @@ impl LitPicture {
     ///
     /// # Errors
     /// The errors of [`LitPicture::new`]; the picture stays as it was.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn set(
-        &mut self,
-        renderer: &LitRenderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Result<bool, GpuError> {
-        block_on(self.set_async(renderer, device, queue, scene, view, settings))
-    }
-
-    /// Sets scene, view and light like [`LitPicture::set`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`LitPicture::set`].
     pub async fn set_async(
         &mut self,
         renderer: &LitRenderer,
@@ -167,25 +121,23 @@ impl LitPicture {
     ) -> Result<bool, GpuError> {
         self.data.check_renderer(renderer.renderer())?;
         self.data.check_film(view)?;
-        let (lighting, key) = lit_key(device, scene, view, settings)?;
-        let key = if self.caution > Caution::None { LitKey { one_pass: None, ..key } } else { key };
-        let sizes = sizes_of(device, scene.shape(), view, &lighting, settings);
+        let (scenes, lighting, key) = lit_key(device, scene, view, settings)?;
+        let (make, key) = (Make { device, queue }, self.attempt.key(key));
+        let sizes = sizes_of(device, scenes, &lighting);
         let is_other_look = scene.look() != self.look;
         let mut begins_again = is_other_look || primary_of(settings) != self.primary;
         if key != self.key || sizes != self.frame.sizes {
             let passes = renderer.passes(device, key).await?;
-            let queues = (device, queue);
-            self.frame = new_frame(queues, &passes, &lighting, scene, view, settings).await?;
+            self.frame = new_frame(make, &passes, &lighting, scenes).await?;
             self.passes = passes;
             begins_again = true;
         } else {
             if is_other_look || !lighting.is_same(&self.lighting) {
                 let is_new = is_other_look || !lighting.has_same_images(&self.lighting);
-                let set = self.frame.set_lighting((device, queue), &self.passes, &lighting, is_new);
-                set.await?;
+                self.frame.set_lighting(make, &self.passes, &lighting, is_new).await?;
                 begins_again = true;
             }
-            let records = frames_of(device, scene, view, settings, sizes)?;
+            let records = tiles(&view.film, sizes.tile).map(scenes.records(device));
             begins_again |= self.frame.set_frames(queue, records.map(|(_, frames)| frames));
         }
         (self.key, self.lighting, self.look) = (key, lighting, scene.look());
@@ -232,7 +184,8 @@ impl LitPicture {
         }
         let news = self.tickets.news();
         if news.is_spent {
-            self.be_cautious();
+            self.attempt = self.attempt.easier(&self.lighting).unwrap_or(self.attempt);
+            self.begin_again();
             return Err(GpuError::Steps);
         }
         if news.is_lost {
@@ -351,11 +304,10 @@ impl LitPicture {
         budget: &mut Budget,
     ) -> Result<(), GpuError> {
         let Self { passes, frame, lighting, resolve, data, cursor, .. } = self;
-        let at_once = if self.caution == Caution::OneByOne { 1 } else { AT_ONCE };
         let occluders = if lighting.mode.is_studio() { scene.studio_occluders()? } else { scene };
         let room = frame.sizes.room();
-        let round = Round { passes, lighting, scene, occluders, room, at_once };
-        let mut recorder = Recorder::new(frame, passes.advance(), self.is_indirect).at(place);
+        let round = Round { passes, lighting, scene, occluders, room, attempt: self.attempt };
+        let mut recorder = Recorder::new(frame, &passes.advance, self.is_indirect, place);
         let show = |encoder: &mut CommandEncoder, recorder: &mut Recorder<'_>, samples: u32| {
             recorder.record_resolve(encoder, resolve, data.target_group(), samples);
         };
@@ -365,20 +317,12 @@ impl LitPicture {
         recorded
     }
 
-    fn be_cautious(&mut self) {
-        self.caution = match self.caution {
-            Caution::None => Caution::Steps,
-            Caution::Steps | Caution::OneByOne => Caution::OneByOne,
-        };
-        self.begin_again();
-    }
-
     /// The sums of every part of the picture.
     pub fn sums(&self) -> impl Iterator<Item = LitSums<'_>> {
         self.frame.tiles.iter().map(|tile| LitSums {
             origin: tile.tile.origin,
             size: tile.tile.size,
-            buffer: tile.film(),
+            buffer: &tile.film,
         })
     }
 }
@@ -388,42 +332,20 @@ fn primary_of(settings: &RenderSettings) -> PrimarySettings {
     settings.by_primary_rays().primary().unwrap_or_default()
 }
 
-fn sizes_of(
-    device: &Device,
-    shape: DeviceShape,
-    view: &View<'_>,
-    lighting: &LightingData,
-    settings: &RenderSettings,
-) -> LitSizes {
-    let (shape, samples) = (shape.of_host(), settings.sampling.samples);
+fn sizes_of(device: &Device, scenes: LitScene<'_>, lighting: &LightingData) -> LitSizes {
+    let LitScene { all, view, settings, .. } = scenes;
+    let (shape, samples) = (all.shape.of_host(), settings.sampling.samples);
     LitSizes::new(&device.limits(), shape, &view.film, lighting.mode, samples)
 }
 
-/// The tiles of a picture and their records.
-fn frames_of<'a>(
-    device: &Device,
-    scene: &'a SceneBuffers,
-    view: &'a View<'a>,
-    settings: &RenderSettings,
-    sizes: LitSizes,
-) -> Result<impl Iterator<Item = (Tile, Frames)> + 'a, GpuError> {
-    check_whole(&view.film)?;
-    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-    let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
-    Ok(tiles(&view.film, sizes.tile)
-        .map(move |tile| (tile, scenes.frames(view, region, tile, limit))))
-}
-
 async fn new_frame(
-    (device, queue): (&Device, &Queue),
+    make: Make<'_>,
     passes: &LitPasses,
     lighting: &LightingData,
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    settings: &RenderSettings,
+    scenes: LitScene<'_>,
 ) -> Result<LitFrame, GpuError> {
-    let sizes = sizes_of(device, scene.shape(), view, lighting, settings);
-    let records = frames_of(device, scene, view, settings, sizes)?;
+    let sizes = sizes_of(make.device, scenes, lighting);
+    let records = tiles(&scenes.view.film, sizes.tile).map(scenes.records(make.device));
     let by = RecordedBy::Host { at_once: RECORDINGS };
-    LitFrame::new((device, queue), passes, sizes, lighting, by, records).await
+    LitFrame::new(make, passes, sizes, lighting, by, records).await
 }

@@ -1,6 +1,7 @@
 //! The passes of lit pictures for hosts, which are built when they are first needed.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::{ComputePipeline, Device};
@@ -11,17 +12,15 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene, LiveKey, LivePasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
 #[derive(Debug)]
 pub struct LitRenderer {
     renderer: Renderer,
-    passes: Mutex<HashMap<LitKey, Arc<LitPasses>>>,
-    resolve: Mutex<Option<ComputePipeline>>,
-    live: Mutex<HashMap<LiveKey, Arc<LivePasses>>>,
+    passes: Built<LitKey, LitPasses>,
+    resolve: Built<(), ComputePipeline>,
+    live: Built<LiveKey, LivePasses>,
 }
 
 impl LitRenderer {
@@ -30,9 +29,9 @@ impl LitRenderer {
     pub fn new(renderer: Renderer) -> Self {
         Self {
             renderer,
-            passes: Mutex::default(),
-            resolve: Mutex::default(),
-            live: Mutex::default(),
+            passes: Built::default(),
+            resolve: Built::default(),
+            live: Built::default(),
         }
     }
 
@@ -58,21 +57,6 @@ impl LitRenderer {
     ///
     /// [`LitPicture::new`]: crate::gpu::LitPicture::new
     /// [`LitPicture::set`]: crate::gpu::LitPicture::set
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn build(
-        &self,
-        device: &Device,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Result<(), GpuError> {
-        block_on(self.build_async(device, scene, view, settings))
-    }
-
-    /// Builds pipelines like [`LitRenderer::build`], without blocking the thread while a browser builds them.
-    ///
-    /// # Errors
-    /// The same as for [`LitRenderer::build`].
     pub async fn build_async(
         &self,
         device: &Device,
@@ -80,7 +64,7 @@ impl LitRenderer {
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Result<(), GpuError> {
-        let (_, key) = lit_key(device, scene, view, settings)?;
+        let (.., key) = lit_key(device, scene, view, settings)?;
         self.passes(device, key).await?;
         self.resolve(device).await?;
         Ok(())
@@ -98,16 +82,8 @@ impl LitRenderer {
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Result<bool, GpuError> {
-        let (_, key) = lit_key(device, scene, view, settings)?;
-        Ok(self.built_passes(&key).is_some() && self.built_resolve().is_some())
-    }
-
-    fn built_passes(&self, key: &LitKey) -> Option<Arc<LitPasses>> {
-        self.passes.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
-    }
-
-    fn built_resolve(&self) -> Option<ComputePipeline> {
-        self.resolve.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        let (.., key) = lit_key(device, scene, view, settings)?;
+        Ok(self.passes.get(&key).is_some() && self.resolve.get(&()).is_some())
     }
 
     pub(super) async fn passes(
@@ -115,13 +91,7 @@ impl LitRenderer {
         device: &Device,
         key: LitKey,
     ) -> Result<Arc<LitPasses>, GpuError> {
-        if let Some(passes) = self.built_passes(&key) {
-            return Ok(passes);
-        }
-        // The lock is not held while they are built. If two threads build them, one of the two is dropped.
-        let built = Arc::new(LitPasses::new(device, key, self.renderer.edits()).await?);
-        let mut passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(Arc::clone(passes.entry(key).or_insert(built)))
+        self.passes.of(key, LitPasses::new(device, key, &self.renderer.edits)).await
     }
 
     pub(in crate::gpu::host) async fn live_passes(
@@ -129,42 +99,60 @@ impl LitRenderer {
         device: &Device,
         key: LiveKey,
     ) -> Result<Arc<LivePasses>, GpuError> {
-        let built = self.live.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-        if let Some(passes) = built {
-            return Ok(passes);
-        }
-        let Renderer { color, data_layers, layouts, .. } = &self.renderer;
+        let Renderer { color, data_layers, layouts, edits, .. } = &self.renderer;
         let targets = (*color, *data_layers, &layouts.targets);
-        let built = LivePasses::new(device, key, targets, self.renderer.edits()).await?;
-        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(Arc::clone(live.entry(key).or_insert(Arc::new(built))))
+        self.live.of(key, LivePasses::new(device, key, targets, edits)).await
     }
 
-    pub(super) async fn resolve(&self, device: &Device) -> Result<ComputePipeline, GpuError> {
-        if let Some(pipeline) = self.built_resolve() {
-            return Ok(pipeline);
-        }
-        let Renderer { color, layouts, .. } = &self.renderer;
-        let built =
-            resolve_pipeline(device, *color, &layouts.targets, self.renderer.edits()).await?;
-        let mut resolve = self.resolve.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(resolve.insert(built).clone())
+    pub(super) async fn resolve(&self, device: &Device) -> Result<Arc<ComputePipeline>, GpuError> {
+        let Renderer { color, layouts, edits, .. } = &self.renderer;
+        self.resolve.of((), resolve_pipeline(device, *color, &layouts.targets, edits)).await
     }
 }
 
-/// The light of a picture, and the key of the passes that it needs.
-pub(in crate::gpu::host) fn lit_key(
+/// What has been built so far.
+#[derive(Debug)]
+struct Built<K, T>(Mutex<HashMap<K, Arc<T>>>);
+
+impl<K: Eq + Hash, T> Built<K, T> {
+    fn get(&self, key: &K) -> Option<Arc<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
+    /// Returns what was built for a key, and builds it if necessary. The lock is not held meanwhile. If two threads build
+    /// it, one of the two is dropped.
+    async fn of(
+        &self,
+        key: K,
+        build: impl Future<Output = Result<T, GpuError>>,
+    ) -> Result<Arc<T>, GpuError> {
+        if let Some(built) = self.get(&key) {
+            return Ok(built);
+        }
+        let built = Arc::new(build.await?);
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(all.entry(key).or_insert(built)))
+    }
+}
+
+impl<K, T> Default for Built<K, T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+/// A lit picture, its light, and the key of the passes that it needs.
+pub(in crate::gpu::host) fn lit_key<'a>(
     device: &Device,
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    settings: &RenderSettings,
-) -> Result<(LightingData, LitKey), GpuError> {
+    scene: &'a SceneBuffers,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+) -> Result<(LitScene<'a>, LightingData, LitKey), GpuError> {
     if settings.primary().is_some() {
         return Err(GpuError::NotLit);
     }
-    settings.check_with(scene.appearance())?;
-    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-    let lighting = LightingData::new(settings, scene.summary(), view.camera);
-    let key = scenes.key(view, &lighting, &device.limits());
-    Ok((lighting, key))
+    let scenes = LitScene::new(scene, view, settings)?;
+    let lighting = scenes.lighting();
+    let key = scenes.key(&lighting, &device.limits());
+    Ok((scenes, lighting, key))
 }

@@ -8,6 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 
+use crate::gpu::resources::buffer;
+
 /// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next.
 pub(in crate::gpu::host) const AT_ONCE: usize = 3;
 
@@ -90,12 +92,7 @@ pub(in crate::gpu::host) struct News {
 impl Tickets {
     pub(in crate::gpu::host) fn new(device: &Device) -> Self {
         let slot = |_| Slot {
-            buffer: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole recording"),
-                size: 8,
-                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            }),
+            buffer: buffer(device, "pinhole recording", 8, BufferUsages::MAP_READ),
             state: Arc::new(AtomicU8::new(FREE)),
         };
         Self { slots: [0; AT_ONCE].map(slot), next: 0, order: Arc::default() }

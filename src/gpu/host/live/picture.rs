@@ -8,22 +8,20 @@ use super::view::{SeenFrom, record};
 use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::checks::scoped;
-use crate::gpu::error::{GpuError, check_storage_size, check_whole};
+use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::host::lit::progress::LitState;
 use crate::gpu::host::lit::renderer::{LitRenderer, lit_key};
 use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
-use crate::gpu::passes::frame::{Frame, iteration_limit};
+use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::lit::records::DispatchParameters;
 use crate::gpu::passes::lit::{
-    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView, bind_group, buffer,
-    whole,
+    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView,
 };
 use crate::gpu::passes::targets::Targets;
 use crate::gpu::passes::tiles::{Groups, Tile};
-use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
+use crate::gpu::resources::{Make, bind_group, buffer, part, whole};
+use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId};
 use crate::gpu::shader::records::FrameParameters;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
 use crate::render::{Integrator, RenderSettings};
 
 /// Number of rays of ambient light for each pixel and frame.
@@ -94,23 +92,6 @@ impl LivePicture {
     /// [`GpuError::NotLive`] unless the settings are a studio, all spheres are opaque and the scene is not divided into
     /// bricks; the errors of [`RenderSettings::check`]; [`GpuError::Target`] if a target is not as described;
     /// [`GpuError::Limit`] if the picture is too large; an error if the device has no memory left.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        renderer: &LitRenderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
-        block_on(Self::new_async(renderer, device, queue, scene, view, settings, targets))
-    }
-
-    /// Creates the buffers like [`LivePicture::new`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`LivePicture::new`].
     pub async fn new_async(
         renderer: &LitRenderer,
         device: &Device,
@@ -120,14 +101,14 @@ impl LivePicture {
         settings: &RenderSettings,
         targets: &Targets<'_>,
     ) -> Result<Self, GpuError> {
-        let (lighting, key) = live_key(device, scene, view, settings)?;
+        let (scenes, lighting, key) = live_key(device, scene, view, settings)?;
         let targets = Frame::new_async(renderer.renderer(), device, targets).await?;
         targets.check_film(view)?;
         let passes = renderer.live_passes(device, key).await?;
-        let lit = LightingBuffers::new((device, queue), &passes.lit, &lighting).await?;
+        let lit = LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting).await?;
         let buffers = Buffers::new(device, &passes, targets.size()).await?;
         let tickets = scoped(device, || Tickets::new(device)).await?;
-        let frames = frames_of(device, scene, view, settings)?;
+        let frames = frames_of(device, scenes);
         buffers.write_frame(queue, &frames);
         Ok(Self {
             passes,
@@ -137,7 +118,7 @@ impl LivePicture {
             buffers,
             targets,
             frames,
-            scene: scene.id(),
+            scene: scene.id,
             seen_from: SeenFrom::new(view.camera),
             film: view.film,
             before: None,
@@ -154,23 +135,6 @@ impl LivePicture {
     ///
     /// # Errors
     /// The errors of [`LivePicture::new`]; the picture stays as it was.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn set(
-        &mut self,
-        renderer: &LitRenderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Result<(), GpuError> {
-        block_on(self.set_async(renderer, device, queue, scene, view, settings))
-    }
-
-    /// Sets scene, view and light like [`LivePicture::set`], without blocking the thread while a browser answers.
-    ///
-    /// # Errors
-    /// The same as for [`LivePicture::set`].
     pub async fn set_async(
         &mut self,
         renderer: &LitRenderer,
@@ -182,14 +146,15 @@ impl LivePicture {
     ) -> Result<(), GpuError> {
         self.targets.check_renderer(renderer.renderer())?;
         self.targets.check_film(view)?;
-        let (lighting, key) = live_key(device, scene, view, settings)?;
+        let (scenes, lighting, key) = live_key(device, scene, view, settings)?;
+        let make = Make { device, queue };
         if key != self.key {
             let passes = renderer.live_passes(device, key).await?;
-            self.lit = LightingBuffers::new((device, queue), &passes.lit, &lighting).await?;
+            self.lit = LightingBuffers::new(make, &passes.lit, &lighting).await?;
             self.buffers = Buffers::new(device, &passes, self.targets.size()).await?;
             (self.passes, self.key, self.before) = (passes, key, None);
         } else if !lighting.is_same(&self.lighting) {
-            self.lit.set((device, queue), &self.passes.lit, &lighting, false).await?;
+            self.lit.set(make, &self.passes.lit, &lighting, false).await?;
         }
         // Lamps move with the camera, or because the host moves them. Whatever else changes, changes what is hidden.
         let has_other_rays = lighting.rays_differ(&self.lighting);
@@ -197,9 +162,9 @@ impl LivePicture {
         if has_other_rays {
             self.before = None;
         }
-        self.frames = frames_of(device, scene, view, settings)?;
+        self.frames = frames_of(device, scenes);
         self.buffers.write_frame(queue, &self.frames);
-        (self.lighting, self.scene) = (lighting, scene.id());
+        (self.lighting, self.scene) = (lighting, scene.id);
         (self.seen_from, self.film) = (SeenFrom::new(view.camera), view.film);
         Ok(())
     }
@@ -221,7 +186,7 @@ impl LivePicture {
         scene: &SceneBuffers,
     ) -> Result<LiveProgress, GpuError> {
         self.targets.check_renderer(renderer.renderer())?;
-        if scene.id() != self.scene {
+        if scene.id != self.scene {
             return Err(GpuError::OtherScene);
         }
         let news = self.tickets.news();
@@ -281,11 +246,11 @@ impl LivePicture {
         let descriptor =
             ComputePassDescriptor { label: Some("pinhole live"), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
-        let brick = &scene.bricks()[0];
+        let brick = &scene.bricks[0];
         pass.set_pipeline(&passes.live);
         pass.set_bind_group(0, &buffers.group, &[offsets[0]]);
         pass.set_bind_group(1, &brick.trace_group, &[]);
-        pass.set_bind_group(2, self.lit.group(), &[]);
+        pass.set_bind_group(2, &self.lit.group, &[]);
         pass.set_bind_group(3, &brick.appearance_group, &[]);
         pass.dispatch_workgroups(all.traced_size[0], all.traced_size[1], 1);
         let [width, height] = Groups::of_size(self.targets.size()).size;
@@ -350,44 +315,32 @@ impl Buffers {
     }
 }
 
-/// The light of a picture with few rays, and the key of its passes.
-fn live_key(
+/// A picture with few rays, its light, and the key of its passes.
+fn live_key<'a>(
     device: &Device,
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    settings: &RenderSettings,
-) -> Result<(LightingData, LiveKey), GpuError> {
-    let mut settings = settings.clone();
-    match &mut settings.integrator {
-        Integrator::Studio(studio) => {
-            if let Some(occlusion) = &mut studio.occlusion {
-                occlusion.samples = OCCLUSION_RAYS;
-            }
-        }
-        Integrator::Primary(_) | Integrator::Path(_) => {
-            return Err(GpuError::NotLive { needs: "the integrator `studio`" });
-        }
-    }
+    scene: &'a SceneBuffers,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+) -> Result<(LitScene<'a>, LightingData, LiveKey), GpuError> {
+    let mut few = settings.clone();
+    let Integrator::Studio(studio) = &mut few.integrator else {
+        return Err(GpuError::NotLive { needs: "the integrator `studio`" });
+    };
+    studio.occlusion.iter_mut().for_each(|occlusion| occlusion.samples = OCCLUSION_RAYS);
     if !scene.appearance().is_opaque() {
         return Err(GpuError::NotLive { needs: "opaque spheres" });
     }
-    let (lighting, key) = lit_key(device, scene, view, &settings)?;
+    let (_, lighting, key) = lit_key(device, scene, view, &few)?;
+    let scenes = LitScene { all: scene, occluders: scene, view, settings };
     let needs = "a scene in one brick, a structure that fits into one pass, and at most 32 lights";
-    Ok((lighting, LiveKey::new(&key).ok_or(GpuError::NotLive { needs })?))
+    let key = LiveKey::new(&key).ok_or(GpuError::NotLive { needs })?;
+    Ok((scenes, lighting, key))
 }
 
 /// The records of the whole picture, for all its workgroups and for those in which the scene may be visible.
-fn frames_of(
-    device: &Device,
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    settings: &RenderSettings,
-) -> Result<[FrameParameters; 2], GpuError> {
-    check_whole(&view.film)?;
-    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-    let region = scenes.visible_region(view, settings);
-    let size = [view.film.width(), view.film.height()];
-    let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
-    let [all, visible, _] = scenes.frames(view, region, tile, iteration_limit(device));
-    Ok([all, visible])
+fn frames_of(device: &Device, scenes: LitScene<'_>) -> [FrameParameters; 2] {
+    let film = &scenes.view.film;
+    let tile = Tile { origin: [0, 0], size: [film.width(), film.height()], in_target: [0, 0] };
+    let (_, [all, visible, _]) = scenes.records(device)(tile);
+    [all, visible]
 }

@@ -1,18 +1,17 @@
 //! Buffers of a lit picture: those that all tiles share, and the sums of each tile.
 
-use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Device, Queue};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Queue};
 
 use super::lighting::LightingData;
 use super::lighting_buffers::LightingBuffers;
-use super::make::{Entry, Make, bind_group, whole};
-use super::passes::LitPasses;
-use super::records::{DispatchParameters, QUEUE_HEAD};
+use super::passes::{LitLayouts, LitPasses};
+use super::records::{DispatchParameters, GROUPS_NEEDED, QUEUE_HEAD};
 use super::sizes::LitSizes;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::tiles::Tile;
-use crate::gpu::scene::scene_buffers::part;
+use crate::gpu::resources::{Entry, Make, bind_group, part, whole};
 use crate::gpu::shader::records::FrameParameters;
 
 /// Maximum number of dispatches in a submission.
@@ -44,7 +43,7 @@ pub(in crate::gpu) struct LitFrame {
     /// The state of all paths, slot by slot.
     pub(in crate::gpu) paths: Buffer,
     variations: Buffer,
-    lit: LightingBuffers,
+    pub(super) lit: LightingBuffers,
     pub(in crate::gpu) tiles: Vec<LitTile>,
     /// Read-back buffer of the status word, which is nonzero if an invocation reached its iteration limit.
     pub(in crate::gpu) spent_back: ReadableBuffer,
@@ -79,7 +78,8 @@ pub(in crate::gpu) struct LitTile {
     pub(in crate::gpu) tile: Tile,
     pub(super) frames: Frames,
     records: Buffer,
-    film: Buffer,
+    /// The sums of the tile's pixels, as in `shaders/path/film_sums.wgsl`.
+    pub(in crate::gpu) film: Buffer,
     /// Bind group 0 of most passes, indexed by [`Area`].
     pub(super) groups: [BindGroup; 3],
     pub(super) advance: BindGroup,
@@ -89,56 +89,66 @@ pub(in crate::gpu) struct LitTile {
     pub(super) samples: BindGroup,
 }
 
-impl LitTile {
-    /// The sums of the tile's pixels, as in `shaders/path/film_sums.wgsl`.
-    pub(in crate::gpu) fn film(&self) -> &Buffer {
-        &self.film
-    }
-}
-
 impl LitFrame {
     /// Creates the buffers for some tiles, none of which may be larger than `sizes.tile`.
     pub(in crate::gpu) async fn new(
-        (device, queue): (&Device, &Queue),
+        make: Make<'_>,
         passes: &LitPasses,
         sizes: LitSizes,
         lighting: &LightingData,
         by: RecordedBy,
         tiles: impl Iterator<Item = (Tile, Frames)>,
     ) -> Result<Self, GpuError> {
+        let device = make.device;
         let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
         let parameter_stride = size_of::<DispatchParameters>().next_multiple_of(alignment);
         let frame_stride = size_of::<FrameParameters>().next_multiple_of(alignment);
         check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
-        let lit = LightingBuffers::new((device, queue), &passes.layouts, lighting).await?;
-        let make = Make { device, queue };
+        let lit = LightingBuffers::new(make, &passes.layouts, lighting).await?;
         scoped(device, || {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let parameters = make.buffer(
                 "pinhole parameters",
-                by.at_once() * MAX_DISPATCHES * parameter_stride,
+                (by.at_once() * MAX_DISPATCHES * parameter_stride) as u64,
                 BufferUsages::UNIFORM,
             );
-            let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
+            let of_paths = |label, bytes| make.buffer(label, bytes, storage);
             let paths = of_paths("pinhole paths", sizes.path_bytes());
             let lists = of_paths("pinhole lists of paths", sizes.queue_bytes());
             let variations = of_paths("pinhole variations", sizes.variation_bytes());
             let needed = storage | BufferUsages::INDIRECT;
-            let groups_needed =
-                make.buffer("pinhole groups needed", sizes.groups_bytes() as usize, needed);
-            let shared = Shared {
-                passes,
-                frame_stride,
-                parameters: &parameters,
-                lists: &lists,
-                paths: &paths,
-                groups_needed: &groups_needed,
-                variations: &variations,
+            let groups_needed = make.buffer("pinhole groups needed", GROUPS_NEEDED, needed);
+            let LitLayouts { frame, advance, film: of_sums, samples, .. } = &passes.layouts;
+            let group =
+                |label, layout, entries: &[Entry<'_>]| bind_group(device, label, layout, entries);
+            let new_tile = |(tile, frames): (Tile, Frames)| {
+                let records = strided(&frames, frame_stride);
+                let records = make.filled("pinhole frames", &records, BufferUsages::UNIFORM);
+                // The buffers are copied completely, so all have the same size.
+                let film = of_paths("pinhole sums", sizes.film_bytes());
+                let dispatch = (4, part(&parameters, 0, size_of::<DispatchParameters>()));
+                let record = |area: usize| {
+                    (0, part(&records, area * frame_stride, size_of::<FrameParameters>()))
+                };
+                let common =
+                    |area| [record(area), whole(2, &lists), whole(3, &paths), dispatch.clone()];
+                let taken = [record(0), whole(2, &lists), dispatch.clone(), whole(5, &film)];
+                let of_advance = [&common(0)[..], &[whole(5, &groups_needed)]].concat();
+                let summed = [&common(0)[..], &[whole(5, &film), whole(6, &variations)]].concat();
+                LitTile {
+                    tile,
+                    frames,
+                    groups: [0, 1, 2].map(|area| group("pinhole frame", frame, &common(area))),
+                    samples: group("pinhole samples", samples, &taken),
+                    advance: group("pinhole advance", advance, &of_advance),
+                    sums: group("pinhole film", of_sums, &summed),
+                    records,
+                    film,
+                }
             };
-            let tiles = tiles.map(|(tile, frames)| make.tile(&shared, sizes, tile, frames));
-            let tiles = tiles.collect();
+            let tiles = tiles.map(new_tile).collect();
             // A host reads nothing back.
             let back = |label, bytes| match by {
                 RecordedBy::Headless => ReadableBuffer::new(device, label, bytes),
@@ -184,16 +194,6 @@ impl LitFrame {
         ((place * MAX_DISPATCHES + number) * self.parameter_stride) as u32
     }
 
-    /// Bind group of lights and materials.
-    pub(super) fn lighting(&self) -> &BindGroup {
-        self.lit.group()
-    }
-
-    /// Bind group of the image of the sky.
-    pub(super) fn sky(&self) -> Option<&BindGroup> {
-        self.lit.sky()
-    }
-
     /// Queues other records for the tiles, in order, and returns whether any differs from what was there.
     pub(in crate::gpu) fn set_frames(
         &mut self,
@@ -214,12 +214,12 @@ impl LitFrame {
     /// Queues other light, as [`LightingBuffers::set`] does.
     pub(in crate::gpu) async fn set_lighting(
         &mut self,
-        queues: (&Device, &Queue),
+        make: Make<'_>,
         passes: &LitPasses,
         lighting: &LightingData,
         is_new: bool,
     ) -> Result<(), GpuError> {
-        self.lit.set(queues, &passes.layouts, lighting, is_new).await
+        self.lit.set(make, &passes.layouts, lighting, is_new).await
     }
 
     /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
@@ -258,63 +258,6 @@ impl LitFrame {
     /// Records the copy of the sums of variances and luminances of a tile.
     pub(in crate::gpu) fn record_copy_variations(&self, encoder: &mut CommandEncoder) {
         self.variations_back.record_copy(encoder, &self.variations);
-    }
-}
-
-/// The passes and buffers that all tiles share.
-struct Shared<'a> {
-    passes: &'a LitPasses,
-    frame_stride: usize,
-    parameters: &'a Buffer,
-    lists: &'a Buffer,
-    paths: &'a Buffer,
-    groups_needed: &'a Buffer,
-    variations: &'a Buffer,
-}
-
-impl Make<'_> {
-    fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
-        let stride = shared.frame_stride;
-        let bytes = strided(&frames, stride);
-        let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        // The buffers are copied completely, so all have the same size.
-        let film = self.buffer("pinhole sums", sizes.film_bytes() as usize, usage);
-        let common = |area: usize| -> Vec<Entry<'_>> {
-            vec![
-                (0, part(&records, area * stride, size_of::<FrameParameters>())),
-                whole(2, shared.lists),
-                whole(3, shared.paths),
-                (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
-            ]
-        };
-        let layouts = &shared.passes.layouts;
-        let mut advance = common(0);
-        advance.push(whole(5, shared.groups_needed));
-        let mut sums = common(0);
-        sums.extend([whole(5, &film), whole(6, shared.variations)]);
-        LitTile {
-            tile,
-            frames,
-            groups: [0, 1, 2].map(|area| {
-                bind_group(self.device, "pinhole frame", &layouts.frame, &common(area))
-            }),
-            samples: bind_group(
-                self.device,
-                "pinhole samples",
-                &layouts.samples,
-                &[
-                    (0, part(&records, 0, size_of::<FrameParameters>())),
-                    whole(2, shared.lists),
-                    (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
-                    whole(5, &film),
-                ],
-            ),
-            advance: bind_group(self.device, "pinhole advance", &layouts.advance, &advance),
-            sums: bind_group(self.device, "pinhole film", &layouts.film, &sums),
-            records,
-            film,
-        }
     }
 }
 

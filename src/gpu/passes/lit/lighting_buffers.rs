@@ -1,13 +1,13 @@
 //! The light of a picture on the device.
 
-use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureView};
+use wgpu::{BindGroup, Buffer, BufferUsages, Device, TextureView};
 
 use super::lighting::LightingData;
-use super::make::{Make, bind_group, whole};
 use super::passes::LitLayouts;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::emitter_table;
+use crate::gpu::resources::{Make, bind_group, numbered_group, whole};
 use crate::light::environment::Environment;
 
 /// The record of a lighting, its tables, emitters and sky.
@@ -16,33 +16,35 @@ pub(in crate::gpu) struct LightingBuffers {
     record: Buffer,
     tables: Buffer,
     emitters: TextureView,
-    group: BindGroup,
-    sky: Option<BindGroup>,
+    /// Bind group of lights and materials.
+    pub(in crate::gpu) group: BindGroup,
+    /// Bind group of the image of the sky.
+    pub(in crate::gpu) sky: Option<BindGroup>,
 }
 
 impl LightingBuffers {
     pub(in crate::gpu) async fn new(
-        queues: (&Device, &Queue),
+        make: Make<'_>,
         layouts: &LitLayouts,
         lighting: &LightingData,
     ) -> Result<Self, GpuError> {
-        Self::with(queues, layouts, lighting, None).await
+        Self::with(make, layouts, lighting, None).await
     }
 
     /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
     /// the sky are uploaded if `is_new` says that they may be others.
     pub(in crate::gpu) async fn set(
         &mut self,
-        queues: (&Device, &Queue),
+        make: Make<'_>,
         layouts: &LitLayouts,
         lighting: &LightingData,
         is_new: bool,
     ) -> Result<(), GpuError> {
         if is_new || self.tables.size() != lighting.table_bytes() {
             let kept = (!is_new).then_some(&*self);
-            *self = Self::with(queues, layouts, lighting, kept).await?;
+            *self = Self::with(make, layouts, lighting, kept).await?;
         } else {
-            let (_, queue) = queues;
+            let queue = make.queue;
             queue.write_buffer(&self.record, 0, bytemuck::bytes_of(&lighting.parameters));
             queue.write_buffer(&self.tables, 0, bytemuck::cast_slice(&lighting.tables));
         }
@@ -51,13 +53,13 @@ impl LightingBuffers {
 
     /// Creates the buffers, with the emitters and the sky that are kept.
     async fn with(
-        (device, queue): (&Device, &Queue),
+        make: Make<'_>,
         layouts: &LitLayouts,
         lighting: &LightingData,
         kept: Option<&Self>,
     ) -> Result<Self, GpuError> {
+        let Make { device, queue } = make;
         check(device, lighting)?;
-        let make = Make { device, queue };
         scoped(device, || {
             let record = bytemuck::bytes_of(&lighting.parameters);
             let record = make.filled("pinhole lighting", record, BufferUsages::UNIFORM);
@@ -77,16 +79,6 @@ impl LightingBuffers {
         })
         .await
     }
-
-    /// Bind group of lights and materials.
-    pub(in crate::gpu) fn group(&self) -> &BindGroup {
-        &self.group
-    }
-
-    /// Bind group of the image of the sky.
-    pub(in crate::gpu) fn sky(&self) -> Option<&BindGroup> {
-        self.sky.as_ref()
-    }
 }
 
 fn sky_group(make: Make<'_>, layouts: &LitLayouts, environment: &Environment) -> BindGroup {
@@ -97,7 +89,8 @@ fn sky_group(make: Make<'_>, layouts: &LitLayouts, environment: &Environment) ->
     let storage = BufferUsages::STORAGE;
     let texels = make.filled("pinhole sky", bytemuck::cast_slice(&texels), storage);
     let shares = make.filled("pinhole sky shares", bytemuck::cast_slice(&shares), storage);
-    bind_group(make.device, "pinhole sky", &layouts.sky, &[whole(0, &texels), whole(1, &shares)])
+    let bound = [&texels, &shares].map(Buffer::as_entire_binding);
+    numbered_group(make.device, "pinhole sky", &layouts.sky, bound)
 }
 
 /// Returns an error if the device has no room for the tables of a lighting.

@@ -15,7 +15,6 @@ mod kernels;
 mod lighting;
 mod lighting_buffers;
 mod live;
-mod make;
 mod one_pass;
 mod pass;
 mod passes;
@@ -26,7 +25,11 @@ mod round;
 mod sizes;
 pub(in crate::gpu) mod sums;
 
+use wgpu::Device;
+
 use crate::camera::View;
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::passes::visible_region::VisibleRegion;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -39,74 +42,109 @@ pub(in crate::gpu) use kernels::Mode;
 pub(in crate::gpu) use lighting::LightingData;
 pub(in crate::gpu) use lighting_buffers::LightingBuffers;
 pub(in crate::gpu) use live::{LiveKey, LivePasses, LiveView};
-pub(in crate::gpu) use make::{bind_group, buffer, whole};
 pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
 pub(in crate::gpu) use recorder::Recorder;
-pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
+pub(in crate::gpu) use round::{Moment, Round, Step};
 pub(in crate::gpu) use sizes::LitSizes;
 
-/// The buffers of a scene that a lit picture uses.
+/// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum Attempt {
+    /// One pass takes whole samples, where there is such a pass.
+    OnePass,
+    /// A ray for each invocation, except those towards ambient light.
+    Steps,
+    /// A ray for each invocation.
+    OneByOne,
+}
+
+impl Attempt {
+    /// The next way, if some invocations needed too many iterations.
+    pub(in crate::gpu) fn easier(self, lighting: &LightingData) -> Option<Self> {
+        match self {
+            Self::OnePass => Some(Self::Steps),
+            Self::Steps if lighting.parameters.occlusion_samples > 1 => Some(Self::OneByOne),
+            Self::Steps | Self::OneByOne => None,
+        }
+    }
+
+    /// The key of the passes that take samples in this way.
+    pub(in crate::gpu) fn key(self, key: LitKey) -> LitKey {
+        LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
+    }
+
+    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
+    /// state that it reads does not depend on the direction.
+    pub(in crate::gpu) fn at_once(self) -> u32 {
+        if self == Self::OneByOne { 1 } else { 32 }
+    }
+}
+
+/// A scene as a lit picture shows it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct LitScene<'a> {
     pub(in crate::gpu) all: &'a SceneBuffers,
     /// The spheres that cast shadows.
     pub(in crate::gpu) occluders: &'a SceneBuffers,
+    pub(in crate::gpu) view: &'a View<'a>,
+    pub(in crate::gpu) settings: &'a RenderSettings,
 }
 
-impl LitScene<'_> {
+impl<'a> LitScene<'a> {
+    /// Checks the settings.
+    pub(in crate::gpu) fn new(
+        all: &'a SceneBuffers,
+        view: &'a View<'a>,
+        settings: &'a RenderSettings,
+    ) -> Result<Self, GpuError> {
+        settings.check_with(all.appearance())?;
+        Ok(Self { all, occluders: all.occluders(settings)?, view, settings })
+    }
+
+    pub(in crate::gpu) fn lighting(&self) -> LightingData {
+        LightingData::new(self.settings, &self.all.summary, self.view.camera)
+    }
+
     /// The key of the passes that the picture needs.
-    pub(in crate::gpu) fn key(
-        &self,
-        view: &View<'_>,
-        lighting: &LightingData,
-        limits: &wgpu::Limits,
-    ) -> LitKey {
+    pub(in crate::gpu) fn key(&self, lighting: &LightingData, limits: &wgpu::Limits) -> LitKey {
+        let Self { all, occluders, view, .. } = *self;
         LitKey {
             camera: view.camera.kind(),
             mode: lighting.mode,
-            structure: self.all.structure(),
-            occluders: self.occluders.structure(),
-            exclude_by: [self.all, self.occluders].map(SceneBuffers::exclude_by),
-            several_bricks: self.all.bricks().len() > 1,
+            structure: all.structure(),
+            occluders: occluders.structure(),
+            exclude_by: [all, occluders].map(|scene| scene.exclude_by),
+            several_bricks: all.bricks.len() > 1,
             one_pass: lighting
-                .one_pass(self.all.bricks().len())
-                .filter(|pass| !pass.is_paths() || self.all.shape().paths_in_one_pass)
+                .one_pass(all.bricks.len())
+                .filter(|pass| !pass.is_paths() || all.shape.paths_in_one_pass)
                 .filter(|_| lighting.loops_of_path() <= round::MOST_LOOPS)
-                .filter(|_| one_pass::one_pass_fits(self.all.structure(), limits))
+                .filter(|_| one_pass::one_pass_fits(all.structure(), limits))
                 .filter(|_| {
                     let rays = lighting.rays_of_sample();
-                    self.all.rays_at_once(rays) == rays
+                    all.rays_at_once(rays) == rays
                 }),
         }
     }
 
-    /// The region of the film in which the scene may be visible; `None` for the whole film.
-    pub(in crate::gpu) fn visible_region(
-        &self,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Option<VisibleRegion> {
-        // The ground may be visible everywhere.
-        settings.ground.is_none().then(|| {
+    /// The records of tiles.
+    pub(in crate::gpu) fn records(self, device: &Device) -> impl Fn(Tile) -> (Tile, Frames) + 'a {
+        let Self { all, occluders, view, settings } = self;
+        let limit = iteration_limit(device);
+        // The region in which the scene may be visible. The ground may be visible everywhere.
+        let region = settings.ground.is_none().then(|| {
             let around = settings.sampling.filter.radius();
-            VisibleRegion::of(view, self.all.space()).widened(around)
-        })
-    }
-
-    /// The records of a tile.
-    pub(in crate::gpu) fn frames(
-        &self,
-        view: &View<'_>,
-        region: Option<VisibleRegion>,
-        tile: Tile,
-        iteration_limit: u32,
-    ) -> Frames {
-        let all = Groups::of_size(tile.size);
-        let traced = region.map_or(all, |region| region.groups_of(tile));
-        let [scene, occluders] = [self.all, self.occluders].map(SceneBuffers::space);
-        [(scene, all), (scene, traced), (occluders, traced)].map(|(space, groups)| {
-            FrameParameters::of_tile(view, space, tile, groups, iteration_limit)
-                .in_order_of(self.all.shape())
-        })
+            VisibleRegion::of(view, &all.space).widened(around)
+        });
+        move |tile| {
+            let whole = Groups::of_size(tile.size);
+            let traced = region.map_or(whole, |region| region.groups_of(tile));
+            let areas = [(all, whole), (all, traced), (occluders, traced)];
+            let frames = areas.map(|(scene, groups)| {
+                FrameParameters::of_tile(view, &scene.space, tile, groups, limit)
+                    .in_order_of(all.shape)
+            });
+            (tile, frames)
+        }
     }
 }

@@ -61,8 +61,10 @@ pub(super) struct BySchedule {
 pub(in crate::gpu) struct LitPasses {
     pub(super) layouts: LitLayouts,
     pub(super) of_samples: SamplePasses,
-    pub(super) advance: Pass,
-    pub(super) noise: Pass,
+    /// The pass that computes the numbers of workgroups of indirect dispatches.
+    pub(in crate::gpu) advance: Pass,
+    /// The pass that sums variances and luminances of pixels.
+    pub(in crate::gpu) noise: Pass,
 }
 
 /// The passes that take samples.
@@ -85,8 +87,17 @@ pub(super) struct StepPasses {
 }
 
 #[derive(Debug)]
+pub(super) struct StudioPasses {
+    pub(super) surface: BySchedule,
+    pub(super) shadow: Pass,
+    pub(super) illuminate: Pass,
+    pub(super) ambient: Pass,
+    pub(super) gather: Pass,
+}
+
+#[derive(Debug)]
 pub(super) enum ShadePasses {
-    Studio { surface: BySchedule, shadow: Pass, illuminate: Pass, ambient: Pass, gather: Pass },
+    Studio(StudioPasses),
     Path { scatter: BySchedule, occlude: Pass },
 }
 
@@ -189,13 +200,13 @@ impl LitPasses {
             both(&kernel, &[frame, brick(0)])
         };
         let shade = match key.mode {
-            Mode::Studio => ShadePasses::Studio {
+            Mode::Studio => ShadePasses::Studio(StudioPasses {
                 surface: both(&kernels::surface_kernel, &[frame, surfaces, lighting])?,
                 shadow: build(kernels::shadow_kernel(occluders, light_exclude_by), &lit_brick)?,
                 illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, lighting])?,
                 ambient: build(kernels::ambient_kernel(occluders, light_exclude_by), &lit_brick)?,
                 gather: build(kernels::gather_kernel(), &[frame, surfaces, lighting])?,
-            },
+            }),
             Mode::Path(surface, sources, kind) => {
                 let kernel = |by| kernels::scatter_kernel(by, surface, sources, kind);
                 let mut groups = vec![frame, surfaces, lighting];
@@ -226,18 +237,6 @@ impl LitPasses {
             noise: build(kernels::noise_kernel(), &[film])?,
             layouts,
         })
-    }
-}
-
-impl LitPasses {
-    /// The pass that computes the numbers of workgroups of indirect dispatches.
-    pub(in crate::gpu) fn advance(&self) -> &Pass {
-        &self.advance
-    }
-
-    /// The pass that sums variances and luminances of pixels.
-    pub(in crate::gpu) fn noise(&self) -> &Pass {
-        &self.noise
     }
 }
 

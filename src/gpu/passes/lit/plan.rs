@@ -1,6 +1,7 @@
 //! Planning the memory that a lit picture needs on the device and on the host.
 
 use super::lighting::LightingData;
+use super::records::GROUPS_NEEDED;
 use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::gpu::headless::device_limits::DeviceLimits;
@@ -38,7 +39,7 @@ impl RenderPlan {
         let film_bytes = sizes.film_bytes();
         let mut tile_buffers = vec![
             PlannedBuffer::one("paths", sizes.path_bytes()),
-            PlannedBuffer::one("lists", sizes.queue_bytes() + sizes.groups_bytes()),
+            PlannedBuffer::one("lists", sizes.queue_bytes() + GROUPS_NEEDED),
             // The sums of all tiles stay allocated.
             PlannedBuffer {
                 name: "sums",

@@ -6,8 +6,8 @@ use super::frame::{Area, LitFrame, LitTile};
 use super::pass::{Bound, Extent, Pass};
 use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
 use super::round::{Step, Work};
-use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
+use crate::gpu::profile::PassNames;
 
 /// Number of paths that a workgroup processes.
 const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
@@ -25,18 +25,19 @@ pub(in crate::gpu) struct Recorder<'a> {
     /// Whether indirect dispatches are used.
     is_indirect: bool,
     parameters: Vec<DispatchParameters>,
-    times: PassTimes,
+    names: PassNames,
 }
 
 impl<'a> Recorder<'a> {
-    pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
-        let (parameters, times) = (Vec::new(), PassTimes::default());
-        Self { frame, tile: 0, place: 0, advance, is_indirect, parameters, times }
-    }
-
-    /// The same recorder for the recording with this number among those under way.
-    pub(in crate::gpu) fn at(self, place: usize) -> Self {
-        Self { place, ..self }
+    /// A recorder for the recording with the number `place` among those under way.
+    pub(in crate::gpu) fn new(
+        frame: &'a LitFrame,
+        advance: &'a Pass,
+        is_indirect: bool,
+        place: usize,
+    ) -> Self {
+        let (parameters, names) = (Vec::new(), PassNames::default());
+        Self { frame, tile: 0, place, advance, is_indirect, parameters, names }
     }
 
     /// Number of dispatches since the last call of [`Recorder::take_parameters`].
@@ -49,9 +50,9 @@ impl<'a> Recorder<'a> {
         std::mem::take(&mut self.parameters)
     }
 
-    /// Notes the dispatches of the next submission in `times`, and returns what was noted of the last one.
-    pub(in crate::gpu) fn replace_times(&mut self, times: PassTimes) -> PassTimes {
-        std::mem::replace(&mut self.times, times)
+    /// Notes the dispatches of the next submission in `names`, and returns what was noted of the last one.
+    pub(in crate::gpu) fn replace_names(&mut self, names: PassNames) -> PassNames {
+        std::mem::replace(&mut self.names, names)
     }
 
     /// The maximum number of workgroups of a dispatch, in each of its [`Step::layers`].
@@ -123,7 +124,7 @@ impl<'a> Recorder<'a> {
             Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
             Work::Samples => (&tile.samples, Extent::Groups([x, y, 1])),
         };
-        let last = step.appearance.or(self.frame.sky());
+        let last = step.appearance.or(self.frame.lit.sky.as_ref());
         self.dispatch(encoder, step.pass, dispatch, group, [step.brick, last], extent);
     }
 
@@ -177,9 +178,9 @@ impl<'a> Recorder<'a> {
     ) {
         let offset = self.frame.parameter_offset(self.place, self.parameters.len());
         self.parameters.push(dispatch);
-        let lighting = self.frame.lighting();
+        let lighting = &self.frame.lit.group;
         let bound = Bound { frame: group, dispatch: offset, brick, lighting, last };
-        pass.record(encoder, bound, extent, &mut self.times);
+        pass.record(encoder, bound, extent, &mut self.names);
     }
 }
 

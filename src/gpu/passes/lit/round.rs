@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use wgpu::BindGroup;
 
+use super::Attempt;
 use super::frame::Area;
 use super::lighting::LightingData;
 use super::pass::Pass;
-use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses};
+use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses, StudioPasses};
 use super::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -33,14 +34,10 @@ pub(in crate::gpu) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Whether the dispatch traces rays, and so may take long.
-    pub(in crate::gpu) fn is_search(&self) -> bool {
-        self.is_search
-    }
-
-    /// Number of rays that each invocation traces.
-    pub(in crate::gpu) fn rays(&self) -> u32 {
-        self.rays
+    /// Number of rays of the invocations at one place, over all layers; 0 if the dispatch traces none, so that it never takes
+    /// long.
+    pub(in crate::gpu) fn rays_in_layers(&self) -> u64 {
+        if self.is_search { u64::from(self.layers()) * u64::from(self.rays) } else { 0 }
     }
 
     /// Number of samples that every pixel has after the dispatch, if it completes samples.
@@ -101,14 +98,8 @@ pub(in crate::gpu) struct Round<'a> {
     pub(in crate::gpu) occluders: &'a SceneBuffers,
     /// Number of paths that the buffers have room for.
     pub(in crate::gpu) room: u32,
-    /// Number of directions of ambient light that an invocation searches: [`AT_ONCE`], or one if that exceeds the
-    /// iteration limit of the device.
-    pub(in crate::gpu) at_once: u32,
+    pub(in crate::gpu) attempt: Attempt,
 }
-
-/// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
-/// state that it reads does not depend on the direction.
-pub(in crate::gpu) const AT_ONCE: u32 = 32;
 
 /// Number of samples that an invocation of the pass over whole samples takes.
 const SAMPLES_AT_ONCE: u32 = 8;
@@ -132,14 +123,11 @@ impl<'a> Round<'a> {
             SamplePasses::Steps(passes) => passes,
         };
         let mut steps = Steps { round: *self, passes, in_flight: count, steps: Vec::new() };
-        let first = &self.scene.bricks()[0].surface_group;
+        let first = &self.scene.bricks[0].surface_group;
         steps.push(&passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
         steps.mark(Moment::Started);
         match &passes.shade {
-            ShadePasses::Studio { surface, shadow, illuminate, ambient, gather } => {
-                let passes = StudioPasses { surface, shadow, illuminate, ambient, gather };
-                steps.studio(dispatch, &passes)?;
-            }
+            ShadePasses::Studio(passes) => steps.studio(dispatch, passes)?,
             ShadePasses::Path { scatter, occlude } => steps.path(dispatch, scatter, occlude)?,
         }
         steps.push(&passes.accumulate, dispatch, None, Work::Sums);
@@ -150,7 +138,7 @@ impl<'a> Round<'a> {
     /// The dispatches of the pass that takes whole samples. Each takes a few, so that no invocation reaches the
     /// iteration limit.
     fn one_pass(&self, pass: &'a Pass, dispatch: DispatchParameters) -> Vec<Step<'a>> {
-        let brick = &self.scene.bricks()[0];
+        let brick = &self.scene.bricks[0];
         let rays = self.lighting.rays_of_sample();
         // In a studio there are no such loops.
         let by_loops = MOST_LOOPS / self.lighting.loops_of_path().max(1);
@@ -179,14 +167,6 @@ impl<'a> Round<'a> {
             })
             .collect()
     }
-}
-
-struct StudioPasses<'a> {
-    surface: &'a BySchedule,
-    shadow: &'a Pass,
-    illuminate: &'a Pass,
-    ambient: &'a Pass,
-    gather: &'a Pass,
 }
 
 struct Steps<'a> {
@@ -233,7 +213,7 @@ impl<'a> Steps<'a> {
 
     /// Sets the number of rays of the last dispatches, one for each brick of the occluders.
     fn set_rays(&mut self, rays: u32) {
-        let count = self.round.occluders.bricks().len();
+        let count = self.round.occluders.bricks.len();
         self.steps.iter_mut().rev().take(count).for_each(|step| step.rays = rays);
     }
 
@@ -246,7 +226,7 @@ impl<'a> Steps<'a> {
     /// Adds the search for the hits of all rays: over pixels for camera rays, over lists for others.
     fn extend(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let (first, later) = &self.passes.extend;
-        for (index, brick) in self.round.scene.bricks().iter().enumerate() {
+        for (index, brick) in self.round.scene.bricks.iter().enumerate() {
             let by = match (index, later) {
                 (0, _) => first,
                 (_, Some(later)) => later,
@@ -260,7 +240,7 @@ impl<'a> Steps<'a> {
 
     /// Adds a dispatch for every brick, which shades the hits in the brick.
     fn shade(&mut self, by: &'a BySchedule, dispatch: DispatchParameters) {
-        for brick in self.round.scene.bricks() {
+        for brick in &self.round.scene.bricks {
             // Pixels outside the visible region show the background.
             let (pass, work) = by_surface(by, dispatch, Area::Whole);
             self.push(pass, dispatch, Some(&brick.surface_group), work);
@@ -289,7 +269,7 @@ impl<'a> Steps<'a> {
 
     /// Adds the search for occluders for all paths in the list of light.
     fn search_occluders(&mut self, pass: &'a Pass, dispatch: DispatchParameters, area: Area) {
-        for brick in self.round.occluders.bricks() {
+        for brick in &self.round.occluders.bricks {
             self.push_search(pass, dispatch, &brick.trace_group, Work::List(area));
         }
     }
@@ -320,18 +300,18 @@ impl<'a> Steps<'a> {
     fn studio(
         &mut self,
         dispatch: DispatchParameters,
-        passes: &StudioPasses<'a>,
+        passes: &'a StudioPasses,
     ) -> Result<(), GpuError> {
         let lighting = self.round.lighting;
-        let first = &self.round.scene.bricks()[0].surface_group;
+        let first = &self.round.scene.bricks[0].surface_group;
         let lights = lighting.casts_shadow.len() as u32;
         let directions = lighting.parameters.occlusion_samples;
-        let at_once = self.round.occluders.rays_at_once(self.round.at_once);
+        let at_once = self.round.occluders.rays_at_once(self.round.attempt.at_once());
         for surface in 0..lighting.max_surfaces {
             let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.max_surfaces);
             self.extend(dispatch)?;
             self.mark(Moment::Extended);
-            self.shade(passes.surface, dispatch);
+            self.shade(&passes.surface, dispatch);
             self.mark(Moment::Shaded);
             if lights == 0 && directions == 0 {
                 continue;
@@ -345,7 +325,7 @@ impl<'a> Steps<'a> {
                 let casting: Vec<u32> = (light..light + count).filter(casts).collect();
                 for &light in &casting {
                     self.search_occluders(
-                        passes.shadow,
+                        &passes.shadow,
                         DispatchParameters { light, ..dispatch },
                         Area::Occluders,
                     );
@@ -354,7 +334,7 @@ impl<'a> Steps<'a> {
                     self.mark(Moment::Shadowed);
                 }
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push(passes.illuminate, dispatch, Some(first), Work::List(Area::Whole));
+                self.push(&passes.illuminate, dispatch, Some(first), Work::List(Area::Whole));
                 self.mark(Moment::Illuminated);
             }
             for light in (0..directions).step_by(BITS) {
@@ -362,12 +342,12 @@ impl<'a> Steps<'a> {
                 for first in (light..light + count).step_by(at_once as usize) {
                     let count = (light + count - first).min(at_once);
                     let dispatch = DispatchParameters { light: first, count, ..dispatch };
-                    self.search_occluders(passes.ambient, dispatch, Area::Occluders);
+                    self.search_occluders(&passes.ambient, dispatch, Area::Occluders);
                     self.set_rays(count);
                 }
                 self.mark(Moment::Searched);
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push(passes.gather, dispatch, Some(first), Work::List(Area::Whole));
+                self.push(&passes.gather, dispatch, Some(first), Work::List(Area::Whole));
                 self.mark(Moment::Gathered);
             }
         }

@@ -4,8 +4,8 @@ use wgpu::Limits;
 
 use super::kernels::{Materials, Mode, Sources};
 use super::records::{
-    COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
-    PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
+    COMMON_SLOTS, FILM_SLOTS, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS, PIXELS_PER_VARIATION, QUEUE_HEAD,
+    STUDIO_SLOTS,
 };
 use crate::camera::film::Film;
 use crate::gpu::device_shape::DeviceShape;
@@ -85,11 +85,6 @@ impl LitSizes {
     /// Size in bytes of the lists of paths.
     pub(in crate::gpu) fn queue_bytes(&self) -> u64 {
         QUEUE_HEAD + 4 * LISTS * self.paths()
-    }
-
-    /// Size in bytes of the arguments of indirect dispatches.
-    pub(in crate::gpu) fn groups_bytes(&self) -> u64 {
-        GROUPS_NEEDED
     }
 
     /// Size in bytes of the sums of a tile's pixels, which are read back tile by tile.
