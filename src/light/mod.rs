@@ -12,7 +12,7 @@ use environment::Environment;
 
 pub(crate) mod codes;
 pub mod emitters;
-pub mod energy;
+pub(crate) mod energy;
 pub mod environment;
 
 pub use emitters::Emitters;

@@ -146,8 +146,8 @@ impl<'a> LightingContext<'a> {
     /// The energy table of a sphere's material, starting `skip` entries after its beginning.
     pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
         let surface = self.scene.checked_appearance().surface_index(id) as usize;
-        let start = self.energies.starts()[surface].map_or(0, |start| start as usize);
-        self.energies.entries().get(start + skip..).unwrap_or_default()
+        let start = self.energies.starts[surface].map_or(0, |start| start as usize);
+        self.energies.entries.get(start + skip..).unwrap_or_default()
     }
 
     pub(super) fn background(&self) -> DVec3 {
