@@ -4,8 +4,9 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error, Expected, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error, Expected, MapAccess, SeqAccess, Visitor};
 
 /// Reads all elements of a list, which must have exactly `N`.
 pub(crate) fn elements<
@@ -54,6 +55,17 @@ pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<Option<[f64; N]>, D::Error> {
     array(deserializer).map(Some)
+}
+
+/// A list of exactly `N` numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct List<const N: usize>(#[serde(deserialize_with = "array")] pub(crate) [f64; N]);
+
+impl<const N: usize> serde::Serialize for List<N> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.as_slice().serialize(serializer)
+    }
 }
 
 /// A value that must be a table in the file.

@@ -2,9 +2,8 @@
 
 pub use crate::accel::grid::Grid;
 pub use crate::accel::slab::SMALLEST_COMPONENT;
-pub use crate::accel::wide_node::WideNode;
-pub use crate::accel::wide_tree::WideTree;
-pub use crate::cpu::live::{LiveFrame, LiveReference};
+pub use crate::accel::wide_tree::{WideNode, WideTree};
+pub use crate::cpu::light::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]

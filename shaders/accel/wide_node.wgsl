@@ -1,5 +1,5 @@
 // Reading a node of the compressed 8-wide tree and testing its boxes. Its words are described in
-// src/accel/wide_node.rs.
+// src/accel/wide_tree.rs.
 // provides: LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode, wide_node
 // needs: SlabRay
 

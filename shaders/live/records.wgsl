@@ -1,4 +1,4 @@
-// Surfaces and visibilities of a live picture, as they are kept between its passes. Twin: src/cpu/live.rs.
+// Surfaces and visibilities of a live picture, as they are kept between its passes. Twin: src/cpu/light/live.rs.
 // provides: Shades, Visibility, pack_normal, pack_visibility, unpack_normal, visibility_of
 
 // What is known of the light at a pixel: the visible shares of lamps and of ambient light, and the numbers of frames

@@ -1,5 +1,5 @@
 // Averages the visible shares of light over frames: those of each surface are looked up where it was in the frame before.
-// Twin: src/cpu/live.rs.
+// Twin: src/cpu/light/live.rs.
 // dispatched: once for each frame of a live picture, after `live`.
 // provides: reproject
 // needs: LiveView, Visibility, is_in_view, location_before, pack_visibility, pixel_of, point_seen, visibility_of

@@ -1,5 +1,5 @@
 // Averages the visible shares of light over neighbouring pixels of the same surface, the less the more frames know them,
-// and writes the picture. Twin: src/cpu/live.rs.
+// and writes the picture. Twin: src/cpu/light/live.rs.
 // dispatched: once for each frame of a live picture, after `reproject`.
 // provides: show
 // needs: LiveView, unpack_normal, visibility_of, write_layers, write_with_alpha

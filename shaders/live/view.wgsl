@@ -1,5 +1,5 @@
 // The cameras of a live picture and of the frame before, for finding points of one in the other. Twin:
-// src/cpu/live.rs.
+// src/cpu/light/live.rs.
 // provides: LiveView, is_in_view, location_before, pixel_of, point_seen
 
 struct LiveView {

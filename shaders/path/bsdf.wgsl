@@ -1,5 +1,5 @@
 // The BSDF of reflecting surfaces: Lambertian, with or without a specular lobe, and metal. Twin:
-// src/cpu/light/bsdf/mod.rs.
+// src/cpu/light/bsdf.rs.
 // provides: reflect_by_any, scatter_reflection
 // needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
 //   mirrors_brdf, reflected_density, visible_mirror

@@ -1,4 +1,4 @@
-// Scattering by smooth and rough glass. Twin: src/cpu/light/bsdf/dielectric.rs.
+// Scattering by smooth and rough glass. Twin: src/cpu/light/bsdf.rs.
 // provides: scatter_dielectric
 // needs: ENERGIES, Material, Scattered, energy, ggx_lambda, visible_mirror
 

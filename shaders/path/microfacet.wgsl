@@ -1,4 +1,4 @@
-// The GGX microfacet distribution in the tangent frame of a normal. Twin: src/cpu/light/bsdf/ggx.rs.
+// The GGX microfacet distribution in the tangent frame of a normal. Twin: src/cpu/light/bsdf.rs.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007); Heitz, "Sampling the GGX
 // Distribution of Visible Normals", JCGT 7(4), 2018.

@@ -1,5 +1,5 @@
 // Shades the hits and writes the pixels. The dispatch of a brick shades the pixels whose nearest sphere is in the
-// brick, and that of the first brick also the misses. Twin: src/cpu/shade.rs.
+// brick, and that of the first brick also the misses. Twin: src/cpu/primary.rs.
 // dispatched: for each band and each brick, with 8x8 pixels for each workgroup.
 // provides: shade
 // needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, shade_entry,

@@ -1,5 +1,5 @@
 // Finds the nearest sphere of every pixel's ray. There is one dispatch for each brick, which replaces the hits of
-// earlier bricks by nearer ones. Twin: src/accel/brick.rs.
+// earlier bricks by nearer ones. Twin: src/accel/bricks.rs.
 // dispatched: for each band or slice of a band and each brick of the scene, with 8x8 pixels for each workgroup.
 // provides: trace
 // needs: entry_of, frame, hit_before, hit_index, nearest_hit, no_exclusion, pixel_in_tile, report_spent, start_fences,

@@ -1,4 +1,4 @@
-// Radiance, density and sampling of an environment map. Twin: src/light/environment/mod.rs. It reads
+// Radiance, density and sampling of an environment map. Twin: src/light/environment.rs. It reads
 // `lighting.environment_size`, in texels, and `lighting.environment_rotation`, which is cosine and sine.
 // provides: environment_density, environment_radiance, sample_environment
 // needs: atan2_turns, lighting, sin_cos_turns

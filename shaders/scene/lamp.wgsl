@@ -1,4 +1,4 @@
-// Sampling the lights of the settings, which are not spheres of the scene, from a surface. Twin: src/cpu/light/lamp.rs.
+// Sampling the lights of the settings, which are not spheres of the scene, from a surface. Twin: src/cpu/light/sources.rs.
 // provides: LAMP_DIRECTIONAL, LAMP_HEAD, LAMP_SPHERE, Lamp, lamp_kind, sample_lamp
 // needs: NO_HIT, axes_around, cone_direction, cone_of_sphere, table, tables, to_world
 

@@ -1,4 +1,4 @@
-// Radiance and sampling of the sky. Twin: src/light/sky.rs.
+// Radiance and sampling of the sky. Twin: src/light/mod.rs.
 
 //// plain
 // Sky of constant colour or with a vertical gradient.

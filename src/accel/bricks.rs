@@ -1,19 +1,123 @@
-//! Building the bricks of a planned structure one after the other, so that not all of them have to be in memory.
-
+//! Bricks: parts of a scene that each fit into a device's bindings and each have an acceleration structure. They are built
+//! one after the other, so that not all of them have to be in memory.
 use std::collections::VecDeque;
 use std::ops::Range;
 
 use glam::Vec3;
 
-use super::brick::{Accel, Brick, Index, QueryBoxes};
-#[cfg(feature = "gpu")]
-use super::brick_bounds::BrickBounds;
 use super::divide::divide;
+use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
-use super::outliers::Margins;
-use super::plan::AccelPlan;
-use super::structure::Structure;
+use super::plan::{AccelPlan, BrickKind, Primitive, Structure};
+use super::split::Item;
+use super::statistics::Margins;
 use super::wide_tree::WideTree;
+#[cfg(feature = "gpu")]
+use crate::parallel::map_chunks;
+
+/// The acceleration structure of a brick.
+#[derive(Clone, Debug)]
+pub enum Index {
+    /// No structure: every sphere is tested.
+    List,
+    /// One or two levels of grid cells.
+    Grid(Grid),
+    /// A tree with eight children for each node.
+    WideTree(WideTree),
+    /// Boxes from which a driver builds a structure. The host searches without one.
+    RayQuery(QueryBoxes),
+}
+
+/// A part of a scene with its acceleration structure.
+#[derive(Clone, Debug)]
+pub struct Brick {
+    /// The acceleration structure of the spheres.
+    pub index: Index,
+    /// Centre (x, y, z) in the scene's frame, and radius, in the order of the structure.
+    pub spheres: Vec<[f32; 4]>,
+    /// Index of each sphere in input order.
+    pub ids: Vec<u32>,
+}
+
+impl Brick {
+    /// Whether the index is a grid of which some cells have grids of their own.
+    pub(crate) fn is_nested(&self) -> bool {
+        matches!(&self.index, Index::Grid(grid) if grid.is_nested())
+    }
+}
+
+/// All bricks of a scene, which have the same structure.
+#[derive(Clone, Debug)]
+pub struct Accel {
+    pub(super) structure: Structure,
+    pub(super) bricks: Vec<Brick>,
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
+    pub(super) may_part_equals: bool,
+}
+
+impl Accel {
+    /// The structure of the bricks.
+    #[must_use]
+    pub fn structure(&self) -> Structure {
+        self.structure
+    }
+
+    /// The structure and the primitive for which kernels that search the bricks are made.
+    #[must_use]
+    pub fn kind(&self) -> BrickKind {
+        BrickKind { structure: self.structure, primitive: Primitive::Sphere }
+    }
+
+    /// The bricks; at least one, which may be empty.
+    #[must_use]
+    pub fn bricks(&self) -> &[Brick] {
+        &self.bricks
+    }
+
+    /// The bounding box of all spheres in the scene's frame, inflated by the margin. Rays are moved to this box before
+    /// they are traced.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        (self.min, self.max)
+    }
+
+    /// Whether spheres with the same centre may be in different bricks.
+    #[must_use]
+    pub fn may_part_equals(&self) -> bool {
+        self.may_part_equals
+    }
+}
+
+/// A box for each sphere, in the order of a brick, from which a driver builds a structure of its own for ray queries. The
+/// kernels are in `shaders/accel/ray_query.wgsl`.
+///
+/// Vulkan says of a box only that it is reported if the ray meets it, not how the meeting is rounded. So each box holds
+/// its sphere and the margin of trees, which is more than the error of any arithmetic that rounds as WGSL allows
+/// (`slab.rs`); whether a driver's own arithmetic is as good is for the certificate to say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QueryBoxes {
+    boxes: Vec<[f32; 6]>,
+}
+
+impl QueryBoxes {
+    /// The boxes of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
+    #[must_use]
+    pub fn of(spheres: &[[f32; 4]], margin: f32) -> Self {
+        let items = Item::all(spheres, &Margins::one(margin));
+        let of_item = |item: &Item| {
+            let ([x, y, z], reach) = (item.center, item.reach);
+            [x - reach, y - reach, z - reach, x + reach, y + reach, z + reach]
+        };
+        Self { boxes: items.iter().map(of_item).collect() }
+    }
+
+    /// The least coordinates and the greatest of each box.
+    #[must_use]
+    pub fn boxes(&self) -> &[[f32; 6]] {
+        &self.boxes
+    }
+}
 
 /// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are
 /// kept, in 4 bytes each.
@@ -168,6 +272,58 @@ impl Iterator for Bricks<'_> {
 
 impl ExactSizeIterator for Bricks<'_> {}
 
+/// The bounding boxes of the spheres of a brick and of their centres, in the scene's frame. Both are empty if there are
+/// no spheres.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BrickBounds {
+    pub(crate) center_min: Vec3,
+    pub(crate) center_max: Vec3,
+    pub(crate) min: Vec3,
+    pub(crate) max: Vec3,
+}
+
+#[cfg(feature = "gpu")]
+impl BrickBounds {
+    pub(crate) const EMPTY: Self =
+        Self { center_min: Vec3::MAX, center_max: Vec3::MIN, min: Vec3::MAX, max: Vec3::MIN };
+
+    /// The boxes of the spheres of a brick.
+    pub(crate) fn of_spheres(spheres: &[[f32; 4]]) -> Self {
+        Self::joined(map_chunks(spheres, |_, spheres| spheres.iter().fold(Self::EMPTY, Self::with)))
+    }
+
+    /// The boxes of the spheres with the given indices.
+    pub(crate) fn of_ids(spheres: &[[f32; 4]], ids: &[u32]) -> Self {
+        let with = |all: Self, id: &u32| all.with(&spheres[*id as usize]);
+        Self::joined(map_chunks(ids, |_, ids| ids.iter().fold(Self::EMPTY, with)))
+    }
+
+    /// Whether there are no spheres.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.min.x > self.max.x
+    }
+
+    fn with(self, &[x, y, z, radius]: &[f32; 4]) -> Self {
+        let center = Vec3::new(x, y, z);
+        Self {
+            center_min: self.center_min.min(center),
+            center_max: self.center_max.max(center),
+            min: self.min.min(center - radius),
+            max: self.max.max(center + radius),
+        }
+    }
+
+    fn joined(parts: Vec<Self>) -> Self {
+        parts.into_iter().fold(Self::EMPTY, |all, part| Self {
+            center_min: all.center_min.min(part.center_min),
+            center_max: all.center_max.max(part.center_max),
+            min: all.min.min(part.min),
+            max: all.max.max(part.max),
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,5 +367,17 @@ mod tests {
         bricks.leave_out();
         assert_eq!(bricks.next().unwrap().ids, all.bricks()[2].ids);
         assert!(bricks.next().is_none());
+    }
+
+    #[cfg(feature = "gpu")]
+    #[test]
+    fn boxes_are_those_of_spheres_and_of_ids() {
+        let spheres = [[1.0, 2.0, 3.0, 0.5], [-1.0, 2.0, 3.0, 0.25], [9.0, 9.0, 9.0, 1.0]];
+        let bounds = BrickBounds::of_spheres(&spheres[..2]);
+        assert_eq!(bounds, BrickBounds::of_ids(&spheres, &[1, 0]));
+        assert_eq!(bounds.min, Vec3::new(-1.25, 1.5, 2.5));
+        assert_eq!(bounds.max, Vec3::new(1.5, 2.5, 3.5));
+        assert_eq!(bounds.center_min, Vec3::new(-1.0, 2.0, 3.0));
+        assert!(!bounds.is_empty() && BrickBounds::of_spheres(&[]).is_empty());
     }
 }

@@ -6,13 +6,11 @@ use fastrand::Rng;
 use glam::DVec3;
 
 use super::ball::{BALLS_PER_VECTOR, PartInCell};
-use super::brick::{Brick, Index};
+use super::bricks::{Brick, Index};
 use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, word};
 use super::grid_build::{BuiltGrid, build_grid};
-use super::plan::AccelPlan;
-use super::structure::Structure;
-use super::wide_node::{Slot, WIDE_LEAF, WIDE_LEVELS};
-use super::wide_tree::WideTree;
+use super::plan::{AccelPlan, Structure};
+use super::wide_tree::{Slot, WIDE_LEAF, WIDE_LEVELS, WideTree};
 use super::wide_tree_build::levels_by_halves;
 
 #[allow(dead_code, clippy::duplicate_mod, reason = "some of its scenes are for other tests")]

@@ -1,16 +1,14 @@
-//! Building grids by counting sort, in time proportional to the number of spheres and cells.
+//! Building grids by counting sort, in time proportional to the number of spheres and cells: the choice of cells, their words
+//! and lists, and how many cells ahead of an empty cell are empty, so that a ray may cross them in one step.
 
 use glam::Vec3;
 
 use super::ball::BallFrame;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{Grid, GridBudget, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, word};
+use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, elements, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
-use super::grid_empty::mark_empty_surroundings;
-use super::grid_lists::{BuiltLists, Flat};
-use super::grid_slabs::{Counted, Lists};
-use super::grid_sort::{CHUNK, sort_by_cell};
-use crate::parallel::{for_each, map_parts, ranges};
+use super::grid_sort::{CHUNK, Counted, Lists, sort_by_cell};
+use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
 /// The largest number of spheres whose radii the choice of the cell size looks at.
 const RADII: usize = 4096;
@@ -249,4 +247,175 @@ fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(slice).split_at_mut(len);
     *slice = rest;
     first
+}
+
+/// References, list after list, and a ball beside each.
+#[derive(Default)]
+struct BuiltLists {
+    references: Vec<u32>,
+    balls: Vec<u32>,
+}
+
+impl BuiltLists {
+    fn with_capacity(listed: usize) -> Self {
+        Self { references: Vec::with_capacity(listed), balls: Vec::with_capacity(listed) }
+    }
+
+    /// Appends the list of a cell with this frame, and returns the word of the cell.
+    fn append(&mut self, list: &[u32], spheres: &[[f32; 4]], frame: BallFrame) -> u32 {
+        if list.is_empty() {
+            return word::EMPTY;
+        }
+        let start = self.references.len();
+        self.references.resize(start + elements(list.len()), 0);
+        self.balls.resize(self.references.len(), 0);
+        let (references, balls) = (&mut self.references[start..], &mut self.balls[start..]);
+        write_list(list, spheres, frame, references, balls);
+        word::LIST | start as u32
+    }
+}
+
+/// Writes a list that is not empty, with its balls, and fills it up with its last element.
+fn write_list(
+    list: &[u32],
+    spheres: &[[f32; 4]],
+    frame: BallFrame,
+    references: &mut [u32],
+    balls: &mut [u32],
+) {
+    references[..list.len()].copy_from_slice(list);
+    for (ball, shape_index) in balls.iter_mut().zip(list) {
+        *ball = frame.ball(spheres[*shape_index as usize]);
+    }
+    for elements in [references, balls] {
+        let last = elements[list.len() - 1];
+        elements[list.len()..].fill(last);
+        if let Some(end) = elements.last_mut() {
+            *end |= LAST;
+        }
+    }
+}
+
+/// Words, references and balls of a grid with one level.
+struct Flat {
+    words: Vec<u32>,
+    references: Vec<u32>,
+    balls: Vec<u32>,
+}
+
+impl Flat {
+    /// Makes references and balls of lists.
+    fn of(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Self {
+        let Lists { shape_indices, starts } = lists;
+        let elements = |cell: usize| elements((starts[cell + 1] - starts[cell]) as usize);
+        let chunks = ranges(cells.len(), CHUNK);
+        let counts = map_parts(chunks.clone(), |cells| cells.map(elements).sum::<usize>());
+        let mut end = 0;
+        let ends: Vec<usize> = counts
+            .into_iter()
+            .map(|count| {
+                end += count;
+                end
+            })
+            .collect();
+        let (mut references, mut balls) = (vec![0; end], vec![0; end]);
+        let mut words = vec![word::EMPTY; word::in_whole_units(cells.len())];
+        let mut tasks = Vec::with_capacity(chunks.len());
+        let targets = split_mut(&mut references, ends.iter().copied());
+        let targets = targets.into_iter().zip(split_mut(&mut balls, ends.iter().copied()));
+        let mut start = 0;
+        for ((chunk, target), words) in chunks.into_iter().zip(targets).zip(words.chunks_mut(CHUNK))
+        {
+            tasks.push((chunk, start, target, words));
+            start += tasks.last().map_or(0, |task| task.2.0.len());
+        }
+        for_each(tasks, |(chunk, start, (references, balls), words)| {
+            let mut at = 0;
+            for (cell, word) in chunk.zip(words) {
+                let list = &shape_indices[starts[cell] as usize..starts[cell + 1] as usize];
+                if list.is_empty() {
+                    continue;
+                }
+                *word = word::LIST | (start + at) as u32;
+                let place = at..at + elements(cell);
+                at = place.end;
+                let frame = BallFrame::new(corner(cells, cell), cells.size, margin);
+                let balls = &mut balls[place.clone()];
+                write_list(list, spheres, frame, &mut references[place], balls);
+            }
+        });
+        Self { words, references, balls }
+    }
+}
+
+/// The largest number of cells beyond the first that a step may cross.
+const MAX_AHEAD: u8 = word::REACH as u8;
+
+/// The fraction of empty cells below which skipping is not worthwhile.
+const WORTH_IT: f32 = 0.25;
+
+/// Writes into every empty word of the first level, for each of the eight octants of ray directions, how many cells
+/// ahead along all three axes are empty as well, in three bits each.
+///
+/// By dynamic programming, as for the largest square of ones in a matrix: the empty cube that starts at a cell is one
+/// larger than the smallest of those that start at its seven neighbours ahead. Everything outside the grid is empty.
+fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
+    let counts = counts.map(|count| count as usize);
+    let len = counts.iter().product();
+    let is_empty: Vec<bool> =
+        words[..len].iter().map(|word| word & word::KIND == word::EMPTY).collect();
+    let empty = is_empty.iter().filter(|is_empty| **is_empty).count();
+    if (empty as f32) < WORTH_IT * len as f32 {
+        return;
+    }
+    let octants = map(8, |octant| cubes_ahead(&is_empty, counts, octant));
+    for (cell, word) in words[..len].iter_mut().enumerate() {
+        if is_empty[cell] {
+            let bits = |octant: usize| {
+                u32::from(octants[octant][cell]) << (word::REACH_BITS as usize * octant)
+            };
+            *word = word::EMPTY | (0..8).map(bits).sum::<u32>();
+        }
+    }
+}
+
+/// For every empty cell, the number of empty cells ahead of it. Bit i of the octant is set for a ray that descends
+/// along axis i.
+fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> {
+    let [width, height, depth] = counts;
+    // For each cell, the side of the empty cube that starts there.
+    let mut sides = vec![0_u8; is_empty.len()];
+    let in_order = |axis: usize, i: usize| {
+        if octant >> axis & 1 == 1 { i } else { counts[axis] - 1 - i }
+    };
+    for k in 0..depth {
+        for j in 0..height {
+            for i in 0..width {
+                let coordinates = [in_order(0, i), in_order(1, j), in_order(2, k)];
+                let index = |[x, y, z]: [usize; 3]| (z * height + y) * width + x;
+                if !is_empty[index(coordinates)] {
+                    continue;
+                }
+                let mut side = MAX_AHEAD;
+                for neighbour in 1..8_usize {
+                    let ahead = [0, 1, 2].map(|axis| {
+                        let moves = neighbour >> axis & 1 == 1;
+                        match (moves, octant >> axis & 1) {
+                            (false, _) => Some(coordinates[axis]),
+                            (true, 1) => coordinates[axis].checked_sub(1),
+                            (true, _) => Some(coordinates[axis] + 1).filter(|x| *x < counts[axis]),
+                        }
+                    });
+                    if let [Some(x), Some(y), Some(z)] = ahead {
+                        side = side.min(sides[index([x, y, z])]);
+                    }
+                }
+                sides[index(coordinates)] = side + 1;
+            }
+        }
+    }
+    for side in &mut sides {
+        *side = side.saturating_sub(1);
+    }
+    sides
 }

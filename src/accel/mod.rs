@@ -5,51 +5,37 @@
 //! that bring their own test.
 
 pub(crate) mod ball;
-mod brick;
-#[cfg(feature = "gpu")]
-mod brick_bounds;
 mod bricks;
 mod cells;
 #[cfg(test)]
 mod check_tests;
 mod divide;
-mod divide_by_sample;
-mod extent;
 pub(crate) mod grid;
 mod grid_build;
 mod grid_dense;
-mod grid_empty;
-mod grid_lists;
-mod grid_slabs;
 mod grid_sort;
 pub(crate) mod grid_visit;
-mod outliers;
 mod plan;
 pub(crate) mod slab;
 mod split;
 mod statistics;
-mod structure;
-pub(crate) mod wide_node;
 pub(crate) mod wide_tree;
 mod wide_tree_build;
 pub(crate) mod wide_tree_visit;
 
-pub use brick::{Accel, Brick, Index, QueryBoxes};
 #[cfg(feature = "gpu")]
-pub(crate) use brick_bounds::BrickBounds;
-pub use bricks::Bricks;
-pub use outliers::Crowd;
+pub(crate) use bricks::BrickBounds;
+pub use bricks::{Accel, Brick, Bricks, Index, QueryBoxes};
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
-pub use plan::{AccelPlan, PlannedBuffer};
-pub use statistics::SceneStatistics;
+pub use plan::{AccelChoice, AccelPlan, BrickKind, PlannedBuffer, Primitive, Structure};
 #[cfg(feature = "gpu")]
 pub(crate) use statistics::margin_of;
-pub use structure::{AccelChoice, BrickKind, Primitive, Structure};
+pub use statistics::{Crowd, SceneStatistics};
 
 /// Constants that kernels share, for the test that compares both.
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) mod shared {
     pub(crate) use super::grid::{LAST, word};
-    pub(crate) use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST};
+    pub(crate) use super::wide_tree::{LEAF_COUNT_SHIFT, LEAF_FIRST};
 }

@@ -1,5 +1,10 @@
-//! Statistics of a scene's spheres, from one pass over them.
-
+//! Statistics of a scene's spheres, from one pass over them, and outliers: a few spheres far away from all others, the
+//! crowd.
+//!
+//! Outliers make the box of a scene large, and its margin with it: 2⁻¹⁷ of the diagonal is 8 % of a crowd beside which a
+//! sphere lies ten thousand times as far away. Rays that start near the crowd do not need so much for its spheres,
+//! because errors grow with the distance from a ray's origin to a centre (`slab.rs`). So a tree takes as margin of the
+//! crowd's spheres that of the crowd's box, and widens its boxes for rays that start farther away (`widening` in `shaders/accel/wide_tree.wgsl`).
 use glam::Vec3;
 
 use crate::parallel::map_chunks;
@@ -107,4 +112,230 @@ fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
     sample.dedup();
     let most = sample.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).max().unwrap_or(0);
     if most < SEVERAL { 0.0 } else { (most * stride) as f32 }
+}
+
+/// At most one sphere in so many is an outlier, and at most [`MOST`] in all.
+const ONE_IN: usize = 1000;
+const MOST: usize = 4096;
+
+/// The diagonal of the scene's box is at least so many times that of the crowd's.
+const SEVERAL_TIMES: f32 = 8.0;
+
+/// The number of margins in a side of the smallest cell that is worth its lists.
+const CELL_MARGINS: f32 = 8.0;
+
+/// The number of spheres in the sample from which the place of the crowd is estimated.
+const SAMPLES: usize = 1 << 14;
+
+/// One in so many spheres of the sample is left out at each end of each axis: more than there are outliers.
+const LEFT_OUT: usize = 100;
+
+/// By how many of its longest sides the box of the others in the sample is widened on each side.
+const SIDES: f32 = 2.0;
+
+/// All spheres of a scene but a few outliers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crowd {
+    /// The number of spheres that are not in the crowd.
+    pub outliers: usize,
+    /// The corner of the box of the crowd's spheres with the smallest coordinates, in the scene's frame.
+    pub min: Vec3,
+    /// The corner with the largest coordinates.
+    pub max: Vec3,
+}
+
+impl Crowd {
+    /// The crowd in a scene that has outliers.
+    pub(super) fn find(spheres: &[[f32; 4]], statistics: &SceneStatistics) -> Option<Self> {
+        let most = (spheres.len() / ONE_IN).min(MOST);
+        if most == 0 {
+            return None;
+        }
+        let (low, high) = widened_middle(spheres);
+        if low.cmple(statistics.min).all() && high.cmpge(statistics.max).all() {
+            return None;
+        }
+        let parts = map_chunks(spheres, |_, spheres| {
+            let nothing = Self { outliers: 0, min: Vec3::MAX, max: Vec3::MIN };
+            spheres.iter().fold(nothing, |crowd, sphere| {
+                let (min, max) = corners(sphere);
+                if low.cmple(min).all() && high.cmpge(max).all() {
+                    Self { min: crowd.min.min(min), max: crowd.max.max(max), ..crowd }
+                } else {
+                    Self { outliers: crowd.outliers + 1, ..crowd }
+                }
+            })
+        });
+        let crowd = parts.into_iter().reduce(|a, b| Self {
+            outliers: a.outliers + b.outliers,
+            min: a.min.min(b.min),
+            max: a.max.max(b.max),
+        })?;
+        let whole = (statistics.max - statistics.min).length();
+        let is_small = (crowd.max - crowd.min).length() * SEVERAL_TIMES <= whole;
+        ((1..=most).contains(&crowd.outliers) && is_small).then_some(crowd)
+    }
+
+    /// Whether the scene's margin, which a grid has for all spheres, is not small beside the distance between neighbours in
+    /// the crowd.
+    pub(super) fn is_lost_in_margin(&self, statistics: &SceneStatistics) -> bool {
+        // About the distance between neighbours, and as large as a cell.
+        let spacing = (self.max - self.min).max_element() / (statistics.count as f32).cbrt();
+        statistics.margin() * CELL_MARGINS > spacing
+    }
+
+    /// Whether a sphere is in the box of the crowd.
+    pub(super) fn contains(&self, sphere: &[f32; 4]) -> bool {
+        let (min, max) = corners(sphere);
+        self.min.cmple(min).all() && self.max.cmpge(max).all()
+    }
+
+    /// The margin of the crowd's spheres for rays that start in the crowd's box.
+    pub(super) fn margin(&self) -> f32 {
+        margin_of(self.min, self.max)
+    }
+}
+
+fn corners(&[x, y, z, radius]: &[f32; 4]) -> (Vec3, Vec3) {
+    let center = Vec3::new(x, y, z);
+    (center - radius, center + radius)
+}
+
+/// The box of most spheres of a sample, widened by several times its size.
+fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
+    let stride = spheres.len().div_ceil(SAMPLES).max(1);
+    let sample: Vec<(Vec3, Vec3)> = spheres.iter().step_by(stride).map(corners).collect();
+    let left_out = sample.len() / LEFT_OUT;
+    let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+    let mut values: Vec<f32> = Vec::with_capacity(sample.len());
+    let mut ranked = |rank: usize, of: &dyn Fn(&(Vec3, Vec3)) -> f32| {
+        values.clear();
+        values.extend(sample.iter().map(of));
+        if rank < values.len() {
+            *values.select_nth_unstable_by(rank, f32::total_cmp).1
+        } else {
+            0.0
+        }
+    };
+    for axis in 0..3 {
+        low[axis] = ranked(left_out, &|(min, _)| min[axis]);
+        high[axis] = ranked(sample.len().saturating_sub(left_out + 1), &|(_, max)| max[axis]);
+    }
+    let around = SIDES * (high - low).max_element();
+    (low - around, high + around)
+}
+
+/// How much wider the boxes of a tree's spheres must be for rays that start far away from most of them.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NearRays {
+    /// The box of the spheres that have the smaller margin.
+    pub(crate) min: Vec3,
+    pub(crate) max: Vec3,
+    /// The margin of these spheres.
+    pub(crate) margin: f32,
+}
+
+#[cfg(feature = "gpu")]
+impl NearRays {
+    /// All rays are near: no margin is too small for any.
+    pub(crate) const ALL: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO, margin: 1e30 };
+}
+
+/// The margin of each sphere of a tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Margins {
+    /// The margin of spheres outside of the box of `near`.
+    pub(super) all: f32,
+    pub(super) crowd: Option<Crowd>,
+}
+
+impl Margins {
+    /// The same margin for all spheres.
+    pub(super) const fn one(margin: f32) -> Self {
+        Self { all: margin, crowd: None }
+    }
+
+    /// The margin of a sphere.
+    pub(super) fn of(&self, sphere: &[f32; 4]) -> f32 {
+        match &self.crowd {
+            Some(crowd) if crowd.contains(sphere) => crowd.margin(),
+            _ => self.all,
+        }
+    }
+
+    #[cfg(feature = "gpu")]
+    pub(super) fn near(&self) -> NearRays {
+        self.crowd.map_or(NearRays::ALL, |crowd| NearRays {
+            min: crowd.min,
+            max: crowd.max,
+            margin: crowd.margin(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(spheres: &[[f32; 4]]) -> Option<Crowd> {
+        Crowd::find(spheres, &SceneStatistics::of(spheres))
+    }
+
+    fn crowd(count: usize) -> Vec<[f32; 4]> {
+        let mut rng = fastrand::Rng::with_seed(1);
+        (0..count).map(|_| [rng.f32(), rng.f32(), rng.f32(), 0.01]).collect()
+    }
+
+    /// Far away in one axis or in all, first or last, alike or not.
+    #[test]
+    fn few_spheres_far_away_are_outliers() {
+        let inside = crowd(20_000);
+        assert_eq!(found(&inside), None);
+        for count in [1, 2, 20] {
+            for far in [60.0, 1e4, 1e6, -1e12] {
+                for place in [[far, 0.5, 0.5], [0.5, 0.5, far], [far, -far, far]] {
+                    for spread in [0.0, 0.1] {
+                        let outlier = |i: usize| {
+                            let [x, y, z] = place.map(|x| x + spread * x * i as f32);
+                            [x, y, z, 0.01]
+                        };
+                        let far: Vec<_> = (0..count).map(outlier).collect();
+                        for all in [[&inside[..], &far[..]], [&far[..], &inside[..]]] {
+                            let all = all.concat();
+                            let crowd = found(&all).unwrap();
+                            assert_eq!(crowd.outliers, count, "{place:?}");
+                            let statistics = SceneStatistics::of(&inside);
+                            assert_eq!((crowd.min, crowd.max), (statistics.min, statistics.max));
+                            assert!(inside.iter().all(|sphere| crowd.contains(sphere)));
+                            assert!(!far.iter().any(|sphere| crowd.contains(sphere)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn many_spheres_and_near_ones_are_no_outliers() {
+        let inside = crowd(20_000);
+        let with = |count: usize, sphere: [f32; 4]| [&inside[..], &vec![sphere; count]].concat();
+        assert!(found(&with(20, [1e4, 0.0, 0.0, 1.0])).is_some());
+        assert_eq!(found(&with(21, [1e4, 0.0, 0.0, 1.0])), None);
+        assert_eq!(found(&with(1, [5.0, 0.0, 0.0, 0.01])), None);
+        assert_eq!(found(&[]), None);
+        assert_eq!(found(&[[0.0, 0.0, 0.0, 1.0], [1e4, 0.0, 0.0, 1.0]]), None);
+    }
+
+    /// Around a crowd at one place, which has the size of a sphere; and a sphere around the crowd.
+    #[test]
+    fn equal_spheres_and_large_ones() {
+        let equal = vec![[3.0, 2.0, 1.0, 0.5]; 2_000];
+        assert_eq!(found(&equal), None);
+        let with = |sphere: [f32; 4]| [&equal[..], &[sphere]].concat();
+        assert_eq!(found(&with([1e3, 0.0, 0.0, 0.5])).map(|crowd| crowd.outliers), Some(1));
+        assert_eq!(found(&with([3.0, 2.0, 1.0, 1e3])).map(|crowd| crowd.outliers), Some(1));
+        let twice = [&equal[..], &vec![[1e3, 0.0, 0.0, 0.5]; 2_000]].concat();
+        assert_eq!(found(&twice), None);
+    }
 }

@@ -39,8 +39,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec4};
 
-use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WIDE_LEVELS, WideNode};
-use super::wide_tree::WideTree;
+use super::wide_tree::{LEAF_COUNT_SHIFT, LEAF_FIRST, WIDE_LEVELS, WideNode, WideTree};
 
 /// The margin relative to the longest vector, for a direction of exactly unit length.
 const BESIDE: f64 = 128.0 * f64::EPSILON;

@@ -38,40 +38,11 @@ pub struct Film {
     whole: [u32; 2],
 }
 
-/// Why a width and height do not make a film.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why numbers do not make a film, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum FilmError {
-    /// Width or height is zero.
-    #[error("the size {width}x{height} has no pixel; width and height must be at least 1")]
-    Empty {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
-    /// Width or height is more than [`Film::MAX_SIDE`].
-    #[error("the size {width}x{height} is too large; no side may exceed {}", Film::MAX_SIDE)]
-    TooLarge {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
-    /// A part is not inside its film.
-    #[error(
-        "the rectangle of {}x{} pixels at column {} and row {} is not inside a film of {}x{} pixels",
-        size[0], size[1], origin[0], origin[1], film[0], film[1]
-    )]
-    Outside {
-        /// Column and row of the first pixel of the part.
-        origin: [u32; 2],
-        /// Width and height of the part in pixels.
-        size: [u32; 2],
-        /// Width and height of the film in pixels.
-        film: [u32; 2],
-    },
-}
+pub struct FilmError(String);
 
 impl Default for Film {
     /// A film of 800 by 600 pixels with y up.
@@ -89,11 +60,12 @@ impl Film {
     /// # Errors
     /// Returns an error if a side is zero or more than [`Film::MAX_SIDE`].
     pub fn new(width: u32, height: u32) -> Result<Self, FilmError> {
-        if width == 0 || height == 0 {
-            return Err(FilmError::Empty { width, height });
-        }
+        has_pixels([width, height])?;
         if width.max(height) > Self::MAX_SIDE {
-            return Err(FilmError::TooLarge { width, height });
+            return Err(FilmError(format!(
+                "the size {width}x{height} is too large; no side may exceed {}",
+                Self::MAX_SIDE
+            )));
         }
         Ok(Self { width, height, y_axis: YAxis::Up, origin: [0; 2], whole: [width, height] })
     }
@@ -108,15 +80,15 @@ impl Film {
     /// # Errors
     /// Returns an error if the rectangle has no pixel or is not inside this film.
     pub fn part(&self, origin: [u32; 2], size: [u32; 2]) -> Result<Self, FilmError> {
-        let [width, height] = size;
-        if width == 0 || height == 0 {
-            return Err(FilmError::Empty { width, height });
-        }
-        let film = [self.width, self.height];
+        has_pixels(size)?;
+        let ([width, height], film) = (size, [self.width, self.height]);
         let fits =
             |axis: usize| origin[axis].checked_add(size[axis]).is_some_and(|end| end <= film[axis]);
         if !(fits(0) && fits(1)) {
-            return Err(FilmError::Outside { origin, size, film });
+            return Err(FilmError(format!(
+                "the rectangle of {width}x{height} pixels at column {} and row {} is not inside a film of {}x{} pixels",
+                origin[0], origin[1], film[0], film[1]
+            )));
         }
         let origin = self.in_whole(origin);
         Ok(Self { width, height, origin, ..*self })
@@ -196,4 +168,13 @@ impl Film {
             YAxis::Down => DVec2::new(x, y_down),
         }
     }
+}
+
+fn has_pixels([width, height]: [u32; 2]) -> Result<(), FilmError> {
+    if width > 0 && height > 0 {
+        return Ok(());
+    }
+    Err(FilmError(format!(
+        "the size {width}x{height} has no pixel; width and height must be at least 1"
+    )))
 }

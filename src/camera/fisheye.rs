@@ -4,14 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-#[cfg(feature = "scene-file")]
-use super::framing;
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect};
-#[cfg(feature = "scene-file")]
-use crate::exact;
 use crate::geometry::ray::Ray;
-#[cfg(feature = "scene-file")]
-use crate::geometry::subject::Subject;
 
 /// An equidistant fisheye camera.
 ///
@@ -46,6 +40,11 @@ impl FisheyeCamera {
         let aspect = checked_aspect(aspect)?;
         let scale = DVec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0));
         Ok(Self { pose, half_angle: 0.5 * angle_radians, scale })
+    }
+
+    #[cfg(feature = "scene-file")]
+    pub(super) fn pose(&self) -> Pose {
+        self.pose
     }
 }
 
@@ -90,70 +89,6 @@ impl Camera for FisheyeCamera {
             up: basis.v(),
             forward: -basis.w(),
             numbers: [self.scale.x, self.scale.y, self.half_angle / std::f64::consts::PI],
-        }
-    }
-}
-
-/// The table `[camera.fisheye]` of a scene file.
-#[cfg(feature = "scene-file")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FisheyeParameters {
-    /// Position of the camera; without it, the camera frames the scene.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub eye: Option<[f64; 3]>,
-    /// The point at which the camera looks.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub look_at: Option<[f64; 3]>,
-    /// The direction in which the camera looks, instead of `look_at`.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f64; 3]>,
-    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub up: Option<[f64; 3]>,
-    /// The angle across the whole disk, in degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<f64>,
-}
-
-#[cfg(feature = "scene-file")]
-impl FisheyeParameters {
-    /// The same camera with a position, a direction and the direction that is up.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`FisheyeParameters::camera`].
-    pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        use super::pose::{Placement, PoseParameters};
-
-        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
-        match (PoseParameters { eye, look_at, direction, up }).placement()? {
-            Placement::Fixed(_, up) => Ok(Self { up: Some(up), ..*self }),
-            Placement::Framed(_, direction, up) => {
-                let eye = self.camera(aspect, subject)?.pose.origin().to_array();
-                Ok(Self { eye: Some(eye), direction: Some(direction), up: Some(up), ..*self })
-            }
-        }
-    }
-
-    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
-    /// the subject.
-    ///
-    /// # Errors
-    /// Returns an error if a value is out of range, or values exclude each other.
-    pub fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<FisheyeCamera, CameraError> {
-        use super::pose::{Placement, PoseParameters};
-
-        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
-        let angle = self.angle.map_or(FisheyeCamera::DEFAULT_ANGLE_RADIANS, f64::to_radians);
-        match (PoseParameters { eye, look_at, direction, up }).placement()? {
-            Placement::Fixed(pose, _) => FisheyeCamera::new(pose, angle, aspect),
-            Placement::Framed(pose, ..) => {
-                let camera = FisheyeCamera::new(pose, angle, aspect)?;
-                let bounds = &subject.bounds();
-                let back = framing::round_distance(bounds, 0.5 * angle) * pose.basis().w();
-                let pose = pose.framing(bounds, back)?;
-                Ok(FisheyeCamera { pose, ..camera })
-            }
         }
     }
 }

@@ -1,9 +1,8 @@
 //! The camera of a host program, given by the view and projection matrices with which the host rasterizes.
 
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4};
 
-use super::host_matrix::{DepthOrder, HostCameraError, HostMatrix};
-use super::{Camera, CameraKind, CameraVectors, sealed};
+use super::{Camera, CameraError, CameraKind, CameraVectors, sealed};
 use crate::geometry::ray::Ray;
 
 /// The smallest volume of the box that the unit vectors along right, up and forward span. Below it, most digits of a
@@ -67,19 +66,31 @@ impl HostCamera {
         let last = view.row(3);
         // An inverse that was computed in f32 may have an element that is not quite 1.
         if last.truncate() != DVec3::ZERO || (last.w - 1.0).abs() > 1e-3 {
-            return Err(HostCameraError::ViewRow { row: last });
+            return Err(HostCameraError(format!(
+                "the last row of the view matrix is {:?}, but it must be [0, 0, 0, 1]; matrices are given column by \
+                 column",
+                last.to_array()
+            )));
         }
         let to_view = DMat3::from_mat4(view) * (1.0 / last.w);
         let offset = view.w_axis.truncate() / last.w;
-        let to_world = inverse(to_view).ok_or(HostCameraError::Singular { matrix: "view" })?;
+        let singular = |matrix: &str| {
+            HostCameraError(format!("the {matrix} matrix has no inverse, so pixels have no rays"))
+        };
+        let to_world = inverse(to_view).ok_or_else(|| singular("view"))?;
         let rows = [0, 1, 2, 3].map(|row| projection.row(row));
         let [x, y, depth, w] = rows;
         let in_view = match w.to_array() {
             [0.0, 0.0, -1.0 | 1.0, 0.0] => InView::perspective(x, y, depth, w),
             [0.0, 0.0, 0.0, 1.0] => InView::orthographic(x, y, depth, order),
-            _ => return Err(HostCameraError::ProjectionRow { row: w }),
+            row => {
+                return Err(HostCameraError(format!(
+                    "the last row of the projection matrix is {row:?}, but it must be [0, 0, -1, 0] or [0, 0, 1, 0] for \
+                     perspective, or [0, 0, 0, 1] for an orthographic camera; matrices are given column by column"
+                )));
+            }
         }
-        .ok_or(HostCameraError::Singular { matrix: "projection" })?;
+        .ok_or_else(|| singular("projection"))?;
         let InView { kind, origin, right, up, forward, film, slope } = in_view;
         let [right, up, forward] = [right, up, forward].map(|vector| to_world * vector);
         let origin = to_world * (origin - offset);
@@ -90,18 +101,30 @@ impl HostCamera {
         let volume = units[0].cross(units[1]).dot(units[2]).abs();
         // NaN is in no range.
         if !(LEAST_VOLUME..).contains(&volume) {
-            return Err(HostCameraError::Flat { volume });
+            return Err(HostCameraError(format!(
+                "the directions right, up and forward of the camera lie nearly in one plane (their unit vectors span a \
+                 volume of {volume:?}), so f32 cannot tell the rays of pixels apart"
+            )));
         }
         let slope = slope / scale;
         if !DEPTH_NUMBERS.contains(&slope.abs())
             || !(0.0..=1e18).contains(&film.abs().max_element())
         {
-            return Err(HostCameraError::NoDepth { row: depth });
+            return Err(HostCameraError(format!(
+                "the third row of the projection matrix is {:?}, which gives no depth that f32 can represent",
+                depth.to_array()
+            )));
         }
         // With the distance, 1/distance falls.
         let rises = if kind == CameraKind::Pinhole { slope < 0.0 } else { slope > 0.0 };
         if rises != (order == DepthOrder::NearIsZero) {
-            return Err(HostCameraError::Order { given: order });
+            let other = match order {
+                DepthOrder::NearIsZero => DepthOrder::NearIsOne,
+                DepthOrder::NearIsOne => DepthOrder::NearIsZero,
+            };
+            return Err(HostCameraError(format!(
+                "{order:?} was given, but the projection matrix maps the near plane to the other end; give {other:?}"
+            )));
         }
         let in_world = |row: DVec4| {
             let turned = to_view.transpose() * row.truncate();
@@ -234,5 +257,73 @@ impl Camera for HostCamera {
 
     fn vectors(&self) -> CameraVectors {
         self.vectors
+    }
+}
+
+/// A matrix of a host program, stored column by column, in f32 or f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostMatrix(DMat4);
+
+/// Which end of the range of depths, from 0 to 1, is at the near plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DepthOrder {
+    /// Depth is 0 at the near plane and grows with the distance.
+    NearIsZero,
+    /// Depth is 1 at the near plane and falls with the distance, which is called reversed depth.
+    NearIsOne,
+}
+
+/// Why matrices of a host program do not make a camera, and what would be right.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+#[non_exhaustive]
+pub struct HostCameraError(String);
+
+impl From<CameraError> for HostCameraError {
+    fn from(error: CameraError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl HostMatrix {
+    fn finite(self, matrix: &str) -> Result<DMat4, HostCameraError> {
+        let error = || format!("the {matrix} matrix contains a number that is not finite");
+        if self.0.is_finite() { Ok(self.0) } else { Err(HostCameraError(error())) }
+    }
+}
+
+impl From<DMat4> for HostMatrix {
+    fn from(matrix: DMat4) -> Self {
+        Self(matrix)
+    }
+}
+
+impl From<Mat4> for HostMatrix {
+    fn from(matrix: Mat4) -> Self {
+        Self(matrix.as_dmat4())
+    }
+}
+
+impl From<[[f64; 4]; 4]> for HostMatrix {
+    fn from(columns: [[f64; 4]; 4]) -> Self {
+        Self(DMat4::from_cols_array_2d(&columns))
+    }
+}
+
+impl From<[[f32; 4]; 4]> for HostMatrix {
+    fn from(columns: [[f32; 4]; 4]) -> Self {
+        Self(Mat4::from_cols_array_2d(&columns).as_dmat4())
+    }
+}
+
+impl From<[f64; 16]> for HostMatrix {
+    fn from(numbers: [f64; 16]) -> Self {
+        Self(DMat4::from_cols_array(&numbers))
+    }
+}
+
+impl From<[f32; 16]> for HostMatrix {
+    fn from(numbers: [f32; 16]) -> Self {
+        Self(Mat4::from_cols_array(&numbers).as_dmat4())
     }
 }

@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::camera::film::Film;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::geometry::ray::Ray;
 
@@ -13,37 +14,23 @@ pub mod filter;
 mod fisheye;
 mod framing;
 mod host;
-mod host_matrix;
 mod orthographic;
 mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
 mod path;
-mod path_curve;
 mod pinhole;
-#[cfg(feature = "scene-file")]
-mod pinhole_parameters;
 mod pose;
 pub mod sampling;
-#[cfg(feature = "scene-file")]
-mod stereo;
 mod thin_lens;
-mod view;
 mod viewpoint;
 
 pub use framing::DEFAULT_MARGIN;
 
 pub use fisheye::FisheyeCamera;
-#[cfg(feature = "scene-file")]
-pub use fisheye::FisheyeParameters;
-pub use host::HostCamera;
-pub use host_matrix::{DepthOrder, HostCameraError, HostMatrix};
+pub use host::{DepthOrder, HostCamera, HostCameraError, HostMatrix};
 pub use orthographic::OrthographicCamera;
-#[cfg(feature = "scene-file")]
-pub use orthographic::OrthographicParameters;
 pub use panorama::PanoramaCamera;
-#[cfg(feature = "scene-file")]
-pub use panorama::PanoramaParameters;
 #[cfg(feature = "scene-file")]
 pub use parameters::CameraParameters;
 pub use path::{
@@ -51,15 +38,8 @@ pub use path::{
     PlaceOnPath,
 };
 pub use pinhole::PinholeCamera;
-#[cfg(feature = "scene-file")]
-pub use pinhole_parameters::PinholeParameters;
 pub use pose::{CameraError, Pose};
-#[cfg(feature = "scene-file")]
-pub use stereo::StereoParameters;
 pub use thin_lens::ThinLensCamera;
-#[cfg(feature = "scene-file")]
-pub use thin_lens::ThinLensParameters;
-pub use view::View;
 pub use viewpoint::{Viewpoint, ViewpointError, turned};
 
 /// A camera says which ray belongs to a relative location in [−1, 1]².
@@ -99,6 +79,30 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
 
     /// The data from which the WGSL part of this camera computes the same rays.
     fn vectors(&self) -> CameraVectors;
+}
+
+/// A camera and a film: what is seen, and in how many pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The camera, which says which ray belongs to each location in the picture.
+    pub camera: &'a dyn Camera,
+    /// The size of the picture.
+    pub film: Film,
+}
+
+impl<'a> View<'a> {
+    /// The picture that `camera` takes on `film`.
+    #[must_use]
+    pub fn new(camera: &'a dyn Camera, film: Film) -> Self {
+        Self { camera, film }
+    }
+
+    /// The ray through the centre of a pixel, given as column and row; `None` where the camera has no ray.
+    #[must_use]
+    pub fn ray_through_center(&self, [column, row]: [u32; 2]) -> Option<Ray> {
+        let location = self.film.relative_location(f64::from(column) + 0.5, f64::from(row) + 0.5);
+        self.camera.sees(location).then(|| self.camera.ray_in_world(location))
+    }
 }
 
 /// Vectors in world space and numbers, in f64, that describe a camera completely once its kind is known.
@@ -233,11 +237,6 @@ fn checked_margin(value: f64) -> Result<f64, CameraError> {
         Err(CameraError::Range { parameter: "`margin`", value, low, high })
     }
 }
-
-/// The message for a margin that has no effect.
-#[cfg(feature = "scene-file")]
-const MARGIN_WITHOUT_FRAMING: &str =
-    "`margin` applies only to a camera that frames the scene; remove `margin` or `eye`";
 
 fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
     checked_length("aspect ratio", aspect)

@@ -4,14 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3};
 
-#[cfg(feature = "scene-file")]
-use super::StereoParameters;
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, stereo_lengths};
-#[cfg(feature = "scene-file")]
-use crate::exact;
 use crate::geometry::ray::Ray;
-#[cfg(feature = "scene-file")]
-use crate::geometry::subject::Subject;
 
 /// An equirectangular camera: 360 degrees by 180. On a film twice as wide as high, pixels in the middle are square.
 ///
@@ -54,6 +48,11 @@ impl PanoramaCamera {
         };
         Ok([eye(-0.5 * separation), eye(0.5 * separation)])
     }
+
+    #[cfg(feature = "scene-file")]
+    pub(super) fn pose(&self) -> Pose {
+        self.pose
+    }
 }
 
 impl Camera for PanoramaCamera {
@@ -93,83 +92,5 @@ impl Camera for PanoramaCamera {
             forward: -basis.w(),
             numbers: [self.aside, straight, left],
         }
-    }
-}
-
-/// The table `[camera.panorama]` of a scene file.
-#[cfg(feature = "scene-file")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PanoramaParameters {
-    /// Position of the camera; without it, the middle of the scene.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub eye: Option<[f64; 3]>,
-    /// The point in the middle of the picture.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub look_at: Option<[f64; 3]>,
-    /// The direction in the middle of the picture, instead of `look_at`.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f64; 3]>,
-    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub up: Option<[f64; 3]>,
-    /// Parameters of a stereo pair, if there are two eyes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stereo: Option<StereoParameters>,
-}
-
-#[cfg(feature = "scene-file")]
-impl PanoramaParameters {
-    /// The same camera with a position, a direction and the direction that is up.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`PanoramaParameters::camera`].
-    pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        use super::pose::{Placement, PoseParameters};
-
-        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
-        match (PoseParameters { eye, look_at, direction, up }).placement()? {
-            Placement::Fixed(_, up) => Ok(Self { up: Some(up), ..*self }),
-            Placement::Framed(_, direction, up) => {
-                let eye = self.camera(aspect, subject)?.pose.origin().to_array();
-                Ok(Self { eye: Some(eye), direction: Some(direction), up: Some(up), ..*self })
-            }
-        }
-    }
-
-    /// The camera; without an `eye` it stands in the middle of the subject's box. For two eyes, this is the camera halfway
-    /// between them.
-    ///
-    /// # Errors
-    /// Returns an error if a value is out of range, or values exclude each other.
-    pub fn camera(
-        &self,
-        _aspect: f64,
-        subject: &Subject<'_>,
-    ) -> Result<PanoramaCamera, CameraError> {
-        use super::pose::{Placement, PoseParameters};
-
-        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
-        match (PoseParameters { eye, look_at, direction, up }).placement()? {
-            Placement::Fixed(pose, _) => Ok(PanoramaCamera::new(pose)),
-            Placement::Framed(pose, ..) => {
-                Ok(PanoramaCamera::new(pose.framing(&subject.bounds(), DVec3::ZERO)?))
-            }
-        }
-    }
-
-    /// The cameras of the left and of the right eye; `None` without `stereo`.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`PanoramaParameters::camera`].
-    pub fn stereo_pair(
-        &self,
-        aspect: f64,
-        subject: &Subject<'_>,
-    ) -> Result<Option<[PanoramaCamera; 2]>, CameraError> {
-        let pair = |stereo: StereoParameters| {
-            self.camera(aspect, subject)?.stereo_pair(stereo.separation, stereo.convergence)
-        };
-        self.stereo.map(pair).transpose()
     }
 }

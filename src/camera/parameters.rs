@@ -1,9 +1,13 @@
 //! The parameters of a camera of any kind, as a scene file or command-line flags give them.
 
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Camera, CameraError, camera_table};
-use crate::exact::Table;
+use super::{
+    Camera, CameraError, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera, PanoramaCamera,
+    PinholeCamera, Pose, ThinLensCamera, camera_table, checked_length, framing,
+};
+use crate::exact::{List, Table};
 use crate::geometry::subject::Subject;
 
 /// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file, from which it is deserialized. The
@@ -17,7 +21,7 @@ macro_rules! define_camera_parameters {
         /// The parameters of each kind of camera.
         #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
         enum ByKind {
-            $(#[serde(rename = $name)] $variant(Table<super::$parameters>),)+
+            $(#[serde(rename = $name)] $variant(Table<$parameters>),)+
         }
 
         impl CameraParameters {
@@ -70,20 +74,403 @@ impl CameraParameters {
         aspect: f64,
         subject: &Subject<'_>,
     ) -> Result<Option<[Box<dyn Camera>; 2]>, CameraError> {
+        fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
+            pair.map(|camera| Box::new(camera) as Box<dyn Camera>)
+        }
         Ok(match &self.0 {
-            ByKind::Pinhole(table) => table.0.stereo_pair(aspect, subject)?.map(boxed),
-            ByKind::Panorama(table) => table.0.stereo_pair(aspect, subject)?.map(boxed),
+            ByKind::Pinhole(Table(table @ PinholeParameters { stereo: Some(eyes), .. })) => {
+                let camera = table.camera(aspect, subject)?;
+                Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
+            }
+            ByKind::Panorama(Table(table @ PanoramaParameters { stereo: Some(eyes), .. })) => {
+                let camera = table.camera(aspect, subject)?;
+                Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
+            }
             _ => None,
         })
     }
 }
 
-fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
-    pair.map(|camera| Box::new(camera) as Box<dyn Camera>)
-}
-
 impl Default for CameraParameters {
     fn default() -> Self {
         Self(ByKind::Pinhole(Table::default()))
+    }
+}
+
+/// The table `stereo` of a camera, which asks for one picture for each eye.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct StereoParameters {
+    /// Distance between the eyes, in scene units.
+    separation: f64,
+    /// Distance, in scene units, at which objects seem to lie in the screen; infinite if left out.
+    #[serde(default = "infinitely_far")]
+    convergence: f64,
+}
+
+fn infinitely_far() -> f64 {
+    f64::INFINITY
+}
+
+/// Eye, target and up, which the tables of all cameras have. Without an eye the camera is placed so that it sees the whole
+/// scene.
+struct PoseParameters {
+    /// Position of the camera.
+    eye: Option<List<3>>,
+    /// The point at which the camera looks.
+    look_at: Option<List<3>>,
+    /// The direction in which the camera looks, instead of `look_at`.
+    direction: Option<List<3>>,
+    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
+    up: Option<List<3>>,
+}
+
+/// The pose that [`PoseParameters`] describe.
+struct Placement {
+    pose: Pose,
+    /// Whether the position follows from what the camera must see; the pose has only the orientation then.
+    is_framed: bool,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+}
+
+impl PoseParameters {
+    fn placement(&self) -> Result<Placement, CameraError> {
+        let Self { eye, look_at, direction, .. } = *self;
+        let (eye, toward) = match (eye, look_at, direction) {
+            (Some(List(eye)), Some(List(look_at)), None) => {
+                let toward = DVec3::from(look_at) - DVec3::from(eye);
+                let at = |up: [f64; 3]| Pose::looking_at(eye, look_at, up);
+                return self.upright(toward, at, direction, false);
+            }
+            (Some(List(eye)), None, Some(List(direction))) => (Some(eye), direction),
+            (Some(_), None, None) => {
+                return refused("an `eye` needs a `look_at` point or a `direction`");
+            }
+            (_, Some(_), Some(_)) => {
+                return refused("`look_at` and `direction` exclude each other; keep one");
+            }
+            (None, Some(_), None) => {
+                return refused(
+                    "`look_at` needs an `eye`; to frame the whole scene give a `direction`",
+                );
+            }
+            (None, None, direction) => {
+                (None, direction.map_or(Pose::DEFAULT_DIRECTION, |direction| direction.0))
+            }
+        };
+        let along = |up: [f64; 3]| Pose::looking_along(eye.unwrap_or_default(), toward, up);
+        self.upright(toward.into(), along, Some(List(toward)), eye.is_none())
+    }
+
+    /// Makes a pose with the direction that is up. If none was given, it is +y, or for a view straight down or up the
+    /// horizontal direction that [`Viewpoint::axes`](super::Viewpoint::axes) chooses.
+    fn upright(
+        &self,
+        toward: DVec3,
+        pose: impl Fn([f64; 3]) -> Result<Pose, CameraError>,
+        direction: Option<List<3>>,
+        is_framed: bool,
+    ) -> Result<Placement, CameraError> {
+        let up = self.up.map_or([0.0, 1.0, 0.0], |up| up.0);
+        let (pose, up) = match pose(up) {
+            Err(CameraError::UpParallelToView { .. }) if self.up.is_none() => {
+                let up = [0.0, 0.0, if toward.y < 0.0 { -1.0 } else { 1.0 }];
+                (pose(up)?, up)
+            }
+            pose => (pose?, up),
+        };
+        Ok(Placement { pose, is_framed, direction, up: Some(List(up)) })
+    }
+}
+
+fn refused<T>(message: &'static str) -> Result<T, CameraError> {
+    Err(CameraError::Parameters { message })
+}
+
+/// The margin of a framed picture. A camera with an eye has none.
+fn margin_of(margin: Option<f64>, is_framed: bool) -> Result<f64, CameraError> {
+    if margin.is_some() && !is_framed {
+        return refused(
+            "`margin` applies only to a camera that frames the scene; remove `margin` or `eye`",
+        );
+    }
+    Ok(margin.unwrap_or(DEFAULT_MARGIN))
+}
+
+fn list(point: DVec3) -> Option<List<3>> {
+    Some(List(point.to_array()))
+}
+
+/// The table `[camera.pinhole]` of a scene file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct PinholeParameters {
+    eye: Option<List<3>>,
+    look_at: Option<List<3>>,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+    /// Distance of the view plane from the eye.
+    distance: Option<f64>,
+    /// Half width and half height of the view plane.
+    half_extent: Option<List<2>>,
+    /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
+    vertical_fov: Option<f64>,
+    /// The part of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
+    margin: Option<f64>,
+    /// How much the picture is enlarged about its middle, by a narrower field of view.
+    zoom: Option<f64>,
+    /// Two eyes.
+    stereo: Option<StereoParameters>,
+}
+
+impl PinholeParameters {
+    fn pose(&self) -> PoseParameters {
+        let Self { eye, look_at, direction, up, .. } = *self;
+        PoseParameters { eye, look_at, direction, up }
+    }
+
+    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let Placement { direction, up, .. } = self.pose().placement()?;
+        let eye = list(self.wide(aspect, subject)?.pose().origin());
+        Ok(Self { eye, direction, up, margin: None, ..*self })
+    }
+
+    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<PinholeCamera, CameraError> {
+        self.wide(aspect, subject)?.zoomed(self.zoom)
+    }
+
+    /// The camera before its picture is enlarged.
+    fn wide(&self, aspect: f64, subject: &Subject<'_>) -> Result<PinholeCamera, CameraError> {
+        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+        let fov = self.vertical_fov.map_or(PinholeCamera::DEFAULT_FOV_RADIANS, f64::to_radians);
+        match (self.half_extent, self.distance) {
+            (Some(_), _) if self.vertical_fov.is_some() => {
+                return refused("`vertical_fov` and `half_extent` exclude each other; keep one");
+            }
+            (None, Some(_)) => {
+                return refused("`distance` needs a `half_extent`; a field of view needs neither");
+            }
+            (Some(_), _) if is_framed => {
+                return refused(
+                    "`half_extent` needs an `eye`; to frame the whole scene give `vertical_fov`",
+                );
+            }
+            _ => {}
+        }
+        let margin = margin_of(self.margin, is_framed)?;
+        match self.half_extent {
+            _ if is_framed => PinholeCamera::framing(*subject, pose, fov, aspect, margin),
+            Some(List(half_extent)) => {
+                PinholeCamera::new(pose, self.distance.unwrap_or(1.0), half_extent)
+            }
+            None => PinholeCamera::with_vertical_fov(pose, fov, aspect),
+        }
+    }
+}
+
+/// The table `[camera.orthographic]` of a scene file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct OrthographicParameters {
+    /// The middle of the view plane.
+    eye: Option<List<3>>,
+    look_at: Option<List<3>>,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+    /// Half width and half height of the view plane.
+    half_extent: Option<List<2>>,
+    /// The part of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
+    margin: Option<f64>,
+    /// How much the picture is enlarged about its middle.
+    zoom: Option<f64>,
+}
+
+impl OrthographicParameters {
+    /// The pose, and the half extent of the view plane before the picture is enlarged.
+    fn wide(&self, aspect: f64, subject: &Subject<'_>) -> Result<(Placement, DVec2), CameraError> {
+        let Self { eye, look_at, direction, up, half_extent, .. } = *self;
+        let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
+        let Placement { pose, is_framed, .. } = placement;
+        let margin = margin_of(self.margin, is_framed)?;
+        match half_extent {
+            Some(_) if is_framed => {
+                refused("`half_extent` needs an `eye`; to frame the whole scene leave both out")
+            }
+            None if !is_framed => refused("an `eye` needs a `half_extent`"),
+            Some(List(half_extent)) => Ok((placement, half_extent.into())),
+            None => {
+                let framed = OrthographicCamera::framing(*subject, pose, aspect, margin)?;
+                Ok((Placement { pose: framed.pose(), ..placement }, framed.half_extent()))
+            }
+        }
+    }
+
+    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let (Placement { pose, direction, up, .. }, half_extent) = self.wide(aspect, subject)?;
+        let half_extent = Some(List(half_extent.to_array()));
+        Ok(Self { eye: list(pose.origin()), direction, up, half_extent, margin: None, ..*self })
+    }
+
+    fn camera(
+        &self,
+        aspect: f64,
+        subject: &Subject<'_>,
+    ) -> Result<OrthographicCamera, CameraError> {
+        let (Placement { pose, .. }, half_extent) = self.wide(aspect, subject)?;
+        let zoom = self.zoom.map_or(Ok(1.0), |zoom| checked_length("`zoom`", zoom))?;
+        OrthographicCamera::new(pose, half_extent / zoom)
+    }
+}
+
+/// The table `[camera.thin-lens]` of a scene file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct ThinLensParameters {
+    /// The middle of the lens.
+    eye: Option<List<3>>,
+    look_at: Option<List<3>>,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+    distance: Option<f64>,
+    half_extent: Option<List<2>>,
+    vertical_fov: Option<f64>,
+    margin: Option<f64>,
+    zoom: Option<f64>,
+    /// Radius of the lens in scene units.
+    aperture_radius: Option<f64>,
+    /// F-number (focal length over diameter), given together with `focal_length` instead of `aperture_radius`.
+    f_stop: Option<f64>,
+    /// Focal length in scene units; it only turns `f_stop` into a length.
+    focal_length: Option<f64>,
+    /// Distance along the view at which objects are sharp; without it, that of `look_at` or of the scene's middle.
+    focus_distance: Option<f64>,
+    /// A point that is in focus, instead of `focus_distance`.
+    focus_on: Option<List<3>>,
+}
+
+impl ThinLensParameters {
+    /// The pinhole camera through the centre of the lens.
+    fn pinhole(&self) -> PinholeParameters {
+        let Self { eye, look_at, direction, up, distance, half_extent, .. } = *self;
+        let Self { vertical_fov, margin, zoom, .. } = *self;
+        let pinhole = PinholeParameters { eye, look_at, direction, up, ..Default::default() };
+        PinholeParameters { distance, half_extent, vertical_fov, margin, zoom, ..pinhole }
+    }
+
+    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let PinholeParameters { eye, direction, up, margin, .. } =
+            self.pinhole().placed(aspect, subject)?;
+        let has_focus = self.focus_distance.is_some() || self.focus_on.is_some();
+        let middle =
+            if self.eye.is_none() && !has_focus { list(subject.bounds().center()) } else { None };
+        Ok(Self { eye, direction, up, margin, focus_on: self.focus_on.or(middle), ..*self })
+    }
+
+    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<ThinLensCamera, CameraError> {
+        let pinhole = self.pinhole().camera(aspect, subject)?;
+        let radius = match (self.aperture_radius, self.f_stop, self.focal_length) {
+            (Some(radius), None, None) => radius,
+            (None, Some(f_stop), Some(length)) => ThinLensCamera::aperture_radius(length, f_stop)?,
+            (Some(_), _, _) => {
+                return refused("`aperture_radius` excludes `f_stop` and `focal_length`; keep one");
+            }
+            (None, None, None) => {
+                return refused(
+                    "a lens needs an `aperture_radius`, or an `f_stop` with a `focal_length`",
+                );
+            }
+            (None, Some(_), None) | (None, None, Some(_)) => {
+                return refused(
+                    "`f_stop` and `focal_length` need each other: together they give the aperture radius",
+                );
+            }
+        };
+        let point = match (self.focus_distance, self.focus_on.or(self.look_at), self.eye) {
+            (Some(_), _, _) if self.focus_on.is_some() => {
+                return refused("`focus_distance` and `focus_on` exclude each other; keep one");
+            }
+            (Some(distance), _, _) => return ThinLensCamera::new(pinhole, radius, distance),
+            (None, Some(List(point)), _) => point.into(),
+            (None, None, None) => subject.bounds().center(),
+            (None, None, Some(_)) => {
+                return refused(
+                    "a `direction` does not say at which distance objects are sharp; give a `focus_distance` or `focus_on`",
+                );
+            }
+        };
+        ThinLensCamera::focused_on(pinhole, radius, point)
+    }
+}
+
+/// The table `[camera.panorama]` of a scene file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct PanoramaParameters {
+    /// Position of the camera; without it, the middle of the scene.
+    eye: Option<List<3>>,
+    /// The point in the middle of the picture.
+    look_at: Option<List<3>>,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+    /// Two eyes.
+    stereo: Option<StereoParameters>,
+}
+
+impl PanoramaParameters {
+    fn pose(&self) -> PoseParameters {
+        let Self { eye, look_at, direction, up, .. } = *self;
+        PoseParameters { eye, look_at, direction, up }
+    }
+
+    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let Placement { direction, up, .. } = self.pose().placement()?;
+        let eye = list(self.camera(aspect, subject)?.pose().origin());
+        Ok(Self { eye, direction, up, ..*self })
+    }
+
+    fn camera(&self, _: f64, subject: &Subject<'_>) -> Result<PanoramaCamera, CameraError> {
+        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+        Ok(PanoramaCamera::new(match is_framed {
+            true => pose.framing(&subject.bounds(), DVec3::ZERO)?,
+            false => pose,
+        }))
+    }
+}
+
+/// The table `[camera.fisheye]` of a scene file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct FisheyeParameters {
+    eye: Option<List<3>>,
+    look_at: Option<List<3>>,
+    direction: Option<List<3>>,
+    up: Option<List<3>>,
+    /// The angle across the whole disk, in degrees.
+    angle: Option<f64>,
+}
+
+impl FisheyeParameters {
+    fn pose(&self) -> PoseParameters {
+        let Self { eye, look_at, direction, up, .. } = *self;
+        PoseParameters { eye, look_at, direction, up }
+    }
+
+    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let Placement { direction, up, .. } = self.pose().placement()?;
+        let eye = list(self.camera(aspect, subject)?.pose().origin());
+        Ok(Self { eye, direction, up, ..*self })
+    }
+
+    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<FisheyeCamera, CameraError> {
+        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+        let angle = self.angle.map_or(FisheyeCamera::DEFAULT_ANGLE_RADIANS, f64::to_radians);
+        let camera = FisheyeCamera::new(pose, angle, aspect)?;
+        if !is_framed {
+            return Ok(camera);
+        }
+        let bounds = subject.bounds();
+        let back = framing::round_distance(&bounds, 0.5 * angle) * pose.basis().w();
+        FisheyeCamera::new(pose.framing(&bounds, back)?, angle, aspect)
     }
 }

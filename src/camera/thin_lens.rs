@@ -2,17 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-#[cfg(feature = "scene-file")]
-use super::PinholeParameters;
 use super::pose::checked_point;
 use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length};
-#[cfg(feature = "scene-file")]
-use crate::exact;
 use crate::geometry::disk::concentric_disk;
 use crate::geometry::math::MIN_LENGTH;
 use crate::geometry::ray::Ray;
-#[cfg(feature = "scene-file")]
-use crate::geometry::subject::Subject;
 
 /// A camera with a thin lens.
 ///
@@ -111,135 +105,5 @@ impl Camera for ThinLensCamera {
     fn vectors(&self) -> CameraVectors {
         let [first, second] = (self.aperture_radius / self.pinhole.half_extent()).to_array();
         CameraVectors { numbers: [first, second, 0.0], ..self.pinhole.vectors() }
-    }
-}
-
-/// The table `[camera.thin-lens]` of a scene file.
-#[cfg(feature = "scene-file")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ThinLensParameters {
-    /// The middle of the lens; without it, the camera frames the scene.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub eye: Option<[f64; 3]>,
-    /// The point at which the camera looks.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub look_at: Option<[f64; 3]>,
-    /// The direction in which the camera looks, instead of `look_at`.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f64; 3]>,
-    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub up: Option<[f64; 3]>,
-    /// Distance of the view plane from the eye.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub distance: Option<f64>,
-    /// Half width and half height of the view plane.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub half_extent: Option<[f64; 2]>,
-    /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub vertical_fov: Option<f64>,
-    /// The part of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub margin: Option<f64>,
-    /// How much the picture is enlarged about its middle, by a narrower field of view.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub zoom: Option<f64>,
-    /// Radius of the lens in scene units.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub aperture_radius: Option<f64>,
-    /// F-number (focal length over diameter), given together with `focal_length` instead of `aperture_radius`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub f_stop: Option<f64>,
-    /// Focal length in scene units; it only turns `f_stop` into a length.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub focal_length: Option<f64>,
-    /// Distance along the view at which objects are sharp; without it, that of `look_at` or of the scene's middle.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub focus_distance: Option<f64>,
-    /// A point that is in focus, instead of `focus_distance`.
-    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
-    pub focus_on: Option<[f64; 3]>,
-}
-
-#[cfg(feature = "scene-file")]
-impl ThinLensParameters {
-    /// The pinhole camera through the centre of the lens.
-    fn pinhole(&self) -> PinholeParameters {
-        let &Self { eye, look_at, direction, up, distance, half_extent, .. } = self;
-        let &Self { vertical_fov, margin, zoom, .. } = self;
-        PinholeParameters {
-            eye,
-            look_at,
-            direction,
-            up,
-            distance,
-            half_extent,
-            vertical_fov,
-            margin,
-            zoom,
-            stereo: None,
-        }
-    }
-
-    /// The same camera with a position, a direction, the direction that is up, and a point or distance of focus.
-    /// Without an `eye` it is placed so that it sees the whole of the subject.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`ThinLensParameters::camera`].
-    pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let PinholeParameters { eye, direction, up, margin, .. } =
-            self.pinhole().placed(aspect, subject)?;
-        let has_focus = self.focus_distance.is_some() || self.focus_on.is_some();
-        let middle =
-            (self.eye.is_none() && !has_focus).then(|| subject.bounds().center().to_array());
-        Ok(Self { eye, direction, up, margin, focus_on: self.focus_on.or(middle), ..*self })
-    }
-
-    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of the
-    /// subject.
-    ///
-    /// # Errors
-    /// Returns an error if a value is out of range, or values exclude each other.
-    pub fn camera(
-        &self,
-        aspect: f64,
-        subject: &Subject<'_>,
-    ) -> Result<ThinLensCamera, CameraError> {
-        let (eye, look_at) = (self.eye, self.look_at);
-        let pinhole = self.pinhole().camera(aspect, subject)?;
-        let radius = match (self.aperture_radius, self.f_stop, self.focal_length) {
-            (Some(radius), None, None) => radius,
-            (None, Some(f_stop), Some(length)) => ThinLensCamera::aperture_radius(length, f_stop)?,
-            (Some(_), _, _) => {
-                let message = "`aperture_radius` excludes `f_stop` and `focal_length`; keep one";
-                return Err(CameraError::Parameters { message });
-            }
-            (None, None, None) => {
-                let message =
-                    "a lens needs an `aperture_radius`, or an `f_stop` with a `focal_length`";
-                return Err(CameraError::Parameters { message });
-            }
-            (None, Some(_), None) | (None, None, Some(_)) => {
-                let message = "`f_stop` and `focal_length` need each other: together they give the aperture radius";
-                return Err(CameraError::Parameters { message });
-            }
-        };
-        match (self.focus_distance, self.focus_on, look_at, eye) {
-            (Some(_), Some(_), _, _) => Err(CameraError::Parameters {
-                message: "`focus_distance` and `focus_on` exclude each other; keep one",
-            }),
-            (Some(distance), None, _, _) => ThinLensCamera::new(pinhole, radius, distance),
-            (None, Some(point), _, _) | (None, None, Some(point), _) => {
-                ThinLensCamera::focused_on(pinhole, radius, point)
-            }
-            (None, None, None, None) => {
-                ThinLensCamera::focused_on(pinhole, radius, subject.bounds().center())
-            }
-            (None, None, None, Some(_)) => Err(CameraError::Parameters {
-                message: "a `direction` does not say at which distance objects are sharp; give a `focus_distance` or `focus_on`",
-            }),
-        }
     }
 }

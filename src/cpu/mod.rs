@@ -9,31 +9,24 @@
 use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
-use crate::render::{Decision, Nearest, Picture, PrimarySettings, Progress, RenderSettings, Watch};
+use crate::render::{Decision, Nearest, Picture, RenderSettings, Watch};
 
 mod denoise;
-mod error;
-mod light;
-pub(crate) mod live;
+pub(crate) mod light;
 mod pace;
 mod primary;
 mod search;
-mod search_index;
 #[cfg(test)]
 mod search_tests;
-mod shade;
 mod sphere;
-mod trace;
 
-use pace::Pace;
-use primary::{for_rows, primary_pixel, render_primary};
+use primary::primary_watched;
 
 pub use denoise::denoise;
-pub use error::RenderError;
 pub use light::{Sample, SampledPicture, finish, radiance};
+pub use pace::RenderError;
+pub use primary::{shade, trace};
 pub use search::{Search, SearchPlan, SearchStructure};
-pub use shade::shade;
-pub use trace::trace;
 
 /// Renders a picture.
 ///
@@ -44,7 +37,8 @@ pub use trace::trace;
 /// Given a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
 /// [`SearchStructure`] and give a reference to it: the picture is the same, to the bit, and soon finished.
 ///
-/// Rows are rendered on all cores; the picture does not depend on how many there are.
+/// Rows are rendered on all cores; the picture does not depend on how many there are. With lighting, each pixel needs
+/// [`SampledPicture::BYTES_PER_PIXEL`] for its sums meanwhile.
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.
@@ -54,20 +48,13 @@ pub fn render<'a>(
     settings: &RenderSettings,
     layers: LayerSet,
 ) -> Result<Image, RenderError> {
-    let search = search.into();
-    match settings.primary() {
-        Some(primary) => {
-            settings.check(search.scene())?;
-            render_primary(search, view, &primary, layers)
-        }
-        None => SampledPicture::new(search, view, settings)?.render(layers),
-    }
+    Ok(render_watched(search, view, settings, layers, &mut |_| Decision::GoOn)?.image)
 }
 
 /// Renders a picture as [`render`] does, with the same pixels, and asks `watch` several times a second how to continue.
 ///
 /// With lighting, every pixel gets its first sample before any gets its second, and so on in batches, so that the
-/// caller may finish the picture with the samples that it has. Until then each pixel needs 72 bytes for its sums.
+/// caller may finish the picture with the samples that it has.
 /// If a picture is finished within a batch, some rows have more samples than others, which the layer of samples tells.
 ///
 /// # Errors
@@ -81,7 +68,13 @@ pub fn render_watched<'a>(
     watch: &mut Watch<'_>,
 ) -> Result<Picture, RenderError> {
     let search = search.into();
-    SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
+    match settings.primary() {
+        Some(primary) => {
+            settings.check(search.scene())?;
+            primary_watched(search, view, &primary, layers, watch)
+        }
+        None => SampledPicture::new(search, view, settings)?.render(layers, watch),
+    }
 }
 
 /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is
@@ -96,9 +89,10 @@ pub fn render_nearest<'a>(
     layers: LayerSet,
 ) -> Result<Option<Nearest>, RenderError> {
     let search = search.into();
-    settings.check(search.scene())?;
-    let Some(primary) = settings.primary() else { return Ok(None) };
-    let image = render_primary(search, view, &primary, layers)?;
+    if settings.primary().is_none() {
+        return settings.check(search.scene()).map(|()| None).map_err(RenderError::from);
+    }
+    let image = render(search, view, settings, layers)?;
     let width = view.film.width() as usize;
     let hits = parallel::map(image.color().len(), |at| {
         let pixel = [(at % width) as u32, (at / width) as u32];
@@ -108,29 +102,4 @@ pub fn render_nearest<'a>(
     let (t, ids): (Vec<f64>, Vec<u32>) = hits.into_iter().unzip();
     let distances = t.iter().map(|t| *t as f32).collect();
     Ok(Nearest::new(image, t, ids, distances))
-}
-
-/// Renders a picture of primary rays, and asks after some rows how to continue.
-fn primary_watched(
-    search: Search<'_>,
-    view: &View<'_>,
-    primary: &PrimarySettings,
-    layers: LayerSet,
-    watch: &mut Watch<'_>,
-) -> Result<Picture, RenderError> {
-    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
-    let height = image.height() as usize;
-    Pace::new().run(height, |rows| {
-        let is_done = rows.end == height;
-        let part = rows.end as f64 / height as f64;
-        for_rows(&mut image, rows, |pixel, i, row| {
-            row.set(i, &primary_pixel(search, view, primary, pixel));
-        });
-        match watch(&Progress { samples: is_done.into(), total: 1, part, noise: None }) {
-            Decision::GoOn | Decision::MeasureNoise => Ok(()),
-            Decision::Finish if is_done => Ok(()),
-            Decision::Finish | Decision::Stop => Err(RenderError::Stopped),
-        }
-    })?;
-    Ok(Picture { image, samples: 1, noise: None, hits: None })
 }

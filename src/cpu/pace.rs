@@ -1,9 +1,25 @@
-//! How much of a picture is rendered between two calls of its caller.
+//! How much of a picture is rendered between two calls of its caller, and why it may have none.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::error::RenderError;
+use crate::image::ImageTooLarge;
+use crate::render::SettingsError;
+
+/// Why no picture is rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The settings, or the materials of the scene, are not valid.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// There is not enough memory for the image.
+    #[error(transparent)]
+    Image(#[from] ImageTooLarge),
+    /// The caller ended the work.
+    #[error("rendering was stopped")]
+    Stopped,
+}
 
 /// The time between two calls that is aimed at: short enough for a person, long enough that waiting for the last of all
 /// threads does not count.

@@ -1,30 +1,49 @@
-//! Pictures of one ray for each pixel, and loops over pixels.
+//! Pictures of one ray for each pixel. The WGSL twins are `shaders/primary/trace.wgsl` and `shaders/primary/shade.wgsl`.
 
 use std::ops::Range;
 
-use super::error::RenderError;
+use super::pace::{Pace, RenderError};
 use super::search::Search;
-use super::shade::shade;
-use super::trace::trace;
+use super::sphere::intersect;
 use crate::camera::View;
+use crate::geometry::math::wide;
+use crate::geometry::ray::{Hit, Ray};
 use crate::image::{Image, LayerSet, Pixel, RowMut};
 use crate::parallel::for_each;
-use crate::render::PrimarySettings;
+use crate::render::{Decision, Picture, PrimarySettings, Progress, Shading, Watch};
+use crate::scene::Scene;
 
-/// The number of rows that are processed together, on all cores.
-const ROWS_AT_ONCE: usize = 4096;
+/// The nearest hit in front of the ray's origin; of several spheres at the same distance, that with the smallest id.
+/// `None` for a miss. With a reference to a scene, every sphere is tested.
+#[must_use]
+pub fn trace<'a>(search: impl Into<Search<'a>>, ray_in_world: &Ray) -> Option<Hit> {
+    let search = search.into();
+    let ray = Ray { origin: ray_in_world.origin - search.scene().origin(), ..*ray_in_world };
+    let test = |[x, y, z, radius]: [f32; 4]| intersect(&ray, wide([x, y, z]), radius.into());
+    let nearest = search.nearest(&ray, |sphere| test(sphere).map(|(t, _)| t))?;
+    let (t, normal) = test(nearest.sphere)?;
+    Some(Hit { t, id: nearest.id, normal })
+}
 
-pub(super) fn render_primary(
-    search: Search<'_>,
-    view: &View<'_>,
-    primary: &PrimarySettings,
-    layers: LayerSet,
-) -> Result<Image, RenderError> {
-    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
-    for_each_pixel(&mut image, |pixel, i, row| {
-        row.set(i, &primary_pixel(search, view, primary, pixel));
-    });
-    Ok(image)
+/// The pixel of a primary ray that hits a sphere.
+#[must_use]
+pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> Pixel {
+    let surface = scene.color(hit.id).to_array();
+    let color = match primary.shading {
+        Shading::Flat => surface,
+        Shading::Headlight => {
+            let cosine = hit.normal.dot(ray.direction).abs();
+            surface.map(|c| (f64::from(c) * cosine) as f32)
+        }
+    };
+    Pixel {
+        color,
+        depth: hit.t as f32,
+        normal: hit.normal.as_vec3().to_array(),
+        position: ray.at(hit.t).as_vec3().to_array(),
+        albedo: surface,
+        id: hit.id,
+    }
 }
 
 /// The pixel of the ray through its centre.
@@ -42,32 +61,41 @@ pub(super) fn primary_pixel(
     }
 }
 
-/// Calls `work` with each pixel (column and row), its index in its row, and the row.
-pub(super) fn for_each_pixel(
-    image: &mut Image,
-    work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
-) {
-    let height = image.height() as usize;
-    // Rows are borrowed in batches, because the references to a row's layers may need more memory than a narrow row.
-    for start in (0..height).step_by(ROWS_AT_ONCE) {
-        for_rows(image, start..(start + ROWS_AT_ONCE).min(height), &work);
-    }
-}
-
-/// Calls `work` with each pixel of some rows, as [`for_each_pixel`] does.
+/// Calls `work` with each pixel (column and row) of some rows, its index in its row, and the row, on all cores.
 pub(super) fn for_rows(
     image: &mut Image,
     rows: Range<usize>,
     work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
 ) {
     let (width, start) = (image.width(), rows.start);
-    for_each_row(image.rows_mut(rows), |j, row| {
+    image.rows_mut(rows).into_par_iter().enumerate().for_each(|(j, mut row)| {
         for i in 0..width {
-            work([i, (start + j) as u32], i as usize, row);
+            work([i, (start + j) as u32], i as usize, &mut row);
         }
     });
 }
 
-fn for_each_row(rows: Vec<RowMut<'_>>, render_row: impl Fn(usize, &mut RowMut<'_>) + Sync) {
-    for_each(rows.into_iter().enumerate().collect(), |(j, mut row)| render_row(j, &mut row));
+/// Renders a picture of primary rays, and asks after some rows how to continue.
+pub(super) fn primary_watched(
+    search: Search<'_>,
+    view: &View<'_>,
+    primary: &PrimarySettings,
+    layers: LayerSet,
+    watch: &mut Watch<'_>,
+) -> Result<Picture, RenderError> {
+    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
+    let height = image.height() as usize;
+    Pace::new().run(height, |rows| {
+        let is_done = rows.end == height;
+        let part = rows.end as f64 / height as f64;
+        for_rows(&mut image, rows, |pixel, i, row| {
+            row.set(i, &primary_pixel(search, view, primary, pixel));
+        });
+        match watch(&Progress { samples: is_done.into(), total: 1, part, noise: None }) {
+            Decision::GoOn | Decision::MeasureNoise => Ok(()),
+            Decision::Finish if is_done => Ok(()),
+            Decision::Finish | Decision::Stop => Err(RenderError::Stopped),
+        }
+    })?;
+    Ok(Picture { image, samples: 1, noise: None, hits: None })
 }

@@ -3,8 +3,7 @@
 use fastrand::Rng;
 use glam::DVec3;
 
-use super::search::{Search, SearchStructure};
-use super::search_index::{GridIndex, TreeIndex};
+use super::search::{GridIndex, Search, SearchStructure, TreeIndex};
 use super::sphere::intersect;
 use crate::accel::wide_tree_visit::BoxRay;
 use crate::accel::{AccelPlan, Structure};

@@ -24,7 +24,7 @@ impl Bits {
         match bits {
             8 => Ok(Self::Eight),
             16 => Ok(Self::Sixteen),
-            _ => Err(EncodingError::Bits { bits }),
+            _ => Err(EncodingError(format!("`bits` is {bits}; it must be 8 or 16"))),
         }
     }
 
@@ -61,33 +61,11 @@ pub struct Encoding {
     dots_per_inch: Option<f32>,
 }
 
-/// Why parameters do not make an encoding.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+/// Why a parameter is not that of an encoding.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum EncodingError {
-    /// The exposure is out of range.
-    #[error(
-        "`exposure` is {stops} stops; it must lie between -{} and {}",
-        Encoding::MAX_EXPOSURE,
-        Encoding::MAX_EXPOSURE
-    )]
-    Exposure {
-        /// The exposure as given, in stops.
-        stops: f32,
-    },
-    /// The resolution is out of range.
-    #[error("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch")]
-    DotsPerInch {
-        /// The resolution as given.
-        dots_per_inch: f32,
-    },
-    /// The number of bits is neither 8 nor 16.
-    #[error("`bits` is {bits}; it must be 8 or 16")]
-    Bits {
-        /// The number of bits as given.
-        bits: u32,
-    },
-}
+pub struct EncodingError(String);
 
 impl Encoding {
     /// The largest number of stops by which a picture may be made brighter or darker.
@@ -117,7 +95,9 @@ impl Encoding {
         if stops.abs() <= Self::MAX_EXPOSURE {
             Ok(Self { exposure: stops, ..self })
         } else {
-            Err(EncodingError::Exposure { stops })
+            let most = Self::MAX_EXPOSURE;
+            let range = format!("it must lie between -{most} and {most}");
+            Err(EncodingError(format!("`exposure` is {stops} stops; {range}")))
         }
     }
 
@@ -174,9 +154,9 @@ impl Encoding {
     /// Returns an error if it does not lie between 1 and 100,000.
     pub fn with_dots_per_inch(self, dots_per_inch: Option<f32>) -> Result<Self, EncodingError> {
         match dots_per_inch {
-            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => {
-                Err(EncodingError::DotsPerInch { dots_per_inch })
-            }
+            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => Err(EncodingError(
+                format!("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch"),
+            )),
             dots_per_inch => Ok(Self { dots_per_inch, ..self }),
         }
     }

@@ -1,6 +1,6 @@
 //! Pictures in parts: copying a part into the whole, and the bytes by which parts travel between machines.
 
-use super::{Image, Layer, LayerSet};
+use super::{Image, ImageTooLarge, Layer, LayerSet, Plane, counts_mut};
 
 /// A part does not fit into a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,44 +31,46 @@ impl Image {
         if !(fits(0, width) && fits(1, height)) {
             return Err(DoesNotFit { part: [width, height], origin, whole });
         }
-        let place = Place {
-            first: origin[1] as usize * self.width as usize + origin[0] as usize,
-            stride: self.width as usize,
-            width: width as usize,
-        };
-        place.copy(Some(&mut self.color), Some(&part.color));
-        place.copy(self.alpha.as_mut(), part.alpha.as_ref());
-        place.copy(self.depth.as_mut(), part.depth.as_ref());
-        place.copy(self.normal.as_mut(), part.normal.as_ref());
-        place.copy(self.position.as_mut(), part.position.as_ref());
-        place.copy(self.albedo.as_mut(), part.albedo.as_ref());
-        place.copy(self.id.as_mut(), part.id.as_ref());
-        place.copy(self.samples.as_mut(), part.samples.as_ref());
-        place.copy(self.variance.as_mut(), part.variance.as_ref());
+        self.copy_rows(part, origin);
         Ok(())
+    }
+
+    /// Copies the rows of a part, from top to bottom, as far as they are in this picture; they are not too wide for it.
+    fn copy_rows(&mut self, part: &Self, [column, row]: [u32; 2]) {
+        let rows = (part.height as usize).min((self.height - row) as usize);
+        let [width, stride] = [part.width, self.width].map(|side| side as usize);
+        let first = row as usize * stride + column as usize;
+        for (to, from) in self.planes.iter_mut().zip(&part.planes) {
+            let (Some(to), Some(from)) = (to, from) else { continue };
+            (0..rows).for_each(|row| to.copy(first + row * stride, from, row * width, width));
+        }
+    }
+
+    /// Joins two images of the same height, with the layers that both have.
+    ///
+    /// # Errors
+    /// Returns an error if the memory cannot be reserved.
+    pub fn side_by_side([left, right]: [&Self; 2]) -> Result<Self, ImageTooLarge> {
+        let in_both = left.layers().iter().filter(|layer| right.layers().contains(*layer));
+        let (width, height) = (left.width + right.width, left.height.min(right.height));
+        let mut both = Self::new(width, height, in_both.collect())?;
+        both.copy_rows(left, [0, 0]);
+        both.copy_rows(right, [left.width, 0]);
+        Ok(both)
     }
 
     /// Copies the pixels with these indices from a picture of the same size and layers.
     pub(crate) fn copy_pixels(&mut self, from: &Self, pixels: &[usize]) {
-        fn copy<T: Copy>(to: Option<&mut Vec<T>>, from: Option<&Vec<T>>, pixels: &[usize]) {
-            if let (Some(to), Some(from)) = (to, from) {
-                pixels.iter().for_each(|at| to[*at] = from[*at]);
-            }
+        for (to, from) in self.planes.iter_mut().zip(&from.planes) {
+            let (Some(to), Some(from)) = (to, from) else { continue };
+            pixels.iter().for_each(|at| to.copy(*at, from, *at, 1));
         }
-        copy(Some(&mut self.color), Some(&from.color), pixels);
-        copy(self.alpha.as_mut(), from.alpha.as_ref(), pixels);
-        copy(self.depth.as_mut(), from.depth.as_ref(), pixels);
-        copy(self.normal.as_mut(), from.normal.as_ref(), pixels);
-        copy(self.position.as_mut(), from.position.as_ref(), pixels);
-        copy(self.albedo.as_mut(), from.albedo.as_ref(), pixels);
-        copy(self.id.as_mut(), from.id.as_ref(), pixels);
-        copy(self.samples.as_mut(), from.samples.as_ref(), pixels);
-        copy(self.variance.as_mut(), from.variance.as_ref(), pixels);
     }
 
     /// Sets the layer of ids, if there is one of this length.
     pub(crate) fn set_id(&mut self, ids: &[u32]) {
-        if let Some(layer) = self.id.as_mut().filter(|layer| layer.len() == ids.len()) {
+        let layer = counts_mut(&mut self.planes[Layer::Id as usize]);
+        if let Some(layer) = layer.filter(|layer| layer.len() == ids.len()) {
             layer.copy_from_slice(ids);
         }
     }
@@ -78,29 +80,16 @@ impl Image {
     #[must_use]
     pub fn to_le_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        let mut floats = |values: &[f32]| {
-            bytes.extend(values.iter().flat_map(|value| value.to_bits().to_le_bytes()));
-        };
-        floats(self.color.as_flattened());
-        for layer in self.layers().iter() {
-            match layer {
-                // It is the first layer of every set.
-                Layer::Color => {}
-                Layer::Alpha => self.alpha.iter().for_each(|values| floats(values)),
-                Layer::Depth => self.depth.iter().for_each(|values| floats(values)),
-                Layer::Normal => {
-                    self.normal.iter().for_each(|values| floats(values.as_flattened()));
+        for plane in self.planes.iter().flatten() {
+            let floats = match plane {
+                Plane::Numbers(values) => values,
+                Plane::Vectors(values) => values.as_flattened(),
+                Plane::Counts(values) => {
+                    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+                    continue;
                 }
-                Layer::Position => {
-                    self.position.iter().for_each(|values| floats(values.as_flattened()));
-                }
-                Layer::Albedo => {
-                    self.albedo.iter().for_each(|values| floats(values.as_flattened()));
-                }
-                Layer::Variance => self.variance.iter().for_each(|values| floats(values)),
-                Layer::Id => self.id.iter().for_each(|values| floats(&bits(values))),
-                Layer::Samples => self.samples.iter().for_each(|values| floats(&bits(values))),
-            }
+            };
+            bytes.extend(floats.iter().flat_map(|value| value.to_bits().to_le_bytes()));
         }
         bytes
     }
@@ -119,63 +108,32 @@ impl Image {
         }
         let mut image = Self::new(width, height, layers).ok()?;
         let mut words = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
-        let mut floats = |values: &mut [f32]| {
-            values
-                .iter_mut()
-                .zip(&mut words)
-                .for_each(|(value, word)| *value = f32::from_bits(word));
-        };
-        floats(image.color.as_flattened_mut());
-        for layer in layers.iter() {
-            match layer {
-                Layer::Color => {}
-                Layer::Alpha => image.alpha.iter_mut().for_each(|values| floats(values)),
-                Layer::Depth => image.depth.iter_mut().for_each(|values| floats(values)),
-                Layer::Normal => {
-                    image.normal.iter_mut().for_each(|values| floats(values.as_flattened_mut()));
+        let mut next = || words.next().unwrap_or_default();
+        for plane in image.planes.iter_mut().flatten() {
+            let floats = match plane {
+                Plane::Numbers(values) => values,
+                Plane::Vectors(values) => values.as_flattened_mut(),
+                Plane::Counts(values) => {
+                    values.iter_mut().for_each(|value| *value = next());
+                    continue;
                 }
-                Layer::Position => {
-                    image.position.iter_mut().for_each(|values| floats(values.as_flattened_mut()));
-                }
-                Layer::Albedo => {
-                    image.albedo.iter_mut().for_each(|values| floats(values.as_flattened_mut()));
-                }
-                Layer::Variance => image.variance.iter_mut().for_each(|values| floats(values)),
-                Layer::Id => image.id.iter_mut().for_each(|values| of_bits(values, &mut floats)),
-                Layer::Samples => {
-                    image.samples.iter_mut().for_each(|values| of_bits(values, &mut floats));
-                }
-            }
+            };
+            floats.iter_mut().for_each(|value| *value = f32::from_bits(next()));
         }
         Some(image)
     }
 }
 
-/// Numbers as f32 of the same bits, which are only copied.
-fn bits(values: &[u32]) -> Vec<f32> {
-    values.iter().map(|value| f32::from_bits(*value)).collect()
-}
-
-fn of_bits(values: &mut [u32], read: &mut impl FnMut(&mut [f32])) {
-    let mut floats = vec![0.0; values.len()];
-    read(&mut floats);
-    values.iter_mut().zip(&floats).for_each(|(value, float)| *value = float.to_bits());
-}
-
-/// Where a part lies in the list of all pixels.
-struct Place {
-    first: usize,
-    /// From one row to the next.
-    stride: usize,
-    /// Pixels of the part in a row.
-    width: usize,
-}
-
-impl Place {
-    fn copy<T: Copy>(&self, whole: Option<&mut Vec<T>>, part: Option<&Vec<T>>) {
-        let (Some(whole), Some(part)) = (whole, part) else { return };
-        let rows = whole[self.first..].chunks_mut(self.stride).zip(part.chunks(self.width));
-        rows.for_each(|(whole, part)| whole[..self.width].copy_from_slice(part));
+impl Plane {
+    /// Copies some pixels from another plane of the layer.
+    fn copy(&mut self, to: usize, from: &Self, at: usize, count: usize) {
+        let (to, at) = (to..to + count, at..at + count);
+        match (self, from) {
+            (Self::Numbers(all), Self::Numbers(from)) => all[to].copy_from_slice(&from[at]),
+            (Self::Vectors(all), Self::Vectors(from)) => all[to].copy_from_slice(&from[at]),
+            (Self::Counts(all), Self::Counts(from)) => all[to].copy_from_slice(&from[at]),
+            _ => {}
+        }
     }
 }
 
@@ -213,24 +171,23 @@ mod tests {
         for (x, width) in [(0, 3), (3, 4)] {
             for (y, height) in [(0, 1), (1, 2), (3, 2)] {
                 let mut part = Image::new(width, height, LayerSet::ALL).unwrap();
-                let first = (y * 7 + x) as usize;
-                let place = Place { first: 0, stride: width as usize, width: width as usize };
-                let cut = |of: &[u32]| -> Vec<u32> {
-                    let rows = of[first..].chunks(7).take(height as usize);
-                    rows.flat_map(|row| row[..width as usize].to_vec()).collect()
-                };
-                place.copy(part.id.as_mut(), Some(&cut(whole.id.as_ref().unwrap())));
-                place.copy(part.samples.as_mut(), Some(&cut(whole.samples.as_ref().unwrap())));
+                for (to, from) in part.planes.iter_mut().zip(&whole.planes) {
+                    for row in 0..height {
+                        let (to, from) = (to.as_mut().unwrap(), from.as_ref().unwrap());
+                        let at = ((y + row) * 7 + x) as usize;
+                        to.copy((row * width) as usize, from, at, width as usize);
+                    }
+                }
                 joined.put(&part, [x, y]).unwrap();
             }
         }
-        assert_eq!((joined.id, joined.samples), (whole.id.clone(), whole.samples.clone()));
+        assert_eq!(joined.to_le_bytes(), whole.to_le_bytes());
         let (mut small, part) = (whole.clone(), numbered(4, 2, LayerSet::COLOR));
         for origin in [[4, 0], [0, 4], [u32::MAX, 0], [0, u32::MAX]] {
             small.put(&part, origin).unwrap_err();
         }
         assert_eq!(small.to_le_bytes(), whole.to_le_bytes());
         small.put(&part, [3, 3]).unwrap();
-        assert_eq!(small.color[3 * 7 + 3].map(f32::to_bits), part.color[0].map(f32::to_bits));
+        assert_eq!(small.color()[3 * 7 + 3].map(f32::to_bits), part.color()[0].map(f32::to_bits));
     }
 }

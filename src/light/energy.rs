@@ -16,11 +16,11 @@ use crate::scene::material::{Material, SurfaceProperties};
 ///
 /// The error of linear interpolation is below 0.0002 for reflection and 0.0005 for refraction (ior from 1.1), and that
 /// of the entries themselves is below 0.0005 and 0.001.
-pub const ENTRIES: usize = 256;
+pub(crate) const ENTRIES: usize = 256;
 
 /// A lobe of reflected or refracted light, for which a table says how much energy a single scattering loses. Its normals follow the GGX distribution (Trowbridge and Reitz), with α = roughness².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lobe {
+pub(crate) enum Lobe {
     /// All light is reflected. The weight of a sample is G2/G1, with the height-correlated G2.
     Reflection {
         /// Roughness: 0.02 to 1.
@@ -67,15 +67,17 @@ impl Lobe {
 /// The energy tables of all materials of a scene: how much light each rough lobe keeps when it scatters once, by which
 /// renderers make up for the rest. Materials with equal lobes share tables.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct EnergyTables {
-    entries: Vec<f32>,
-    starts: Vec<Option<u32>>,
+pub(crate) struct EnergyTables {
+    /// The entries of all tables, one table after the other.
+    pub(crate) entries: Vec<f32>,
+    /// For each surface, the index in `entries` at which its first table starts; `None` for a material that needs no table.
+    /// A rough dielectric has two tables in a row: from outside, then from inside.
+    pub(crate) starts: Vec<Option<u32>>,
 }
 
 impl EnergyTables {
     /// Computes the tables for a list of surfaces.
-    #[must_use]
-    pub fn of(surfaces: &[SurfaceProperties]) -> Self {
+    pub(crate) fn of(surfaces: &[SurfaceProperties]) -> Self {
         let mut indices = std::collections::HashMap::new();
         let mut lobes: Vec<Lobe> = Vec::new();
         let starts = surfaces.iter().map(|surface| {
@@ -92,24 +94,10 @@ impl EnergyTables {
         let starts = starts.collect();
         Self { entries: lobes.into_iter().flat_map(albedo_table).collect(), starts }
     }
-
-    /// The entries of all tables, one table after the other.
-    #[must_use]
-    pub fn entries(&self) -> &[f32] {
-        &self.entries
-    }
-
-    /// For each surface, the index in [`EnergyTables::entries`] at which its first table starts; `None` for a material
-    /// that needs no table. A rough dielectric has two tables in a row: from outside, then from inside.
-    #[must_use]
-    pub fn starts(&self) -> &[Option<u32>] {
-        &self.starts
-    }
 }
 
 /// The table of a lobe: E at [`ENTRIES`] cosines, by a quadrature that takes about ten milliseconds.
-#[must_use]
-pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
+pub(crate) fn albedo_table(lobe: Lobe) -> Vec<f32> {
     let points = disk_points(POINTS);
     parallel::map(ENTRIES, |k| {
         let x = k as f64 / (ENTRIES - 1) as f64;
@@ -118,8 +106,7 @@ pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
 }
 
 /// E at a cosine in [0, 1], interpolated in a table.
-#[must_use]
-pub fn lookup(table: &[f32], cosine: f64) -> f64 {
+pub(crate) fn lookup(table: &[f32], cosine: f64) -> f64 {
     let last = ENTRIES - 1;
     let x = cosine.clamp(0.0, 1.0).sqrt().sqrt() * last as f64;
     let entry = (x.floor() as usize).min(last - 1);
@@ -308,9 +295,9 @@ mod tests {
             surface(Material::Emissive { strength: 1.0 }),
             surface(glass),
         ]);
-        assert_eq!(tables.starts(), [None, Some(0), Some(256), Some(0), None, Some(256)]);
-        assert_eq!(tables.entries().len(), 3 * 256);
+        assert_eq!(tables.starts, [None, Some(0), Some(256), Some(0), None, Some(256)]);
+        assert_eq!(tables.entries.len(), 3 * 256);
         let leaving = Lobe::Refraction { ior: 1.5, roughness: 0.3, is_leaving: true };
-        assert_eq!(tables.entries()[512..], albedo_table(leaving));
+        assert_eq!(tables.entries[512..], albedo_table(leaving));
     }
 }

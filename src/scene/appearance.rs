@@ -1,9 +1,12 @@
 //! What the spheres of a scene look like, apart from their geometry.
 
+use std::collections::HashMap;
+use std::ops::Deref;
+use std::sync::OnceLock;
+
 use super::SceneError;
-use super::color_map::ColorMap;
 use crate::image::color::LinearRgb;
-use crate::scene::material::SurfaceProperties;
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// The colours of a scene's spheres, in input order.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,37 +123,45 @@ impl Appearance {
     /// or a number is NaN (the error names the first such sphere), or if there are more colours or indices than
     /// spheres.
     pub fn check(&self, count: usize) -> Result<(), SceneError> {
-        let all = |what, found| match found {
+        let all = |what: &str, found| match found {
             _ if found == count => Ok(()),
-            _ => Err(SceneError::Count { what, found, spheres: count }),
+            _ => Err(SceneError::Invalid(match found < count {
+                true => {
+                    format!("sphere {found} has no {what}: there are {found} for {count} spheres")
+                }
+                false => {
+                    format!("{what} {count} has no sphere: there are {found} for {count} spheres")
+                }
+            })),
         };
         match &self.colors {
             Colors::One(_) => {}
             Colors::Palette { palette, indices } => {
                 let colors = palette.len();
                 if let Some(index) = indices.iter().position(|index| *index as usize >= colors) {
-                    return Err(SceneError::Color { index, colors });
+                    return Err(SceneError::color(index, colors));
                 }
                 all("color", indices.len())?;
             }
             Colors::Rgba8(colors) => all("color", colors.len())?,
             Colors::Scalars { values, .. } => {
                 if let Some(index) = values.iter().position(|value| value.is_nan()) {
-                    return Err(SceneError::Scalar { index });
+                    return Err(SceneError::scalar(index));
                 }
                 all("color", values.len())?;
             }
         }
         let surfaces = self.surfaces.len();
-        match &self.surface_indices {
-            None if surfaces == 0 && count > 0 => {
-                Err(SceneError::SurfaceProperties { index: 0, surfaces })
-            }
-            None => Ok(()),
-            Some(indices) => match indices.iter().position(|index| *index as usize >= surfaces) {
-                Some(index) => Err(SceneError::SurfaceProperties { index, surfaces }),
-                None => all("surface index", indices.len()),
-            },
+        let outside = match &self.surface_indices {
+            None => (surfaces == 0 && count > 0).then_some(0),
+            Some(indices) => indices.iter().position(|index| *index as usize >= surfaces),
+        };
+        match (outside, &self.surface_indices) {
+            (Some(index), _) => Err(SceneError::Invalid(format!(
+                "the surface index of sphere {index} is out of range; there are {surfaces} surfaces"
+            ))),
+            (None, Some(indices)) => all("surface index", indices.len()),
+            (None, None) => Ok(()),
         }
     }
 
@@ -197,4 +208,248 @@ impl Appearance {
 /// Converts a byte of alpha to a number from 0 to 1.
 pub(crate) fn alpha_of(byte: u8) -> f32 {
     f32::from(byte) / 255.0
+}
+
+/// A table of colours for a range of numbers. The first entry is the colour of the low end, the last that of the high
+/// end, and the others are spaced evenly between them.
+///
+/// A number has the colour of the nearest entry, and a number outside the range that of the nearest end: of n entries,
+/// the entry ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated, so that every
+/// renderer shows the same colours to the bit; a table of 256 entries is as fine as an 8-bit display.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorMap {
+    colors: Vec<LinearRgb>,
+    range: [f32; 2],
+}
+
+/// Why a table and a range do not make a colour map.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+#[non_exhaustive]
+pub struct ColorMapError(String);
+
+impl ColorMap {
+    /// A colour map from a table and the numbers that its first and its last entry stand for.
+    ///
+    /// # Errors
+    /// Returns an error if there is no colour, or the ends are not finite, or the first is not less than the second.
+    pub fn new(colors: Vec<LinearRgb>, range: [f32; 2]) -> Result<Self, ColorMapError> {
+        if colors.is_empty() {
+            return Err(ColorMapError("a color map needs at least one color".to_owned()));
+        }
+        let [low, high] = range;
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            return Err(ColorMapError(format!(
+                "the range of a color map is {range:?}; its ends must be finite, and the first less than the second"
+            )));
+        }
+        Ok(Self { colors, range })
+    }
+
+    /// The table of colours.
+    #[must_use]
+    pub fn colors(&self) -> &[LinearRgb] {
+        &self.colors
+    }
+
+    /// The numbers that the first and the last entry stand for.
+    #[must_use]
+    pub fn range(&self) -> [f32; 2] {
+        self.range
+    }
+
+    /// The index of the entry for a number. Infinities have the entries of the ends; NaN, which no scene accepts, has
+    /// the first.
+    #[must_use]
+    pub fn index(&self, value: f32) -> usize {
+        let [low, high] = self.range.map(f64::from);
+        let last = self.colors.len() - 1;
+        let along = (f64::from(value) - low) / (high - low);
+        // The conversion turns negative numbers and NaN into 0.
+        ((along * last as f64 + 0.5).floor() as usize).min(last)
+    }
+
+    /// The colour of a number.
+    #[must_use]
+    pub fn color(&self, value: f32) -> LinearRgb {
+        self.colors[self.index(value)]
+    }
+}
+
+/// An appearance that has been checked for `count` spheres. Derived data is computed when it is first needed.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneAppearance {
+    pub(super) appearance: Appearance,
+    count: usize,
+    pub(super) material_table: OnceLock<MaterialTable>,
+    pub(super) is_opaque: OnceLock<bool>,
+}
+
+impl Deref for SceneAppearance {
+    type Target = Appearance;
+
+    fn deref(&self) -> &Appearance {
+        &self.appearance
+    }
+}
+
+impl SceneAppearance {
+    pub(crate) fn new(appearance: Appearance, count: usize) -> Self {
+        Self { appearance, count, material_table: OnceLock::new(), is_opaque: OnceLock::new() }
+    }
+
+    /// The appearance without the derived data.
+    pub(super) fn into_inner(self) -> Appearance {
+        self.appearance
+    }
+
+    /// The number of spheres.
+    pub(crate) fn sphere_count(&self) -> usize {
+        self.count
+    }
+
+    /// The colour of a sphere, whose index must be valid.
+    pub(crate) fn color_of(&self, id: u32) -> LinearRgb {
+        self.color(id).unwrap_or(LinearRgb::BLACK)
+    }
+
+    /// The index of a sphere's surface properties.
+    pub(crate) fn surface_index(&self, id: u32) -> u32 {
+        self.surface_indices().map_or(0, |indices| indices[id as usize])
+    }
+
+    /// The surface properties of a sphere of this scene, with the alpha of its colour.
+    pub(crate) fn surface_of(&self, id: u32) -> SurfaceProperties {
+        let SurfaceProperties { material, opacity } =
+            self.surfaces()[self.surface_index(id) as usize];
+        SurfaceProperties { material, opacity: opacity * self.alpha(id) }
+    }
+
+    /// Whether all spheres are opaque.
+    pub(crate) fn is_opaque(&self) -> bool {
+        *self.is_opaque.get_or_init(|| {
+            let has_alpha = match self.colors() {
+                Colors::Rgba8(colors) => colors.iter().any(|[_, _, _, alpha]| *alpha < u8::MAX),
+                Colors::One(_) | Colors::Palette { .. } | Colors::Scalars { .. } => false,
+            };
+            !has_alpha && self.surfaces().iter().all(|surface| surface.opacity >= 1.0)
+        })
+    }
+
+    /// The rows of the material table.
+    pub(crate) fn material_rows(&self) -> &[MaterialRow] {
+        &self.material_table.get_or_init(|| MaterialTable::of(self)).rows
+    }
+
+    /// The index of a sphere's material in the rows of the material table.
+    pub(crate) fn material_row(&self, id: u32) -> u32 {
+        let table = self.material_table.get_or_init(|| MaterialTable::of(self));
+        match &table.indices {
+            Some(indices) => indices[id as usize],
+            None => self.surface_index(id),
+        }
+    }
+}
+
+/// The content of one row of the material table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MaterialRow {
+    /// The surface properties, whose opacity is still to be multiplied by the alpha of the sphere's colour.
+    pub(crate) surface: SurfaceProperties,
+    /// The colour of a material that absorbs light inside, which depends on it; white for all others.
+    pub(crate) color: LinearRgb,
+}
+
+/// All rows, and the assignment of rows to spheres.
+#[derive(Clone, Debug)]
+pub(super) struct MaterialTable {
+    rows: Vec<MaterialRow>,
+    /// For every sphere, the index of its row; `None` if that is the index of its surface properties.
+    indices: Option<Vec<u32>>,
+}
+
+/// Whether the surface belongs to a material whose colour determines the absorption inside.
+fn absorbs(surface: &SurfaceProperties) -> bool {
+    matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
+}
+
+impl MaterialTable {
+    /// Makes one row for each set of surface properties; if its material absorbs light, one for each colour that occurs
+    /// with it.
+    fn of(appearance: &SceneAppearance) -> Self {
+        let surfaces = appearance.surfaces();
+        let mut rows: Vec<MaterialRow> = surfaces
+            .iter()
+            .map(|surface| MaterialRow { surface: *surface, color: LinearRgb::WHITE })
+            .collect();
+        if !surfaces.iter().any(absorbs) {
+            return Self { rows, indices: None };
+        }
+        let mut has_first = vec![false; surfaces.len()];
+        let mut indices = HashMap::new();
+        let indices = (0..appearance.sphere_count() as u32).map(|id| {
+            let index = appearance.surface_index(id);
+            let surface = &surfaces[index as usize];
+            if !absorbs(surface) {
+                return index;
+            }
+            let color = appearance.color_of(id);
+            let key = (index, color.to_array().map(f32::to_bits));
+            *indices.entry(key).or_insert_with(|| {
+                let row = MaterialRow { surface: *surface, color };
+                // The first colour uses the row of the surface properties.
+                if std::mem::replace(&mut has_first[index as usize], true) {
+                    rows.push(row);
+                    return rows.len() as u32 - 1;
+                }
+                rows[index as usize] = row;
+                index
+            })
+        });
+        let indices: Vec<u32> = indices.collect();
+        let differ = rows.len() > surfaces.len();
+        Self { rows, indices: differ.then_some(indices) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_has_the_nearest_entry() {
+        let colors = [0.0, 0.5, 1.0].map(LinearRgb::gray);
+        let map = ColorMap::new(colors.to_vec(), [-1.0, 3.0]).unwrap();
+        for (value, entry) in [
+            (-1.0, 0),
+            (-0.01, 0),
+            (0.0, 1),
+            (1.0, 1),
+            (1.99, 1),
+            (2.0, 2),
+            (3.0, 2),
+            (-9.0, 0),
+            (9.0, 2),
+            (f32::NEG_INFINITY, 0),
+            (f32::INFINITY, 2),
+            (f32::MAX, 2),
+        ] {
+            assert_eq!(map.index(value), entry, "{value}");
+            assert_eq!(map.color(value), colors[entry]);
+        }
+        let widest = ColorMap::new(colors.to_vec(), [f32::MIN, f32::MAX]).unwrap();
+        assert_eq!([f32::MIN, 0.0, f32::MAX].map(|value| widest.index(value)), [0, 1, 2]);
+        let one = ColorMap::new(vec![LinearRgb::WHITE], [0.0, 1.0]).unwrap();
+        assert_eq!(one.index(0.7), 0);
+    }
+
+    #[test]
+    fn what_is_no_map() {
+        let refused = |colors, range| ColorMap::new(colors, range).unwrap_err().to_string();
+        assert_eq!(refused(Vec::new(), [0.0, 1.0]), "a color map needs at least one color");
+        for range in [[1.0, 1.0], [2.0, 1.0], [f32::NAN, 1.0], [0.0, f32::INFINITY]] {
+            let error = refused(vec![LinearRgb::WHITE], range);
+            assert!(error.starts_with("the range of a color map is"), "{error}");
+        }
+    }
 }

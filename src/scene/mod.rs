@@ -11,31 +11,25 @@ use crate::geometry::subject::{Subject, WholeSubject};
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::material::SurfaceProperties;
-use crate::scene::sphere::Sphere;
+use crate::scene::sphere::{Sphere, SphereError};
 use crate::scene::sphere_array::SphereArray;
 use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 
 mod appearance;
-mod checked;
-mod color_map;
 mod duplicates;
-mod error;
 mod frame;
 pub mod material;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
-mod whole;
 
+pub(crate) use appearance::SceneAppearance;
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
-pub use appearance::{Appearance, Colors};
-pub(crate) use checked::SceneAppearance;
-pub use color_map::{ColorMap, ColorMapError};
+pub use appearance::{Appearance, ColorMap, ColorMapError, Colors};
 pub(crate) use duplicates::Duplicates;
-pub use error::SceneError;
+pub use frame::Whole;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
-pub use whole::Whole;
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
@@ -126,13 +120,13 @@ impl Scene {
         appearance: Appearance,
     ) -> Result<Self, SceneError> {
         let origin = whole.origin();
-        if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
-            return Err(SceneError::Origin { origin });
-        }
+        check_origin(origin)?;
         bounds_of_checked(&spheres, frame::slackened)?;
         appearance.check(spheres.len())?;
         if let Some(index) = spheres.iter().position(|sphere| !whole.contains(*sphere)) {
-            return Err(SceneError::OutsideOfWhole { index });
+            return Err(SceneError::Invalid(format!(
+                "sphere {index} is outside of the scene that it should be a part of"
+            )));
         }
         let scene = Self::in_frame(origin, spheres, appearance, Some(whole.bounds));
         Ok(Self { whole: Some(whole), ..scene })
@@ -209,10 +203,7 @@ impl Scene {
         spheres: Vec<[f32; 4]>,
         appearance: Appearance,
     ) -> Result<Self, SceneError> {
-        // The comparison is false for NaN as well.
-        if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
-            return Err(SceneError::Origin { origin });
-        }
+        check_origin(origin)?;
         appearance.check(spheres.len())?;
         bounds_of_checked(&spheres, frame::slackened)?;
         let bounds = frame::bounds_in_frame(origin, &spheres);
@@ -299,6 +290,53 @@ impl Scene {
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }
+}
+
+/// Why spheres and an appearance do not make a scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A sphere is out of range.
+    #[error("sphere {index}: {error}")]
+    Sphere {
+        /// Index in input order.
+        index: usize,
+        /// What is wrong with it.
+        error: SphereError,
+    },
+    /// There is not enough memory for all spheres.
+    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * 16)]
+    Memory {
+        /// The number of spheres given.
+        count: usize,
+    },
+    /// The origin of the frame, the appearance or the number of spheres is not valid.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+impl SceneError {
+    /// The palette index of a sphere is out of range.
+    fn color(index: usize, colors: usize) -> Self {
+        Self::Invalid(format!(
+            "sphere {index} has no color: its index is out of range; the palette has {colors} colors"
+        ))
+    }
+
+    /// A sphere has the number NaN, for which a colour map has no colour.
+    fn scalar(index: usize) -> Self {
+        Self::Invalid(format!("sphere {index} has the number NaN, which has no color"))
+    }
+}
+
+/// Returns an error for the origin of a frame that is NaN, infinite or too far away.
+fn check_origin(origin: DVec3) -> Result<(), SceneError> {
+    if origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
+        return Ok(());
+    }
+    let range = format!("every coordinate must be finite and at most {MAX_LENGTH:e} in size");
+    let origin = origin.to_array();
+    Err(SceneError::Invalid(format!("its origin {origin:?} is out of range; {range}")))
 }
 
 impl SphereArray {

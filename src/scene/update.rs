@@ -5,8 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
-use super::appearance::Colors;
-use super::checked::SceneAppearance;
+use super::appearance::{Colors, SceneAppearance};
 use super::{Scene, SceneError, frame};
 use crate::scene::sphere::{self, SphereError};
 
@@ -56,60 +55,16 @@ pub enum NewColors<'a> {
     Scalars(&'a [f32]),
 }
 
-/// Why an update fails. The scene is then unchanged. Indices are those of spheres of the scene, in input order.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+/// Why an update fails, and which sphere of the scene is not right, in input order. The scene is then unchanged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum UpdateError {
-    /// The update extends beyond the last sphere.
-    #[error(
-        "there is no sphere {index}: the scene has {spheres} spheres, and the update covers {first} to {index}"
-    )]
-    Range {
-        /// Index of the first updated sphere.
-        first: usize,
-        /// Index of the last updated sphere.
-        index: usize,
-        /// The number of spheres of the scene.
-        spheres: usize,
-    },
-    /// The lists of the update have different lengths.
-    #[error(
-        "sphere {index} is not in every list: the update has a {what} for {found} spheres, but {wanted} entries in the list before it"
-    )]
-    Count {
-        /// What the list contains.
-        what: &'static str,
-        /// Index of the first sphere that is not in every list.
-        index: usize,
-        /// The length of the list.
-        found: usize,
-        /// The length of the list of centres, or of radii if there are no new centres.
-        wanted: usize,
-    },
-    /// The colours of the scene are of another kind.
-    #[error("sphere {index} cannot be given {found}: the scene's spheres have {wanted}")]
-    Kind {
-        /// Index of the first updated sphere.
-        index: usize,
-        /// The kind of colours in the update.
-        found: &'static str,
-        /// The kind of colours in the scene.
-        wanted: &'static str,
-    },
-    /// A sphere is too far from the origin of the scene's frame, which an update does not move.
-    #[error(
-        "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
-        origin.to_array()
-    )]
-    TooFar {
-        /// Index of the sphere.
-        index: usize,
-        /// Origin of the scene's frame.
-        origin: DVec3,
-    },
-    /// A number is out of range.
-    #[error(transparent)]
-    Number(#[from] SceneError),
+pub struct UpdateError(String);
+
+impl From<SceneError> for UpdateError {
+    fn from(error: SceneError) -> Self {
+        Self(error.to_string())
+    }
 }
 
 impl Centers<'_> {
@@ -196,12 +151,18 @@ impl SceneUpdate<'_> {
         for (what, length) in ["center", "radius", "color"].into_iter().zip(self.lengths()) {
             if let Some(found) = length.filter(|found| *found != wanted) {
                 let index = first.saturating_add(found.min(wanted));
-                return Err(UpdateError::Count { what, index, found, wanted });
+                return Err(UpdateError(format!(
+                    "sphere {index} is not in every list: the update has a {what} for {found} spheres, but {wanted} \
+                     entries in the list before it"
+                )));
             }
         }
         let (end, spheres) = (first.saturating_add(wanted), scene.len());
         if end > spheres {
-            return Err(UpdateError::Range { first, index: end - 1, spheres });
+            let index = end - 1;
+            return Err(UpdateError(format!(
+                "there is no sphere {index}: the scene has {spheres} spheres, and the update covers {first} to {index}"
+            )));
         }
         Ok(first..end)
     }
@@ -231,13 +192,13 @@ impl SceneUpdate<'_> {
             (NewColors::Palette(indices), Colors::Palette { palette, .. }) => {
                 let colors = palette.len();
                 return match at(indices.iter().position(|index| *index as usize >= colors)) {
-                    Some(index) => Err(SceneError::Color { index, colors }.into()),
+                    Some(index) => Err(SceneError::color(index, colors).into()),
                     None => Ok(()),
                 };
             }
             (NewColors::Scalars(values), Colors::Scalars { .. }) => {
                 return match at(values.iter().position(|value| value.is_nan())) {
-                    Some(index) => Err(SceneError::Scalar { index }.into()),
+                    Some(index) => Err(SceneError::scalar(index).into()),
                     None => Ok(()),
                 };
             }
@@ -247,7 +208,10 @@ impl SceneUpdate<'_> {
             (_, Colors::Rgba8(_)) => RGBA8,
             (_, Colors::Scalars { .. }) => SCALARS,
         };
-        Err(UpdateError::Kind { index: first, found: new.name(), wanted })
+        let found = new.name();
+        let message =
+            format!("sphere {first} cannot be given {found}: the scene's spheres have {wanted}");
+        Err(UpdateError(message))
     }
 }
 
@@ -266,7 +230,10 @@ impl Updated {
         let index = self.index;
         sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
         match sphere::check(frame::slackened(&self.in_frame)) {
-            Err(SphereError::Center { .. }) => Err(UpdateError::TooFar { index, origin }),
+            Err(SphereError::Center { .. }) => Err(UpdateError(format!(
+                "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
+                origin.to_array()
+            ))),
             _ => Ok(()),
         }
     }

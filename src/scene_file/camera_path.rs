@@ -70,7 +70,7 @@ impl CameraPathTable {
         }
         let clock = clock.unwrap_or(PathClock::Frames);
         CameraPath::new(keys, clock, self.ease).map_err(|error| {
-            let span = error.key().and_then(|key| spans.get(key)).or(spans.last());
+            let span = error.key.and_then(|key| spans.get(key)).or(spans.last());
             span.copied().unwrap_or(Span::START).error(error)
         })
     }

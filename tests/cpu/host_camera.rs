@@ -2,8 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use pinhole::camera::{
-    Camera, CameraKind, DepthOrder, HostCamera, HostCameraError, OrthographicCamera, PinholeCamera,
-    Pose,
+    Camera, CameraKind, DepthOrder, HostCamera, OrthographicCamera, PinholeCamera, Pose,
 };
 use pinhole::glam;
 
@@ -168,50 +167,50 @@ fn what_is_no_camera_is_refused() {
     let good = Convention::Perspective.projection(edges, [0.1, 10.0], -1.0);
     let made = |view, projection| HostCamera::new(view, projection, order);
     made(view, good).unwrap();
+    let refused = |view, projection, words: &str| {
+        let error = made(view, projection).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
 
     let mut broken = good;
     broken.y_axis.x = f64::NAN;
-    assert_eq!(made(view, broken), Err(HostCameraError::NotFinite { matrix: "projection" }));
+    refused(view, broken, "the projection matrix contains a number that is not finite");
     let mut broken = view;
     broken.w_axis.x = f64::INFINITY;
-    assert_eq!(made(broken, good), Err(HostCameraError::NotFinite { matrix: "view" }));
+    refused(broken, good, "the view matrix contains a number that is not finite");
 
     // Row by row, or the two exchanged.
-    let transposed = made(view.transpose(), good).unwrap_err();
-    assert!(matches!(transposed, HostCameraError::ViewRow { .. }), "{transposed}");
-    let transposed = made(view, good.transpose()).unwrap_err();
-    assert!(matches!(transposed, HostCameraError::ProjectionRow { .. }), "{transposed}");
-    let exchanged = made(good, view).unwrap_err();
-    assert!(matches!(exchanged, HostCameraError::ViewRow { .. }), "{exchanged}");
+    refused(view.transpose(), good, "the last row of the view matrix is");
+    refused(view, good.transpose(), "the last row of the projection matrix is");
+    refused(good, view, "the last row of the view matrix is");
     // Perspective along x instead of z.
-    let turned = made(view, good * DMat4::from_rotation_y(0.5)).unwrap_err();
-    assert!(matches!(turned, HostCameraError::ProjectionRow { .. }), "{turned}");
+    refused(view, good * DMat4::from_rotation_y(0.5), "the last row of the projection matrix is");
 
     let flat = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
-    assert_eq!(made(view * flat, good), Err(HostCameraError::Singular { matrix: "view" }));
-    assert_eq!(made(view, flat * good), Err(HostCameraError::Singular { matrix: "projection" }));
+    refused(view * flat, good, "the view matrix has no inverse");
+    refused(view, flat * good, "the projection matrix has no inverse");
     let nearly = DMat4::from_cols(
         DVec4::new(1.0, 1.0, 0.0, 0.0),
         DVec4::new(1.0, 1.0001, 0.0, 0.0),
         DVec4::Z,
         DVec4::W,
     );
-    let nearly = made(view * nearly, good).unwrap_err();
-    assert!(matches!(nearly, HostCameraError::Flat { .. }), "{nearly}");
+    refused(view * nearly, good, "lie nearly in one plane");
 
     // Depth that runs in the other direction, or does not depend on the distance.
     let reversed = Convention::Reversed.projection(edges, [0.1, 10.0], -1.0);
-    assert_eq!(made(view, reversed), Err(HostCameraError::Order { given: order }));
+    refused(
+        view,
+        reversed,
+        "NearIsZero was given, but the projection matrix maps the near plane to",
+    );
     let [x, y, _, w] = [0, 1, 2, 3].map(|row| good.row(row));
-    let constant = made(view, from_rows([x, y, 0.5 * w, w])).unwrap_err();
-    assert!(matches!(constant, HostCameraError::NoDepth { .. }), "{constant}");
+    refused(view, from_rows([x, y, 0.5 * w, w]), "the third row of the projection matrix is");
 
     // A view plane that is too small, and an eye that is too far away.
     let narrow = DMat4::from_scale(DVec3::new(1e20, 1e20, 1.0)) * good;
-    let narrow = made(view, narrow).unwrap_err();
-    assert!(matches!(narrow, HostCameraError::Camera(_)), "{narrow}");
-    let far = made(view * DMat4::from_translation(DVec3::splat(1e18)), good).unwrap_err();
-    assert!(matches!(far, HostCameraError::Camera(_)), "{far}");
+    refused(view, narrow, "the length of right is");
+    refused(view * DMat4::from_translation(DVec3::splat(1e18)), good, "the origin is");
 }
 
 /// A reversed orthographic projection is not told from one of a camera at the other end, so the order decides.

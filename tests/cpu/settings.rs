@@ -186,8 +186,7 @@ fn samples_of_primary_rays_are_the_picture() {
         ..RenderSettings::default()
     };
     let picture = cpu::SampledPicture::new(&scene, &view, &settings).unwrap();
-    let image = picture.render(LayerSet::ALL).unwrap();
-    assert_eq!(image, cpu::render(&scene, &view, &settings, LayerSet::ALL).unwrap());
+    let image = cpu::render(&scene, &view, &settings, LayerSet::ALL).unwrap();
     for (index, color) in image.color().iter().enumerate() {
         let pixel = [index as u32 % 5, index as u32 / 5];
         let sample = picture.sample(pixel, 0);

@@ -1,9 +1,20 @@
-//! Maps from random numbers to points and directions.
+//! Maps from random numbers to points and directions, and linear colours in f64.
 
 use glam::{DVec2, DVec3};
 
 use crate::camera::sampling::unit;
 use crate::geometry::disk::concentric_disk;
+use crate::geometry::math::wide;
+use crate::image::color::{LUMINANCE, LinearRgb};
+
+pub(super) fn rgb(color: LinearRgb) -> DVec3 {
+    wide(color.to_array())
+}
+
+/// Relative luminance of a linear colour with the Rec. 709 primaries.
+pub(super) fn luminance(color: DVec3) -> f64 {
+    color.dot(DVec3::from(LUMINANCE))
+}
 
 /// A point that is uniformly distributed in the unit disk.
 pub(super) fn disk(u: [u32; 2]) -> DVec2 {

@@ -3,34 +3,33 @@
 //! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
 //! sample. Only the input is shared with them.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use self::context::LightingContext;
-use self::film_sums::PixelSums;
 use self::path::follow as follow_path;
-use self::sample::{Address, Found, Lens};
+use self::sample::{Address, FilmSums, Found, Lens, PixelSums, STRIP};
 use self::studio::follow as follow_in_studio;
 use crate::camera::View;
 use crate::cpu::denoise::denoise;
-use crate::cpu::error::RenderError;
-use crate::cpu::primary::{for_each_pixel, primary_pixel, render_primary};
+use crate::cpu::pace::{Pace, RenderError};
+use crate::cpu::primary::{for_rows, primary_pixel};
 use crate::cpu::search::Search;
 use crate::geometry::math::wide;
 use crate::image::outline;
-use crate::image::{Averages, Image, LayerSet, NO_ID, Pixel};
-use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
+use crate::image::{Image, LayerSet, NO_ID, Pixel};
+use crate::render::{
+    Decision, Integrator, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
+    batch,
+};
 
 mod bsdf;
-mod color;
 mod context;
-mod film_sums;
-mod gather;
-mod lamp;
-pub(super) mod live;
+pub(crate) mod live;
 mod maps;
 mod path;
 mod sample;
-mod source;
 mod sources;
 mod studio;
 mod surface_ray;
@@ -98,42 +97,102 @@ impl<'a> SampledPicture<'a> {
         Found { color: wide(color), alpha, albedo: wide(albedo) }
     }
 
-    /// Renders all pixels; see [`super::render`].
-    ///
-    /// # Errors
-    /// Returns an error if the image does not fit into memory.
-    pub fn render(&self, layers: LayerSet) -> Result<Image, RenderError> {
-        let settings = self.context.settings;
-        if let Some(primary) = settings.primary() {
-            return render_primary(self.context.search, &self.view, &primary, layers);
-        }
-        let film = self.view.film;
+    /// Renders all pixels batch by batch of samples, and asks after parts of each batch how to continue; see
+    /// [`super::render_watched`]. However a render is divided, each pixel adds its samples in the same order.
+    pub(super) fn render(
+        &self,
+        layers: LayerSet,
+        watch: &mut Watch<'_>,
+    ) -> Result<Picture, RenderError> {
+        let (film, settings) = (self.view.film, self.context.settings);
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
-        for_each_pixel(&mut image, |pixel, i, row| {
-            if row.has_data() {
+        let mut sums = FilmSums::new(film.width(), film.height())?;
+        self.data_layers(&mut image, watch)?;
+        self.gather(&mut sums, watch)?;
+        sums.write(&mut image);
+        let (samples, totals) = (sums.samples(), sums.totals());
+        drop(sums);
+        let image = finish(image, settings, layers);
+        Ok(Picture { image, samples, noise: totals.noise(samples), hits: Some(totals.opacity) })
+    }
+
+    /// Fills the layers of the ray through the centre of each pixel.
+    fn data_layers(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(), RenderError> {
+        let has_data = image.rows_mut(0..1).first().is_some_and(|row| row.has_data());
+        if !has_data {
+            return Ok(());
+        }
+        // There is no sample yet, so the render cannot finish early.
+        let total = self.context.settings.sampling.samples;
+        let none = Progress { samples: 0, total, part: 0.0, noise: None };
+        let height = image.height() as usize;
+        Pace::new().run(height.div_ceil(STRIP), |strips| {
+            for_rows(image, rows_of(&strips, height), |pixel, i, row| {
                 row.set(i, &self.data(pixel));
+            });
+            match watch(&none) {
+                Decision::Stop => Err(RenderError::Stopped),
+                Decision::GoOn | Decision::MeasureNoise | Decision::Finish => Ok(()),
             }
-            row.set_averages(i, &self.averages(pixel));
-        });
-        Ok(self.finish(image, layers))
+        })
     }
 
-    /// Completes a picture of which all means are known.
-    fn finish(&self, image: Image, layers: LayerSet) -> Image {
-        finish(image, self.context.settings, layers)
-    }
-
-    fn averages(&self, pixel: [u32; 2]) -> Averages {
-        let count = self.context.settings.sampling.samples;
-        let mut sums = PixelSums::default();
-        (0..count).for_each(|sample| sums.add(&self.sample(pixel, sample)));
-        sums.means(count).averages
+    /// Takes samples until all are complete or the caller finishes the render. Then some strips may have more samples
+    /// than others.
+    fn gather(&self, sums: &mut FilmSums, watch: &mut Watch<'_>) -> Result<(), RenderError> {
+        // Its own, because a sample may take many times as long as what the layers of data need.
+        let mut pace = Pace::new();
+        let total = self.context.settings.sampling.samples;
+        let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
+        let mut wants_noise = false;
+        let count = sums.strips();
+        while progress.samples < total {
+            let first = progress.samples;
+            let end = first + batch(first, total);
+            let mut decision = Decision::GoOn;
+            let done = pace.run(count, |strips| {
+                let last = strips.end;
+                sums.add(strips, first..end, |pixel, sample| self.sample(pixel, sample));
+                if last == count {
+                    return Ok(());
+                }
+                let in_batch = f64::from(end - first) * last as f64 / count as f64;
+                progress.part = (f64::from(first) + in_batch) / f64::from(total);
+                decision = watch(&progress);
+                match decision {
+                    Decision::GoOn | Decision::MeasureNoise => Ok(()),
+                    Decision::Finish | Decision::Stop => Err(RenderError::Stopped),
+                }
+            });
+            match done {
+                Err(RenderError::Stopped) if decision == Decision::Finish && first > 0 => break,
+                done => done?,
+            }
+            progress.samples = end;
+            if wants_noise || decision == Decision::MeasureNoise {
+                wants_noise = true;
+                progress.noise = sums.totals().noise(end);
+            }
+            progress.part = f64::from(end) / f64::from(total);
+            match watch(&progress) {
+                Decision::GoOn => {}
+                Decision::MeasureNoise => wants_noise = true,
+                Decision::Finish => break,
+                Decision::Stop => return Err(RenderError::Stopped),
+            }
+        }
+        Ok(())
     }
 
     /// The data layers of a pixel, from the ray through its centre.
     fn data(&self, pixel: [u32; 2]) -> Pixel {
         primary_pixel(self.context.search, &self.view, &PrimarySettings::default(), pixel)
     }
+}
+
+/// The rows of some strips.
+fn rows_of(strips: &Range<usize>, height: usize) -> Range<usize> {
+    strips.start * STRIP..height.min(strips.end * STRIP)
 }
 
 /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers

@@ -5,11 +5,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::color::rgb;
-use super::context::{LightingContext, Surface};
-use super::maps::TangentFrame;
+use super::context::{LightSample, LightingContext, SampledLight, Surface};
+use super::maps::{TangentFrame, rgb};
 use super::sample::{Address, Found};
-use super::source::{LightSample, SampledLight};
 use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
 use crate::camera::sampling::unit;
 use crate::geometry::ray::Ray;

@@ -5,11 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::color::{luminance, rgb};
 use super::context::{LightingContext, Plane, Surface};
-use super::lamp;
-use super::maps::{self, TangentFrame};
+use super::maps::{self, TangentFrame, luminance, rgb};
 use super::sample::{Address, Found};
+use super::sources::{Arrival, arrival, arrival_of_middle};
 use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
@@ -51,9 +50,7 @@ pub(super) fn follow(
         let weight = clear * opacity;
         clear *= 1.0 - opacity;
         found.alpha += weight;
-        let (fade, fade_color) = studio.depth_cue.map_or((0.0, DVec3::ZERO), |cue| {
-            (((depth - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
-        });
+        let (fade, fade_color) = fading(studio, depth);
         found.color += weight * (fade * fade_color + (1.0 - fade) * view.color());
         if clear == 0.0 {
             break;
@@ -67,16 +64,23 @@ pub(super) fn follow(
     found
 }
 
+/// How much of a colour at a distance is replaced by another, and that colour.
+pub(super) fn fading(studio: &Studio, distance: f64) -> (f64, DVec3) {
+    studio.depth_cue.map_or((0.0, DVec3::ZERO), |cue| {
+        (((distance - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
+    })
+}
+
 /// A visible surface.
-struct SeenSurface<'a> {
-    context: &'a LightingContext<'a>,
-    studio: &'a Studio,
-    interaction: Interaction,
+pub(super) struct SeenSurface<'a> {
+    pub(super) context: &'a LightingContext<'a>,
+    pub(super) studio: &'a Studio,
+    pub(super) interaction: Interaction,
     /// Direction of the ray that hits the surface.
-    direction: DVec3,
-    address: Address,
+    pub(super) direction: DVec3,
+    pub(super) address: Address,
     /// The number of surfaces in front of it.
-    m: u32,
+    pub(super) m: u32,
 }
 
 impl SeenSurface<'_> {
@@ -98,7 +102,7 @@ impl SeenSurface<'_> {
                 continue;
             }
             let u = self.address.pair(2 + 4096 * self.m + l as u32);
-            let Some(arrival) = lamp::arrival(light, interaction.point, u) else { continue };
+            let Some(arrival) = arrival(light, interaction.point, u) else { continue };
             let into = frame.to_local(arrival.direction);
             let Some(response) = bsdf.response(into) else { continue };
             let light = PI * arrival.strength * response.value * into.z;
@@ -110,7 +114,7 @@ impl SeenSurface<'_> {
     }
 
     /// The fraction of ambient light that is occluded.
-    fn ambient_occlusion(&self) -> f64 {
+    pub(super) fn ambient_occlusion(&self) -> f64 {
         let Some(occlusion) = &self.studio.occlusion else { return 0.0 };
         let frame = TangentFrame::around(self.interaction.normal);
         let count = occlusion.samples;
@@ -123,11 +127,11 @@ impl SeenSurface<'_> {
         (0..count).filter(is_hidden).count() as f64 / f64::from(count)
     }
 
-    fn has_shadow(&self, arrival: &lamp::Arrival) -> bool {
+    fn has_shadow(&self, arrival: &Arrival) -> bool {
         self.studio.has_shadows && self.is_hidden(arrival.direction, arrival.distance)
     }
 
-    fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {
+    pub(super) fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {
         let ray = Ray { origin: self.interaction.point, direction };
         let surface_ray = SurfaceRay { ray, start: self.interaction.this_side() };
         is_occluded(self.context, &surface_ray, t_max, Hiding::Opaque, None)
@@ -140,12 +144,12 @@ impl SeenSurface<'_> {
         let mut missing = whole * self.ambient_occlusion();
         for (l, light) in self.context.lights.iter().enumerate() {
             let point = self.interaction.point;
-            let Some(middle) = lamp::arrival_of_middle(light, point) else { continue };
+            let Some(middle) = arrival_of_middle(light, point) else { continue };
             let cosine = middle.direction.dot(plane.normal).max(0.0);
             let weight = luminance(middle.strength) * cosine;
             whole += weight;
             let u = self.address.pair(2 + 4096 * self.m + l as u32);
-            let Some(arrival) = lamp::arrival(light, point, u) else { continue };
+            let Some(arrival) = arrival(light, point, u) else { continue };
             let is_above = arrival.direction.dot(plane.normal) > 0.0;
             if weight > 0.0 && is_above && self.has_shadow(&arrival) {
                 missing += weight;

@@ -6,7 +6,7 @@ use naga::{Expression, Handle, Literal, Module};
 
 use super::all_sources;
 use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, word};
-use crate::accel::wide_node::WideNode;
+use crate::accel::wide_tree::WideNode;
 use crate::accel::{self};
 use crate::camera::CameraKind;
 use crate::gpu::host::composite;
@@ -51,7 +51,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("RADIUS_TO_FLOAT", accel::ball::RADIUS_TO_FLOAT),
         ("LEAF_FIRST", LEAF_FIRST),
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
-        ("WIDE_LEVELS", accel::wide_node::WIDE_LEVELS),
+        ("WIDE_LEVELS", accel::wide_tree::WIDE_LEVELS),
         ("WIDE_NODE_VECTORS", vectors(size_of::<WideNode>())),
         ("LIGHTING_TRANSPARENT", codes::lighting::TRANSPARENT),
         ("LIGHTING_SKY_SEEN", codes::lighting::SKY_SEEN),

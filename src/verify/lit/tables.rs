@@ -202,7 +202,7 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), LitUploadEr
     let ground = SurfaceProperties::default();
     let records = std::iter::once((&ground, [1.0; 3], None)).chain(
         rows.iter()
-            .zip(energies.starts())
+            .zip(&energies.starts)
             .map(|(row, start)| (&row.surface, row.color.to_array(), *start)),
     );
     for (index, (surface, color, start)) in records.enumerate() {
@@ -250,7 +250,7 @@ fn has_energies(
     };
     (0..count).all(|entry| {
         let found = tables.numbers(first.saturating_add(entry / 4))[(entry % 4) as usize];
-        let asked = energies.entries().get((start + entry) as usize);
+        let asked = energies.entries.get((start + entry) as usize);
         asked.is_some_and(|asked| found.to_bits() == asked.to_bits())
     })
 }

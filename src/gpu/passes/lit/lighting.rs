@@ -69,11 +69,11 @@ impl LightingData {
         let energies = EnergyTables::of(&surfaces);
         let energy_first = material_first + 2 * (1 + rows.len()) as u32;
         tables.extend(material_record(LinearRgb::WHITE, &SurfaceProperties::default(), 0));
-        for (row, start) in rows.iter().zip(energies.starts()) {
+        for (row, start) in rows.iter().zip(&energies.starts) {
             let energy = energy_first + start.unwrap_or(0) / 4;
             tables.extend(material_record(row.color, &row.surface, energy));
         }
-        tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
+        tables.extend(energies.entries.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
         let mut parameters = parameters_of(settings, scene);
         parameters.light_count = lights.len() as u32;
         parameters.source_count = sources.count();

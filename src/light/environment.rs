@@ -14,13 +14,8 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use crate::camera::sampling::unit;
-
-mod reduce;
-mod shares;
-
-use shares::solid_angle;
-
-pub use reduce::MAX_SIZE;
+use crate::image::color::luminance;
+use crate::parallel::{for_each, map};
 
 /// The largest radiance, 2⁶⁴: sums and products on a device stay far from infinity.
 pub const MAX_RADIANCE: f32 = 18_446_744_073_709_551_616.0;
@@ -37,39 +32,9 @@ pub struct Environment {
 
 /// Why texels do not make an environment map. Columns and rows count from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum EnvironmentError {
-    /// The map has no texels.
-    #[error("a map of {width}×{height} texels is empty; width and height must be at least 1")]
-    Empty {
-        /// Number of columns.
-        width: u32,
-        /// Number of rows.
-        height: u32,
-    },
-    /// The number of texels differs from width times height.
-    #[error("a map of {width}×{height} texels was given {found}; it needs width times height")]
-    TexelCount {
-        /// Number of columns.
-        width: u32,
-        /// Number of rows.
-        height: u32,
-        /// The number of texels given.
-        found: usize,
-    },
-    /// A texel has a component that is NaN, negative or above [`MAX_RADIANCE`].
-    #[error(
-        "the texel in column {column} of row {row} is {value:?}; radiance is a number from 0 to {MAX_RADIANCE:e}"
-    )]
-    Texel {
-        /// Column of the texel.
-        column: usize,
-        /// Row of the texel.
-        row: usize,
-        /// The texel as given.
-        value: [f32; 3],
-    },
-}
+pub struct EnvironmentError(String);
 
 impl std::fmt::Debug for Environment {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -88,18 +53,26 @@ impl Environment {
     /// [`MAX_RADIANCE`].
     pub fn new(width: u32, height: u32, texels: Vec<[f32; 3]>) -> Result<Self, EnvironmentError> {
         if width == 0 || height == 0 {
-            return Err(EnvironmentError::Empty { width, height });
+            return Err(EnvironmentError(format!(
+                "a map of {width}×{height} texels is empty; width and height must be at least 1"
+            )));
         }
         if u64::from(width) * u64::from(height) != texels.len() as u64 {
-            return Err(EnvironmentError::TexelCount { width, height, found: texels.len() });
+            return Err(EnvironmentError(format!(
+                "a map of {width}×{height} texels was given {}; it needs width times height",
+                texels.len()
+            )));
         }
         let is_radiance = |texel: &[f32; 3]| texel.iter().all(|c| (0.0..=MAX_RADIANCE).contains(c));
         if let Some(index) = texels.iter().position(|texel| !is_radiance(texel)) {
             let (row, column) = (index / width as usize, index % width as usize);
-            return Err(EnvironmentError::Texel { column, row, value: texels[index] });
+            return Err(EnvironmentError(format!(
+                "the texel in column {column} of row {row} is {:?}; radiance is a number from 0 to {MAX_RADIANCE:e}",
+                texels[index]
+            )));
         }
-        let ([width, height], texels) = reduce::reduced([width, height], texels);
-        let (rows, columns) = shares::tables([width, height], &texels);
+        let ([width, height], texels) = reduced([width, height], texels);
+        let (rows, columns) = tables([width, height], &texels);
         Ok(Self { width, height, texels, rows, columns })
     }
 
@@ -223,4 +196,145 @@ fn choose(table: &[f32], u: u32) -> (usize, f64) {
     // A black map has only empty intervals; no other interval is smaller than this.
     let share = (high - low).max(1.0 / f64::from(1 << 24));
     (index, ((chance - low + rest) / share).min(1.0))
+}
+
+/// The largest numbers of columns and rows; larger maps are reduced.
+pub const MAX_SIZE: [u32; 2] = [4096, 2048];
+
+/// The map itself if it fits, or a smaller one whose texels are the means, by solid angle, of the texels that they
+/// cover. The total light stays the same.
+fn reduced(size: [u32; 2], texels: Vec<[f32; 3]>) -> ([u32; 2], Vec<[f32; 3]>) {
+    let factor = (0..2).map(|axis| size[axis].div_ceil(MAX_SIZE[axis])).max().unwrap_or(1);
+    if factor == 1 {
+        return (size, texels);
+    }
+    let reduced = size.map(|count| count.div_ceil(factor));
+    let [columns, rows] = [0, 1].map(|axis| covers(size[axis], reduced[axis]));
+    let width = size[0] as usize;
+    let lines = map(reduced[1] as usize, |row| {
+        columns
+            .iter()
+            .map(|columns| {
+                let (mut sum, mut total) = ([0.0; 3], 0.0);
+                for &(row, from, to) in &rows[row] {
+                    let edge = |row: f64| (PI * row / f64::from(size[1])).cos();
+                    let height = edge(from) - edge(to);
+                    for &(column, from, to) in columns {
+                        let weight = height * (to - from);
+                        let texel = texels[row * width + column].map(f64::from);
+                        sum = std::array::from_fn(|i| sum[i] + weight * texel[i]);
+                        total += weight;
+                    }
+                }
+                sum.map(|component| (component / total) as f32)
+            })
+            .collect::<Vec<[f32; 3]>>()
+    });
+    (reduced, lines.concat())
+}
+
+/// For each of `few` equal parts of an axis that has `many` texels: the texels that it covers, and from where to where.
+fn covers(many: u32, few: u32) -> Vec<Vec<(usize, f64, f64)>> {
+    // Positions are compared as fractions with the denominator `few`, so that no texel is missed and none is covered by
+    // an interval of length zero.
+    let (many, few) = (u64::from(many), u64::from(few));
+    let at = |numerator: u64| numerator as f64 / few as f64;
+    (0..few)
+        .map(|i| {
+            let (from, to) = (i * many, (i + 1) * many);
+            (from / few..to.div_ceil(few))
+                .map(|k| (k as usize, at(from.max(k * few)), at(to.min((k + 1) * few))))
+                .collect()
+        })
+        .collect()
+}
+
+/// The solid angle of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, written
+/// as a product.
+fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
+    let half = 0.5 * PI / f64::from(height);
+    2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
+}
+
+/// The number of equal shares into which a table divides probability: f32 holds every multiple of 2⁻²⁴ up to 1, and the
+/// differences of these multiples.
+const SHARES: f64 = (1 << 24) as f64;
+
+/// The cumulative table of rows, and those of the columns of each row.
+fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32>, Vec<f32>) {
+    let (columns, rows) = (width as usize, height as usize);
+    let mut sums = vec![0.0; rows];
+    let mut tables = vec![0.0; rows * (columns + 1)];
+    let parts: Vec<_> = sums
+        .iter_mut()
+        .zip(tables.chunks_mut(columns + 1))
+        .zip(texels.chunks(columns))
+        .enumerate()
+        .collect();
+    for_each(parts, |(row, ((sum, table), texels))| {
+        let weights = texels.iter().map(|texel| luminance(texel.map(f64::from)));
+        *sum = fill(table, weights) * solid_angle([width, height], row);
+    });
+    let mut table = vec![0.0; rows + 1];
+    fill(&mut table, sums.into_iter());
+    (table, tables)
+}
+
+/// Fills a table with the cumulative distribution of weights, and returns their sum.
+///
+/// Each weight that is not zero has one share for certain, so that no light is too faint to be sampled; the other
+/// shares are distributed in proportion.
+fn fill(table: &mut [f32], weights: impl Iterator<Item = f64> + Clone) -> f64 {
+    let total: f64 = weights.clone().sum();
+    if total == 0.0 {
+        table.fill(0.0);
+        return total;
+    }
+    let certain = weights.clone().filter(|weight| *weight > 0.0).count() as f64;
+    let (mut before, mut sum) = (0.0, 0.0);
+    table[0] = 0.0;
+    for (entry, weight) in table[1..].iter_mut().zip(weights) {
+        sum += weight;
+        before += if weight > 0.0 { 1.0 } else { 0.0 };
+        // The weights are added in the same order as for the total, so the last sum equals it.
+        let shares: f64 = before + ((SHARES - certain) * (sum / total)).round();
+        *entry = (shares / SHARES) as f32;
+    }
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_cover_the_axis_once() {
+        for (many, few) in [(4, 2), (5, 3), (8193, 2731), (9001, 3001)] {
+            let covers = covers(many, few);
+            let pieces: Vec<_> = covers.concat();
+            assert!(pieces.iter().all(|(k, from, to)| {
+                from < to && *from >= *k as f64 && *to <= *k as f64 + 1.0
+            }));
+            let total: f64 = pieces.iter().map(|(_, from, to)| to - from).sum();
+            assert!((total / f64::from(many) - 1.0).abs() < 1e-12, "{many}, {few}: {total}");
+            assert_eq!(covers.len(), few as usize);
+        }
+        assert_eq!(covers(4, 2)[1], [(2, 2.0, 3.0), (3, 3.0, 4.0)]);
+    }
+
+    fn filled(weights: &[f64]) -> Vec<f32> {
+        let mut table = vec![f32::NAN; weights.len() + 1];
+        fill(&mut table, weights.iter().copied());
+        table
+    }
+
+    #[test]
+    fn shares_are_in_proportion_and_end_at_one() {
+        assert_eq!(filled(&[1.0, 2.0, 1.0]), [0.0, 0.25, 0.75, 1.0]);
+        assert_eq!(filled(&[0.0, 3.0, 0.0]), [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(filled(&[0.0, 0.0]), [0.0, 0.0, 0.0]);
+        let faint = filled(&[1e-30, 1e30, 1e-30, 0.0]);
+        let shares = faint.windows(2).map(|pair| f64::from(pair[1] - pair[0]) * SHARES);
+        assert_eq!(shares.collect::<Vec<_>>(), [1.0, SHARES - 2.0, 1.0, 0.0]);
+    }
 }
