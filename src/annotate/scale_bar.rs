@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use super::canvas::{Block, LINE, Paint};
 use super::font;
-use super::position::Position;
-use super::shape::{Block, LINE, Paint};
+use super::place::Position;
 use super::ticks::round_down;
 use crate::camera::View;
 use crate::color_by::number::short;

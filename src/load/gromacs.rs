@@ -3,16 +3,14 @@
 //! atoms.
 
 mod trr;
-mod unpack;
 mod xtc;
-
-use super::binary::Reader;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::FrameIndex;
-use super::frame::FrameSpan;
 
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
+
+use super::binary::Reader;
+use super::error::{LoadError, LoadErrorKind};
+use super::format::{FrameIndex, FrameSpan};
 
 /// Å in a nm.
 const ANGSTROMS: f64 = 10.0;

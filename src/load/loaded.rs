@@ -1,6 +1,6 @@
 //! The contents of a file of spheres.
 
-use super::unknown_species::UnknownSpecies;
+use super::elements::UnknownSpecies;
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;

@@ -1,8 +1,7 @@
 //! Applies the keys of a scene file to the spheres of its data.
 
-use super::additions;
-use super::data::{Data, Element};
-use super::value::DEFAULT_COLOR;
+use super::data::{Data, Element, add_spheres};
+use super::span::DEFAULT_COLOR;
 use crate::added::{AddError, Added};
 use crate::color_by::{ColorByError, ColorKey, Mapped, Mapping};
 use crate::image::color::LinearRgb;
@@ -189,7 +188,7 @@ impl Data {
                 self.file
             )
         }));
-        let added = additions::add(&self.additions, &mut spheres, &loaded, &indices)?;
+        let added = add_spheres(&self.additions, &mut spheres, &loaded, &indices)?;
         notes.extend_from_slice(added.notes());
         let (spheres, color_key) = (DataSpheres::Spheres(spheres), mapped.key().cloned());
         Ok(AppliedData { spheres, color_key, notes, kept, added })

@@ -5,23 +5,21 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::additions::{BondsValue, BoxValue};
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::camera_path::CameraPathTable;
-use super::data::ElementTable;
+use super::data::{BondsValue, BoxValue, ElementTable};
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
 use super::mapping::{ByColumn, ColorTable, ColumnTable};
 use super::materials::{MaterialTable, Materials};
-use super::output::OutputTable;
-use super::span::{Lines, Number, SceneFileError, WithSpan};
-use super::value::ColorValue;
-use super::words::explain;
+use super::span::{ColorValue, Lines, Number, SceneFileError, WithSpan, explain};
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
+use crate::image::encoding::{Bits, Encoding, EncodingError};
+use crate::image::tone::ToneCurve;
 use crate::render::Shading;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
@@ -198,5 +196,36 @@ impl SphereTable {
         let mut sphere = Sphere::new(center, radius, color.0);
         sphere.surface = materials.over(SurfaceProperties::default(), material, opacity, lines)?;
         Ok(WithSpan { value: sphere, span })
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct OutputTable {
+    exposure: Option<Spanned<f32>>,
+    tone: ToneCurve,
+    transparent: bool,
+    bits: Option<Spanned<u32>>,
+    dpi: Option<Spanned<f32>>,
+}
+
+impl OutputTable {
+    pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
+        let span = |start| move |error: EncodingError| lines.span(start).error(error);
+        let mut encoding =
+            Encoding::default().with_tone(self.tone).with_transparent(self.transparent);
+        if let Some(exposure) = self.exposure {
+            let start = exposure.span().start;
+            encoding = encoding.with_exposure(exposure.into_inner()).map_err(span(start))?;
+        }
+        if let Some(bits) = self.bits {
+            let start = bits.span().start;
+            encoding = encoding.with_bits(Bits::new(bits.into_inner()).map_err(span(start))?);
+        }
+        if let Some(dpi) = self.dpi {
+            let start = dpi.span().start;
+            encoding = encoding.with_dots_per_inch(Some(dpi.into_inner())).map_err(span(start))?;
+        }
+        Ok(encoding)
     }
 }

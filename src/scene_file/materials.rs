@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::span::{Keys, Lines, Number, SceneFileError, range_of, refuse_foreign};
-use super::words::unknown;
+use super::span::{Keys, Lines, Number, SceneFileError, range_of, refuse_foreign, unknown};
 use crate::exact::Table;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::text::{one_line, shortened};

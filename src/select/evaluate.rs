@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::error::{SelectError, SelectProblem};
-use super::parse::{Comparison, Expression, Operand, Operator, Value, error_at};
+use super::parse::{
+    Comparison, Expression, Operand, Operator, SelectError, SelectProblem, Value, error_at,
+};
 use crate::color_by::ColumnError;
 use crate::color_by::column::{Found, column};
 use crate::load::{Column, ColumnValues, Labels};

@@ -4,14 +4,13 @@
 use super::{ANGSTROMS, cell_of, find_frames};
 use crate::load::binary::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
-use crate::load::format::{FrameIndex, FrameReader, Frames, Options};
-use crate::load::frame::FrameSpan;
+use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use crate::load::loaded::{Column, ColumnValues, Loaded};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
 
 /// How frames are found and read one by one.
-pub(in crate::load) const FRAMES: Frames = Frames::Positions { find };
+pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 const MAGIC: i32 = 1993;
 /// The text that follows: its length with and without a NUL, and itself.
@@ -33,7 +32,7 @@ const BOX: usize = 2;
 const POSITIONS: usize = 7;
 
 /// Whether the first bytes are those of a TRR file.
-pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+pub(crate) fn starts(bytes: &[u8]) -> bool {
     bytes.strip_prefix(&MAGIC.to_be_bytes()).is_some_and(|rest| rest.starts_with(NAME))
 }
 

@@ -1,7 +1,7 @@
 //! Files that are made here.
 
 use super::*;
-use crate::load::frames::read_from_memory;
+use crate::load::format::read_from_memory;
 use crate::load::{ColumnValues, Format, from_bytes};
 use crate::scene::sphere_array::SphereArray;
 

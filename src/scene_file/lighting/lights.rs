@@ -9,9 +9,8 @@ use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{Light, LightFrame, LightKind};
 use crate::scene_file::span::{
-    Keys, Lines, Number, SceneFileError, Span, range_of, refuse_foreign,
+    ColorValue, Keys, Lines, Number, SceneFileError, Span, Vector, range_of, refuse_foreign, scaled,
 };
-use crate::scene_file::value::{ColorValue, Vector, scaled};
 
 /// The kinds of lights that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -36,7 +35,7 @@ impl Kind {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene_file) struct LightTable {
+pub(crate) struct LightTable {
     kind: Kind,
     at: Option<Spanned<LightFrame>>,
     toward: Option<Spanned<Vector>>,
@@ -53,7 +52,7 @@ pub(in crate::scene_file) struct LightTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene_file) struct SunTable {
+pub(crate) struct SunTable {
     toward: Option<Spanned<Vector>>,
     direction: Option<Spanned<Vector>>,
     angular_radius: Option<Number>,
