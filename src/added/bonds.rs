@@ -109,7 +109,10 @@ impl Bonds {
                 }
                 let wanted = string_count(seen, radius, SPACING);
                 if wanted > (most - added.len().min(most)) as f64 {
-                    return Err(AddError::TooThin { spheres: count, most });
+                    return Err(AddError(format!(
+                        "the bonds of {count} spheres would need more than {most} spheres, because they are thin for \
+                         their length; choose larger radii"
+                    )));
                 }
                 let string = string_between(start, end, radius, wanted as usize);
                 added.push(string, Look::Sphere(atom));
@@ -124,11 +127,22 @@ impl Bonds {
     }
 }
 
-fn check(what: &'static str, value: f64) -> Result<(), AddError> {
+fn check(what: &str, value: f64) -> Result<(), AddError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(()),
-        false => Err(AddError::NotPositive { what, value }),
+        false => Err(AddError(format!(
+            "`bonds`: the {what} is {value}; it must be finite and greater than 0"
+        ))),
     }
+}
+
+/// The data does not say which elements the spheres are.
+fn no_elements() -> AddError {
+    AddError(
+        "the data does not say which chemical elements its spheres are, from which the lengths of bonds follow; give the \
+         length below which two spheres are bonded (--bond-length L, or bonds = { length = L })"
+            .to_owned(),
+    )
 }
 
 /// Finds pairs that are closer than `factor` times the sum of their covalent radii.
@@ -138,11 +152,11 @@ fn covalent_bonds(
     points: &[DVec3],
     notes: &mut Vec<String>,
 ) -> Result<Vec<[u32; 2]>, AddError> {
-    let labels = base.species.ok_or(AddError::NoElements)?;
+    let labels = base.species.ok_or_else(no_elements)?;
     let known: Vec<Option<Covalent>> = labels.names.iter().map(|name| covalent(name)).collect();
     let largest = known.iter().flatten().map(|known| known.radius).fold(0.0, f64::max);
     if largest <= 0.0 && !points.is_empty() {
-        return Err(AddError::NoElements);
+        return Err(no_elements());
     }
     if known.contains(&None) {
         let names = labels.names.iter().zip(&known);
@@ -208,7 +222,11 @@ pub(super) fn pairs(
     let mut test = |one: &[u32], others: &[u32]| {
         tests = tests.saturating_add(one.len().saturating_mul(others.len()));
         if tests > most_tests {
-            return Err(AddError::TooDense { spheres: points.len() });
+            return Err(AddError(format!(
+                "too many of the {} spheres are close together to look for bonds; choose a smaller factor or length of \
+                 bonds, or select fewer spheres",
+                points.len()
+            )));
         }
         for &a in one {
             for &b in others {
@@ -220,7 +238,10 @@ pub(super) fn pairs(
         }
         if found.len() > most_pairs {
             let (pairs, spheres) = (found.len(), points.len());
-            return Err(AddError::TooManyBonds { pairs, spheres, most: MOST_PAIRS });
+            return Err(AddError(format!(
+                "{pairs} pairs of {spheres} spheres would be bonds, more than {MOST_PAIRS} for each; choose a smaller \
+                 factor or length of bonds"
+            )));
         }
         Ok(())
     };
@@ -273,7 +294,8 @@ mod tests {
     #[test]
     fn a_crowd_is_refused_before_it_takes_long() {
         let points = vec![DVec3::ZERO; 100_000];
-        assert!(matches!(pairs(&points, 1.0, |_, _, _| true), Err(AddError::TooManyBonds { .. })));
-        assert!(matches!(pairs(&points, 1.0, |_, _, _| false), Err(AddError::TooDense { .. })));
+        let refused = |all| pairs(&points, 1.0, |_, _, _| all).unwrap_err().to_string();
+        assert!(refused(true).contains("pairs of 100000 spheres would be bonds"));
+        assert!(refused(false).starts_with("too many of the 100000 spheres are close together"));
     }
 }

@@ -38,14 +38,6 @@ impl Additions {
         self.cell.is_none() && self.bonds.is_none()
     }
 
-    /// The factor by which bonds make a sphere of a species smaller, if the user did not choose its radius.
-    pub(crate) fn radius_factor(&self, species: Option<&str>) -> f64 {
-        match &self.bonds {
-            Some(_) if !self.keeps_radii => bonds::radius_factor(species),
-            _ => 1.0,
-        }
-    }
-
     /// Makes spheres of data smaller, if bonds need it and the user did not choose the radii.
     pub(crate) fn shrink(&self, loaded: &mut Loaded) {
         if self.bonds.is_none() || self.keeps_radii {
@@ -116,17 +108,28 @@ impl CellEdges {
 
     /// Adds the edges.
     fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
-        let edges = base.cell.ok_or(AddError::NoCell)?;
+        let edges = base.cell.ok_or_else(|| {
+            AddError(
+                "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"
+                    .to_owned(),
+            )
+        })?;
         let origin = DVec3::from(base.cell_origin);
         let [a, b, c] = edges.map(DVec3::from);
         let diagonals = [a + b + c, a + b - c, a - b + c, b + c - a];
         let diagonal = diagonals.into_iter().map(DVec3::length).fold(0.0, f64::max);
         if !(diagonal.is_finite() && diagonal > 0.0 && origin.is_finite()) {
-            return Err(AddError::Cell { edges });
+            return Err(AddError(format!(
+                "the periodic cell has the edges {edges:?} and cannot be drawn as a box; leave out `--box`, or the key \
+                 `box`"
+            )));
         }
         let width = self.width.unwrap_or(WIDTH * diagonal);
         if !(LEAST_WIDTH * diagonal..=diagonal).contains(&width) {
-            return Err(AddError::Width { width, diagonal });
+            return Err(AddError(format!(
+                "`box`: the width of the edges is {width}; it must lie between 1/20000 of the diagonal of the cell, which \
+                 is {diagonal:.4}, and the diagonal"
+            )));
         }
         let radius = 0.5 * width;
         let look = Look::Own(LinearRgb::from_srgb8(COLOR));

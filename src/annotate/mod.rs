@@ -139,8 +139,7 @@ impl Annotations {
     /// The part of a picture of this size in pixels that must be free so that nothing lies under the legend: on the
     /// left, the right, the bottom and the top, as fractions of the width and the height. Of the sides the one is free
     /// that takes the smallest part; if that is more than `most`, or if there is no legend, none is.
-    #[must_use]
-    pub fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
+    pub(crate) fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
         let none = [0.0; 4];
         let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_));
         let Some(index) = self.items.iter().position(is_legend) else { return none };

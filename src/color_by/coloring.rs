@@ -107,7 +107,7 @@ impl ColorBy {
     ) -> Result<Scale, ColorByError> {
         let Some([low, high]) = self.limits.resolve(values, self.is_log)? else {
             let what = if self.is_log { "number greater than 0" } else { "finite number" };
-            return Err(ColorByError::NoValue { column: column.to_owned(), what });
+            return Err(no_value(column, what));
         };
         if self.limits.are_values() {
             return Ok(Scale::new([low, high], self.is_log)?);
@@ -159,6 +159,11 @@ impl ColorBy {
             hex(self.missing)
         ));
     }
+}
+
+/// The column has no value that can be shown.
+fn no_value(column: &str, what: &str) -> ColorByError {
+    ColorByError::Values(format!("the column `{column}` has no {what}, so it gives no colors"))
 }
 
 /// A range with a number in its middle.
@@ -218,7 +223,12 @@ impl ColorBy {
     ) -> Result<Coloring, ColorByError> {
         let palette = self.map.unwrap_or(MapName::OKABE_ITO).name();
         self.refuse_scale(|| format!("`{palette}` is a palette for categories"))?;
-        let refused = |why| ColorByError::NotForPalette { palette, why };
+        let refused = |why: String| {
+            ColorByError::Values(format!(
+                "`{palette}` is a palette for few different whole numbers or text, but {why}; choose a color map, such as \
+                 viridis"
+            ))
+        };
         let mut categories: Vec<(f64, usize)> = Vec::new();
         let given: Option<Vec<f64>> = self
             .categories
@@ -260,7 +270,10 @@ impl ColorBy {
         let given =
             [("a logarithmic scale", self.is_log), ("a range", self.limits != Limits::default())];
         match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((what, _)) => Err(ColorByError::NotForCategories { what, why: why() }),
+            Some((what, _)) => Err(ColorByError::Values(format!(
+                "{what} applies only to numbers on a color map, but {}; remove it",
+                why()
+            ))),
             None => Ok(()),
         }
     }
@@ -281,8 +294,7 @@ impl ColorBy {
             None => categories,
         };
         if categories.is_empty() {
-            let column = column.to_owned();
-            return Err(ColorByError::NoValue { column, what: "value" });
+            return Err(no_value(column, "value"));
         }
         let map = self.map.unwrap_or(MapName::OKABE_ITO).reversed_if(self.is_reversed);
         let (colors, count) = (map.colors(), categories.len());

@@ -95,9 +95,7 @@ impl Mapping {
         }
         Ok(mapped)
     }
-}
 
-impl Mapping {
     /// Makes a scene of a file's spheres, and returns what its columns gave beside it. Spheres that neither a column nor
     /// the file gives a colour have `color`. Opacities are those of the column, or else of the file.
     ///
@@ -155,7 +153,10 @@ fn set_radii(
         let value = value * factor;
         // A radius in f32 must not become zero either.
         if !(value.is_finite() && value as f32 > 0.0) && is_kept(left_out, index) {
-            return Err(ColorByError::Radius { index, column: column.to_owned(), value });
+            return Err(ColorByError::Values(format!(
+                "sphere {index} would have the radius {}; a radius from `{column}` must be finite and greater than 0",
+                short(value)
+            )));
         }
     }
     let radii = values.iter().map(|value| value * factor);
@@ -343,7 +344,10 @@ pub(super) fn check_factor(column: &str, value: f64) -> Result<(), ColorByError>
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
-    Err(ColorByError::Factor { column: column.to_owned(), value })
+    Err(ColorByError::Values(format!(
+        "the factor of `{column}` is {}; it must be finite and greater than 0",
+        short(value)
+    )))
 }
 
 #[cfg(test)]
@@ -380,9 +384,6 @@ mod tests {
         let one = strengths(&by, "l", &[3.0], &mut notes).unwrap();
         assert_eq!(one.strengths[usize::from(one.indices[0])], 6.0);
         let bad = EmissionBy { factor: 0.0, ..by };
-        assert!(matches!(
-            strengths(&bad, "l", &values, &mut notes),
-            Err(ColorByError::Factor { .. })
-        ));
+        assert!(matches!(strengths(&bad, "l", &values, &mut notes), Err(ColorByError::Values(_))));
     }
 }

@@ -122,8 +122,7 @@ impl Coloring {
     }
 
     /// The colours for a scene, 4 bytes for each sphere.
-    #[must_use]
-    pub fn to_colors(&self) -> Colors {
+    pub(crate) fn to_colors(&self) -> Colors {
         Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
     }
 }

@@ -92,8 +92,7 @@ impl Scale {
     }
 
     /// The number at a position from 0 to 1, the inverse of [`Scale::position`].
-    #[must_use]
-    pub fn value_at(&self, position: f64) -> f64 {
+    pub(crate) fn value_at(&self, position: f64) -> f64 {
         let [low, high] = if self.is_log { [self.low.ln(), self.high.ln()] } else { self.range() };
         let value = low * (1.0 - position) + high * position;
         let value = if self.is_log { value.exp() } else { value };
@@ -176,17 +175,13 @@ impl FromStr for Limits {
 
 impl Limits {
     /// Whether both ends are numbers, so that the values do not matter.
-    #[must_use]
-    pub fn are_values(&self) -> bool {
+    pub(crate) fn are_values(&self) -> bool {
         matches!((self.low, self.high), (Limit::Value(_), Limit::Value(_)))
     }
 
     /// The ends as numbers. Only values that the scale can show count: finite ones, and on a logarithmic scale positive
     /// ones. `None` if there are none and an end depends on them.
-    ///
-    /// # Errors
-    /// Returns an error if a percentile does not lie between 0 and 100.
-    pub fn resolve(
+    pub(crate) fn resolve(
         &self,
         values: impl Iterator<Item = f64>,
         is_log: bool,

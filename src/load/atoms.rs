@@ -5,7 +5,8 @@ pub(super) mod element;
 use std::collections::{HashMap, HashSet};
 
 use super::elements::{Appearance, UnknownSpecies, appearance};
-use super::labels::{LabelsBuilder, Memo, retain};
+use super::labels::{LabelsBuilder, Memo};
+use super::loaded::retain;
 use super::{Column, ColumnValues, Loaded};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere_array::SphereArray;
@@ -349,30 +350,34 @@ pub(super) fn cell_edges(
     lengths: [f64; 3],
     angles: [f64; 3],
 ) -> Result<Option<[[f64; 3]; 3]>, String> {
-    let [a, b, c] = lengths;
     let all = |values: [f64; 3], wanted| values.iter().all(|value| same(*value, wanted));
     // Programs write zeros for a structure without a cell.
     if all(lengths, 0.0) || (all(lengths, 1.0) && all(angles, 90.0)) {
         return Ok(None);
     }
-    let [cos_alpha, cos_beta, cos_gamma] = angles.map(cos_degrees);
-    let sin_gamma = (1.0 - cos_gamma * cos_gamma).sqrt();
-    let y = (cos_alpha - cos_beta * cos_gamma) / sin_gamma;
-    let z_squared = 1.0 - cos_beta * cos_beta - y * y;
     let possible = lengths.iter().all(|length| *length > 0.0)
-        && angles.iter().all(|angle| 0.0 < *angle && *angle < 180.0)
-        && z_squared > 0.0;
-    if !possible {
-        return Err(format!(
+        && angles.iter().all(|angle| 0.0 < *angle && *angle < 180.0);
+    let edges = edges_of(lengths, angles.map(cos_degrees)).filter(|_| possible);
+    edges.map(Some).ok_or_else(|| {
+        format!(
             "no periodic cell has edges of the lengths {lengths:?} and the angles {angles:?}; lengths must be greater than \
              0, and the angles in degrees must belong to three edges that are not in one plane"
-        ));
-    }
-    Ok(Some([
-        [a, 0.0, 0.0],
-        [b * cos_gamma, b * sin_gamma, 0.0],
-        [c * cos_beta, c * y, c * z_squared.sqrt()],
-    ]))
+        )
+    })
+}
+
+/// The edges of these lengths whose angles have these cosines, the first along x and the second in the plane of x and y;
+/// `None` if they are in one plane.
+pub(super) fn edges_of(
+    [a, b, c]: [f64; 3],
+    [alpha, beta, gamma]: [f64; 3],
+) -> Option<[[f64; 3]; 3]> {
+    let sin_gamma = (1.0 - gamma * gamma).sqrt();
+    let y = (alpha - beta * gamma) / sin_gamma;
+    let z_squared = 1.0 - beta * beta - y * y;
+    (z_squared > 0.0).then(|| {
+        [[a, 0.0, 0.0], [b * gamma, b * sin_gamma, 0.0], [c * beta, c * y, c * z_squared.sqrt()]]
+    })
 }
 
 /// The cosine of an angle in degrees: exactly 0 at a right angle, which most cells have.

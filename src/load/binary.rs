@@ -160,9 +160,7 @@ pub(super) enum Scalar {
     U16,
     I32,
     U32,
-    #[cfg_attr(not(feature = "vtk"), expect(dead_code, reason = "PLY has no integers of 64 bits"))]
     I64,
-    #[cfg_attr(not(feature = "vtk"), expect(dead_code, reason = "PLY has no integers of 64 bits"))]
     U64,
     F32,
     F64,

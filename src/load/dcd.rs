@@ -9,6 +9,7 @@
 
 use std::ops::Range;
 
+use super::atoms::edges_of;
 use super::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
@@ -342,7 +343,6 @@ fn edges(cell: [f64; 6]) -> Result<Option<[[f64; 3]; 3]>, String> {
     Err(format!("the unit cell {cell:?} is neither lengths and angles nor a matrix"))
 }
 
-/// The edges, of which the first is along x and the second in the plane of x and y, if these are possible.
 fn from_angles(lengths: [f64; 3], angles: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     if lengths.iter().any(|length| *length <= 0.0)
         || angles.iter().any(|angle| *angle < -1.0 || *angle >= 180.0)
@@ -350,16 +350,10 @@ fn from_angles(lengths: [f64; 3], angles: [f64; 3]) -> Option<[[f64; 3]; 3]> {
         return None;
     }
     let are_cosines = angles.iter().all(|angle| angle.abs() <= 1.0);
-    let [alpha, beta, gamma] = angles.map(|angle| match angle {
+    let cosines = angles.map(|angle| match angle {
         cosine if are_cosines => cosine,
         90.0 => 0.0,
         degrees => degrees.to_radians().cos(),
     });
-    let [a, b, c] = lengths;
-    let sin_gamma = (1.0 - gamma * gamma).sqrt();
-    let y = (alpha - beta * gamma) / sin_gamma;
-    let z_squared = 1.0 - beta * beta - y * y;
-    (z_squared > 0.0).then(|| {
-        [[a, 0.0, 0.0], [b * gamma, b * sin_gamma, 0.0], [c * beta, c * y, c * z_squared.sqrt()]]
-    })
+    edges_of(lengths, cosines)
 }

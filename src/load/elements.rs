@@ -2,6 +2,7 @@
 
 use mendeleev::Element;
 
+use super::error::first_names;
 use crate::image::color::LinearRgb;
 use crate::text::shortened;
 
@@ -126,21 +127,14 @@ impl UnknownSpecies {
 
     /// The note about them, on one line however many there are.
     pub(super) fn note(&self) -> String {
-        // More names would make the line too long to read.
-        const NAMED: usize = 5;
-        let more = match self.names.len().saturating_sub(NAMED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        let named = self.names.iter().take(NAMED).map(|name| shortened(name));
-        let named = named.collect::<Vec<_>>().join(", ");
+        let named = first_names(self.names.iter().map(|name| shortened(name)));
         let look = match (self.lacks_color, self.lacks_radius) {
             (true, false) => "in pink",
             (false, true) => "with radius 2",
             _ => "in pink with radius 2",
         };
         format!(
-            "these species are not chemical elements: {named}{more}; they are drawn {look} unless a scene file has a \
+            "these species are not chemical elements: {named}; they are drawn {look} unless a scene file has a \
              table `[elements.NAME]` for them"
         )
     }

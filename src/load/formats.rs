@@ -11,6 +11,21 @@ use super::loaded::Loaded;
 use super::raw;
 use super::source::{Source, without_gz};
 
+/// The row of a format without a name, a header and extras, to which the others add what they have.
+const RAW: Format = Format {
+    name: "raw-f32x4",
+    extensions: &[],
+    about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
+    reading: Reading::Whole(|bytes, _| Ok(Loaded::new(raw::read_spheres(bytes)?))),
+    needs_topology: false,
+    may_lack_names: false,
+    may_lack_radii: false,
+    has_colors: false,
+    z_is_up: false,
+    starts: |_| false,
+    extra_bytes: |_| Ok(0),
+};
+
 /// All formats that this build can read. No two of them share a name or an extension.
 pub static FORMATS: &[Format] = &[
     Format {
@@ -18,104 +33,79 @@ pub static FORMATS: &[Format] = &[
         extensions: &["xyz"],
         about: "Text with one atom on each line (XYZ)",
         reading: Reading::Frames(super::xyz::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
         has_colors: true,
-        z_is_up: false,
         starts: super::xyz::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "extxyz",
         extensions: &["extxyz"],
         about: "Text with one atom on each line and named columns (extended XYZ)",
         reading: Reading::Frames(super::xyz::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
         has_colors: true,
-        z_is_up: false,
-        starts: never,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "pdb",
         extensions: &["pdb", "ent"],
         about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
         reading: Reading::Frames(super::pdb::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
         has_colors: true,
-        z_is_up: false,
         starts: super::pdb::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "lammps-dump",
         extensions: &["lammpstrj", "dump"],
         about: "A dump of atoms of LAMMPS; a frame is a step",
         reading: Reading::Frames(super::lammps::dump::FRAMES),
-        needs_topology: false,
         may_lack_names: true,
         may_lack_radii: true,
-        has_colors: false,
         z_is_up: true,
         starts: super::lammps::dump::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "lammps-data",
         extensions: &["data", "lmp"],
         about: "A data file of LAMMPS, with the section Atoms",
         reading: Reading::Whole(super::lammps::data::read),
-        needs_topology: false,
         may_lack_names: true,
         may_lack_radii: true,
-        has_colors: false,
         z_is_up: true,
         starts: super::lammps::data::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "mmcif",
         extensions: &["cif", "mmcif"],
         about: "Text of named items (mmCIF), or the CIF of a small molecule; a frame is a model",
         reading: Reading::Frames(super::mmcif::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
         has_colors: true,
-        z_is_up: false,
         starts: super::mmcif::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "las",
         extensions: &["las"],
         about: "Points of a laser scanner (LAS)",
         reading: Reading::Whole(super::las::read),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
         z_is_up: true,
         starts: super::las::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "gsd",
         extensions: &["gsd"],
         about: "Particles of HOOMD-blue (GSD)",
         reading: Reading::Frames(super::gsd::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
         z_is_up: true,
         starts: super::gsd::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "dcd",
@@ -123,12 +113,8 @@ pub static FORMATS: &[Format] = &[
         about: "Positions of atoms by CHARMM, NAMD, OpenMM or LAMMPS, with a topology",
         reading: Reading::Frames(super::dcd::FRAMES),
         needs_topology: true,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: false,
-        z_is_up: false,
         starts: super::dcd::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "trr",
@@ -136,12 +122,8 @@ pub static FORMATS: &[Format] = &[
         about: "Positions and velocities of atoms by GROMACS, with a topology",
         reading: Reading::Frames(super::gromacs::TRR),
         needs_topology: true,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: false,
-        z_is_up: false,
         starts: super::gromacs::starts_trr,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "xtc",
@@ -149,64 +131,47 @@ pub static FORMATS: &[Format] = &[
         about: "Compressed positions of atoms by GROMACS, with a topology",
         reading: Reading::Frames(super::gromacs::XTC),
         needs_topology: true,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: false,
-        z_is_up: false,
         starts: super::gromacs::starts_xtc,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "npy",
         extensions: &["npy"],
         about: "A NumPy array of x, y, z, and radius, a value or colors, or of structures",
         reading: Reading::Whole(|bytes, options| super::npy::read(bytes, options.radius)),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
-        z_is_up: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
         extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
+        ..RAW
     },
     Format {
         name: "npz",
         extensions: &["npz"],
         about: "A NumPy archive with arrays of positions, radii, colors and so on",
         reading: Reading::Whole(|bytes, options| super::npz::read(bytes, options.radius)),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
-        z_is_up: false,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
         extra_bytes: |bytes| super::npz::array_bytes(bytes),
+        ..RAW
     },
     Format {
         name: "csv",
         extensions: &["csv", "tsv"],
         about: "A table of text with commas, tabs, semicolons or white space",
         reading: Reading::Whole(super::csv::read),
-        needs_topology: false,
         may_lack_names: true,
         may_lack_radii: true,
-        has_colors: false,
-        z_is_up: false,
         starts: super::csv::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     Format {
         name: "ply",
         extensions: &["ply"],
         about: "The vertices of a PLY file, as text or binary data",
         reading: Reading::Whole(super::ply::read),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
-        z_is_up: false,
         starts: super::ply::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
     #[cfg(feature = "vtk")]
     Format {
@@ -214,36 +179,12 @@ pub static FORMATS: &[Format] = &[
         extensions: &["vtp", "vtu"],
         about: "The points of a VTK XML file: PolyData or UnstructuredGrid",
         reading: Reading::Whole(super::vtk::read),
-        needs_topology: false,
-        may_lack_names: false,
         may_lack_radii: true,
-        has_colors: false,
-        z_is_up: false,
         starts: super::vtk::starts,
-        extra_bytes: no_extra_bytes,
+        ..RAW
     },
-    Format {
-        name: "raw-f32x4",
-        extensions: &[],
-        about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
-        reading: Reading::Whole(|bytes, _| Ok(Loaded::new(raw::read_spheres(bytes)?))),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: false,
-        z_is_up: false,
-        starts: never,
-        extra_bytes: no_extra_bytes,
-    },
+    RAW,
 ];
-
-fn never(_: &[u8]) -> bool {
-    false
-}
-
-fn no_extra_bytes(_: &[u8]) -> Result<u64, LoadError> {
-    Ok(0)
-}
 
 impl Format {
     /// Returns the format with this name.
@@ -253,8 +194,7 @@ impl Format {
     }
 
     /// Returns the format with this extension, which may be in upper or lower case.
-    #[must_use]
-    pub fn of_extension(extension: &str) -> Option<&'static Self> {
+    pub(crate) fn of_extension(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
     }

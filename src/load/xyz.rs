@@ -9,6 +9,7 @@
 
 use std::io;
 
+use super::binary::component_names;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
 use super::loaded::Loaded;
@@ -197,14 +198,7 @@ fn add_fields(name: &str, kind: &str, count: usize, fields: &mut Vec<Field>) -> 
             "Properties: with the {count} of {name} there are more columns than {MAX_COLUMNS}, which are the most"
         ));
     }
-    fields.extend((0..count).map(|i| {
-        let name = match (count, i) {
-            (1, _) => name.clone(),
-            (2 | 3, i) => format!("{name}.{}", ["x", "y", "z"][i]),
-            (_, i) => format!("{name}.{i}"),
-        };
-        Field::new(name, kind)
-    }));
+    fields.extend(component_names(&name, count).into_iter().map(|name| Field::new(name, kind)));
     Ok(())
 }
 

@@ -89,55 +89,6 @@ impl Document {
     }
 }
 
-impl Default for Document {
-    /// The document of an empty file.
-    fn default() -> Self {
-        Self {
-            style: None,
-            film: default_film(),
-            camera: default_camera(),
-            camera_path: None,
-            output: Table::default(),
-            background: None,
-            shading: None,
-            integrator: None,
-            studio: None,
-            path: None,
-            sampling: None,
-            lights: None,
-            sky: None,
-            sun: None,
-            ground: None,
-            materials: BTreeMap::new(),
-            spheres: Vec::new(),
-            data: None,
-            format: None,
-            frame: None,
-            topology: None,
-            columns: None,
-            radius: None,
-            radius_scale: None,
-            color: None,
-            material: None,
-            opacity: None,
-            elements: BTreeMap::new(),
-            elements_by: None,
-            leave_out: None,
-            select: None,
-            cell: None,
-            bonds: None,
-            color_by: None,
-            radius_by: None,
-            opacity_by: None,
-            emission_by: None,
-            legend: None,
-            scale_bar: None,
-            labels: Vec::new(),
-            text: None,
-        }
-    }
-}
-
 fn default_film() -> Spanned<Table<FilmTable>> {
     Spanned::new(0..0, Table::default())
 }

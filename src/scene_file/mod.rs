@@ -82,11 +82,13 @@ impl SceneFile {
     /// Returns the first error in the text, with its line and column.
     pub fn parse_in_style(text: &str, style: Option<Style>) -> Result<Self, SceneFileError> {
         let lines = Lines::of(text);
-        let document = Document::parse(text, &lines)?;
+        let mut document = Document::parse(text, &lines)?;
         let named = document.style.as_ref().map(|name| style_of(name, &lines)).transpose()?;
         let style = style.or(named);
-        let of_style = style.map(|style| Document::parse(style.text(), &Lines::of(style.text())));
-        let of_style = of_style.transpose()?.unwrap_or_default();
+        let text_of_style = style.map_or("", Style::text);
+        let mut of_style = Document::parse(text_of_style, &Lines::of(text_of_style))?;
+        let lighting_of_style = lighting_tables(&mut of_style);
+        let mut lighting = lighting_tables(&mut document);
         let materials = Materials::new(document.materials, &lines)?;
         let mapping = MappingKeys {
             color: document.color_by,
@@ -128,35 +130,8 @@ impl SceneFile {
         let spheres: Vec<_> = spheres
             .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
             .collect::<Result<_, _>>()?;
-        let lighting = LightingTables {
-            shading: document.shading.as_ref().map(|shading| shading.span().start),
-            integrator: document.integrator,
-            studio: document.studio,
-            path: document.path,
-            sampling: document.sampling,
-            lights: document.lights,
-            sky: document.sky,
-            sun: document.sun,
-            ground: document.ground,
-            has_materials: has_lighting || has_surface(&spheres, data.as_ref()),
-        };
-        let of_style = StyleTables {
-            lighting: LightingTables {
-                shading: None,
-                integrator: of_style.integrator,
-                studio: of_style.studio,
-                path: of_style.path,
-                sampling: of_style.sampling,
-                lights: of_style.lights,
-                sky: of_style.sky,
-                sun: of_style.sun,
-                ground: of_style.ground,
-                has_materials: false,
-            },
-            background: of_style.background,
-            shading: of_style.shading,
-        };
-        let lighting = lighting.read(of_style.lighting, &lines)?;
+        lighting.has_materials = has_lighting || has_surface(&spheres, data.as_ref());
+        let lighting = lighting.read(lighting_of_style, &lines)?;
         Ok(Self {
             film: FilmTable::film(document.film, &lines)?,
             style,
@@ -199,13 +174,7 @@ impl SceneFile {
         data: SphereArray,
         color: LinearRgb,
     ) -> Result<Scene, SceneFileError> {
-        let surface = self.data().map(|data| data.surface).unwrap_or_default();
-        if self.spheres.is_empty() {
-            let scene = data.scene(color).map_err(|error| self.spanned(&error))?;
-            return Ok(scene.with_surface(surface));
-        }
-        let colored = data.with_color(color).map(|sphere| Sphere { surface, ..sphere });
-        self.scene(&colored.collect::<Vec<_>>())
+        self.scene_with_mapped(data, &Mapped::default(), color)
     }
 
     /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
@@ -310,11 +279,20 @@ impl SceneFile {
     }
 }
 
-/// What a style says, as its file gives it.
-struct StyleTables {
-    lighting: LightingTables,
-    background: Option<ColorValue>,
-    shading: Option<Spanned<Shading>>,
+/// Takes the tables about light.
+fn lighting_tables(document: &mut Document) -> LightingTables {
+    LightingTables {
+        shading: document.shading.as_ref().map(|shading| shading.span().start),
+        integrator: document.integrator,
+        studio: document.studio.take(),
+        path: document.path.take(),
+        sampling: document.sampling.take(),
+        lights: document.lights.take(),
+        sky: document.sky.take(),
+        sun: document.sun.take(),
+        ground: document.ground.take(),
+        has_materials: false,
+    }
 }
 
 /// Returns the style of a name.

@@ -123,6 +123,11 @@ pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
     Some(Spanned::new(number.span(), f64::from(*number.get_ref())))
 }
 
+/// The name of a kind in scene files, each of which is one word.
+pub(super) fn name_of(kind: impl fmt::Debug) -> String {
+    format!("{kind:?}").to_lowercase()
+}
+
 /// Refuses keys that do not apply to the kind of their table. Each key has its position, if it is given, and whether it
 /// applies.
 pub(super) fn refuse_foreign(

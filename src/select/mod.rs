@@ -22,7 +22,7 @@
 mod evaluate;
 mod parse;
 
-pub use parse::{SelectError, SelectProblem};
+pub use parse::SelectError;
 
 use std::fmt;
 use std::str::FromStr;

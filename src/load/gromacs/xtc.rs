@@ -5,8 +5,7 @@
 use super::{ANGSTROMS, cell_of, find_frames};
 use crate::load::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
-use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use crate::load::loaded::Loaded;
+use crate::load::format::{FrameIndex, Frames};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
 
@@ -35,14 +34,12 @@ fn find(
     topology: Option<Topology>,
 ) -> Result<FrameIndex, LoadError> {
     let topology = Topology::required(topology, "xtc")?;
-    let mut reader = Reader::new(source, Order::Big)?;
-    let mut found = find_frames(&mut reader, last, |reader, index| {
+    let next = |reader: &mut Reader<'_>, index| {
         let header = Header::read(reader, index)?;
         reader.check(header.bytes, format!("frame {index}"))?;
         Ok((reader.offset + header.bytes, true))
-    })?;
-    found.reader = Some(Box::new(Xtc { topology }));
-    Ok(found)
+    };
+    find_frames(source, last, topology, next, read)
 }
 
 /// What a frame says about itself.
@@ -106,46 +103,35 @@ impl Header {
     }
 }
 
-#[derive(Debug)]
-struct Xtc {
-    topology: Topology,
-}
-
-impl FrameReader for Xtc {
-    fn read(
-        &self,
-        source: &mut dyn Bytes,
-        frame: usize,
-        span: &FrameSpan,
-        _: &Options,
-    ) -> Result<Loaded, LoadError> {
-        let mut reader = Reader::new(source, Order::Big)?;
-        reader.seek(span.bytes.start)?;
-        let header = Header::read(&mut reader, frame)?;
-        self.topology.check(frame, header.atoms)?;
-        let cell = cell_of(header.cell, span.bytes.start + 16, frame)?;
-        let offset = reader.offset;
-        let bytes = reader.bytes(header.bytes, "the positions")?;
-        let centers: Vec<[f64; 3]> = match header.packed {
-            None => {
-                let values: Vec<f64> = numbers::<f32>(&bytes, Order::Big).map(f64::from).collect();
-                values.as_chunks().0.to_vec()
-            }
-            Some(packed) => positions(&bytes, &packed, header.atoms).map_err(|error| {
-                let message = format!("frame {frame}: {}", error.message);
-                LoadError::byte(offset + error.byte, message)
-            })?,
-        };
-        for (atom, center) in centers.iter().enumerate() {
-            if let Some(axis) = center.iter().position(|value| !value.is_finite()) {
-                let (found, axis) = (center[axis], ['x', 'y', 'z'][axis]);
-                return Err(wrong_position(offset, frame, atom, axis, found));
-            }
+fn read(
+    reader: &mut Reader<'_>,
+    frame: usize,
+    topology: &Topology,
+) -> Result<Positions, LoadError> {
+    let start = reader.offset;
+    let header = Header::read(reader, frame)?;
+    topology.check(frame, header.atoms)?;
+    let cell = cell_of(header.cell, start + 16, frame)?;
+    let offset = reader.offset;
+    let bytes = reader.bytes(header.bytes, "the positions")?;
+    let centers: Vec<[f64; 3]> = match header.packed {
+        None => {
+            let values: Vec<f64> = numbers::<f32>(&bytes, Order::Big).map(f64::from).collect();
+            values.as_chunks().0.to_vec()
         }
-        let centers = centers.into_iter().map(|center| center.map(|length| length * ANGSTROMS));
-        self.topology
-            .join(frame, Positions { centers: centers.collect(), cell, ..Positions::default() })
+        Some(packed) => positions(&bytes, &packed, header.atoms).map_err(|error| {
+            let message = format!("frame {frame}: {}", error.message);
+            LoadError::byte(offset + error.byte, message)
+        })?,
+    };
+    for (atom, center) in centers.iter().enumerate() {
+        if let Some(axis) = center.iter().position(|value| !value.is_finite()) {
+            let (found, axis) = (center[axis], ['x', 'y', 'z'][axis]);
+            return Err(wrong_position(offset, frame, atom, axis, found));
+        }
     }
+    let centers = centers.into_iter().map(|center| center.map(|length| length * ANGSTROMS));
+    Ok(Positions { centers: centers.collect(), cell, ..Positions::default() })
 }
 
 /// The sizes of differences: about 2^(n/3), so that three of them fit into n bits.

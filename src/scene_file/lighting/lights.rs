@@ -9,7 +9,8 @@ use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{Light, LightFrame, LightKind};
 use crate::scene_file::span::{
-    ColorValue, Keys, Lines, Number, SceneFileError, Span, Vector, range_of, refuse_foreign, scaled,
+    ColorValue, Keys, Lines, Number, SceneFileError, Span, Vector, name_of, range_of,
+    refuse_foreign, scaled,
 };
 
 /// The kinds of lights that a file can name.
@@ -20,17 +21,6 @@ enum Kind {
     Directional,
     Point,
     Sphere,
-}
-
-impl Kind {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Head => "head",
-            Self::Directional => "directional",
-            Self::Point => "point",
-            Self::Sphere => "sphere",
-        }
-    }
 }
 
 #[derive(Deserialize)]
@@ -149,7 +139,7 @@ fn position(
     keys: &Keys<'_>,
 ) -> Result<DVec3, SceneFileError> {
     let Some(vector) = vector else {
-        let kind = kind.name();
+        let kind = name_of(kind);
         return Err(keys
             .table
             .error(format!("a {kind} light needs a position; add `position = [x, y, z]`")));
@@ -175,7 +165,7 @@ pub(super) fn read(
     let (far, near) = (is_one(&[Kind::Directional]), is_one(&[Kind::Point, Kind::Sphere]));
     refuse_foreign(
         lines,
-        kind.name(),
+        &name_of(kind),
         &[
             ("at", range_of(&table.at), kind != Kind::Head),
             ("toward", range_of(&table.toward), far),

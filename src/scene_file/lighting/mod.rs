@@ -82,14 +82,18 @@ impl LightingTables {
     fn given(&self) -> Given {
         let [occlusion_radius, outline, outline_depth] =
             self.studio.as_ref().map_or([false; 3], |studio| studio.get_ref().0.given());
-        let light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let light = self.names_light();
         Given { occlusion_radius, outline, outline_depth, ground: self.ground.is_some(), light }
+    }
+
+    fn names_light(&self) -> bool {
+        self.lights.is_some() || self.sun.is_some() || self.sky.is_some()
     }
 
     /// Takes the keys of these tables, and those of a style where there are none. A file that names lights, a sun or a
     /// sky gets none of the style's.
     fn over(self, style: Self) -> Self {
-        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let names_light = self.names_light();
         Self {
             shading: self.shading,
             integrator: self.integrator.or(style.integrator),
@@ -111,7 +115,7 @@ impl LightingTables {
         given: Given,
         lines: &Lines<'_>,
     ) -> Result<SceneLighting, SceneFileError> {
-        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let names_light = self.names_light();
         let sun = self.sun.map(|sun| lights::read_sun(sun, lines)).transpose()?;
         let lights = self.lights.into_iter().flatten().map(|light| lights::read(light, lines));
         let lights = lights.chain(sun.map(Ok)).collect::<Result<Vec<_>, _>>()?;

@@ -13,8 +13,8 @@ use crate::light::environment::Environment;
 use crate::light::{Ground, Sky, SkyLight};
 use crate::scene::Scene;
 use crate::scene_file::span::{
-    ColorValue, Keys, Lines, Number, SceneFileError, Vector, WithSpan, range_of, refuse_foreign,
-    scaled,
+    ColorValue, Keys, Lines, Number, SceneFileError, Vector, WithSpan, name_of, range_of,
+    refuse_foreign, scaled,
 };
 
 /// The kinds of skies that a file can name.
@@ -24,16 +24,6 @@ enum Kind {
     Constant,
     Gradient,
     Image,
-}
-
-impl Kind {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Gradient => "gradient",
-            Self::Image => "image",
-        }
-    }
 }
 
 #[derive(Deserialize)]
@@ -73,7 +63,7 @@ impl SkyPlan {
         let kind = table.kind;
         refuse_foreign(
             lines,
-            kind.name(),
+            &name_of(kind),
             &[
                 ("color", range_of(&table.color), kind == Kind::Constant),
                 ("zenith", range_of(&table.zenith), kind == Kind::Gradient),
