@@ -1,6 +1,8 @@
-//! The spheres that are added to those of data, and how they join these.
+//! The spheres that are added to those of data, how they join these, and why they cannot be added.
 
 use std::collections::HashMap;
+
+use glam::DVec3;
 
 use crate::image::color::LinearRgb;
 use crate::load::{Labels, Loaded};
@@ -189,4 +191,27 @@ impl Added {
         }
         Some((surfaces, indices))
     }
+}
+
+/// Why spheres cannot be added to those of data, on one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct AddError(pub(super) String);
+
+/// The number of spheres of a string with this length, such that centres are at most `spacing` radii apart.
+pub(super) fn string_count(length: f64, radius: f64, spacing: f64) -> f64 {
+    (length / (spacing * radius)).ceil().max(1.0)
+}
+
+/// Spheres in the middles of `count` equal parts of a line. Thus two strings that meet have equal distances there.
+pub(super) fn string_between(
+    from: DVec3,
+    to: DVec3,
+    radius: f64,
+    count: usize,
+) -> impl Iterator<Item = [f64; 4]> {
+    (0..count).map(move |index| {
+        let center = from.lerp(to, (index as f64 + 0.5) / count as f64);
+        [center.x, center.y, center.z, radius]
+    })
 }

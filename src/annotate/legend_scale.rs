@@ -1,10 +1,12 @@
 //! The bar of a scale, with ticks.
 
+use super::canvas::{Block, LINE, Paint, Shape, line_width};
 use super::font::{self, HALF_CAPITAL};
-use super::legend_categories::MISSING;
-use super::shape::{Block, LINE, Paint, Shape, line_width};
 use super::ticks::{Ticks, raised};
 use crate::color_by::ColorScale;
+
+/// What spheres without a value are called.
+pub(super) const MISSING: &str = "no value";
 
 /// A bar that stands, with its high end on top, ticks to its right and the title above.
 pub(super) fn vertical(

@@ -17,28 +17,22 @@
 
 mod canvas;
 mod font;
-mod label;
 mod legend;
-mod legend_categories;
 mod legend_scale;
 mod place;
 mod plan;
-mod position;
-mod room;
 mod scale_bar;
-mod shape;
 mod ticks;
 
 pub use canvas::Canvas;
 pub use font::missing_characters;
-pub use label::Label;
 pub use legend::Legend;
-pub use place::Panel;
+pub use place::{Anchor, Panel, Position, PositionError};
 pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
-pub use position::{Anchor, Position, PositionError};
 pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 
-use shape::Block;
+use canvas::Block;
+use place::{GAP, PADDING, origin};
 
 /// What is drawn over a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,5 +132,51 @@ impl Annotations {
         // A picture that is much higher than wide has text that fits its width.
         let height = (height as f32).min(1.5 * width as f32);
         scale * (height / 36.0).max(10.0)
+    }
+}
+
+impl Annotations {
+    /// The part of a picture of this size in pixels that must be free so that nothing lies under the legend: on the
+    /// left, the right, the bottom and the top, as fractions of the width and the height. Of the sides the one is free
+    /// that takes the smallest part; if that is more than `most`, or if there is no legend, none is.
+    pub(crate) fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
+        let none = [0.0; 4];
+        let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_));
+        let Some(index) = self.items.iter().position(is_legend) else { return none };
+        let em = self.em([width, height]);
+        let blocks = self.blocks([width, height]);
+        let [left, top] = origin(&blocks, index, em, [width, height]).map(|place| place as f64);
+        let block = &blocks[index].1;
+        let around = f64::from((PADDING + GAP) * em) + 1.0;
+        let [width, height] = [width, height].map(f64::from);
+        let sides = [
+            (left + f64::from(block.width) + around) / width,
+            (width - left + around) / width,
+            (height - top + around) / height,
+            (top + f64::from(block.height) + around) / height,
+        ];
+        let least = (0..4).min_by(|a, b| sides[*a].total_cmp(&sides[*b]));
+        match least.filter(|side| sides[*side] <= most) {
+            Some(side) => std::array::from_fn(|i| if i == side { sides[i] } else { 0.0 }),
+            None => none,
+        }
+    }
+}
+
+/// A text at a place of the picture. It may have several lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// The text.
+    pub text: String,
+    /// Where it lies.
+    pub position: Position,
+}
+
+impl Label {
+    fn block(&self, em: f32) -> Block {
+        let mut block = Block::default();
+        // Somewhat larger than the numbers of a legend.
+        block.lines(&self.text, 1.15 * em);
+        block
     }
 }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use super::canvas::{Block, LINE, Paint};
 use super::font;
-use super::position::Position;
-use super::shape::{Block, LINE, Paint};
+use super::place::Position;
 use super::ticks::round_down;
 use crate::camera::View;
 use crate::color_by::number::short;
@@ -20,47 +20,10 @@ pub struct ScaleBar {
     pixels: f64,
 }
 
-/// Why there is no scale bar.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ScaleBarError {
-    /// The camera bends straight lines, so that lengths differ all over the picture.
-    #[error(
-        "a scale bar has no meaning for the camera `{camera}`, whose pictures have another scale everywhere; choose a \
-         pinhole or an orthographic camera"
-    )]
-    Camera {
-        /// The name of the camera.
-        camera: &'static str,
-    },
-    /// The point at whose depth the bar would be true lies behind the camera.
-    #[error(
-        "a scale bar has no meaning here, because the middle of the scene lies behind the camera"
-    )]
-    Behind,
-    /// The length is not a positive number.
-    #[error("the length of a scale bar is {}; it must be finite and greater than 0", short(*.length))]
-    Length {
-        /// The length as given.
-        length: f64,
-    },
-    /// The bar is longer than the picture is wide, or shorter than two pixels.
-    #[error(
-        "a scale bar of {} would be {} pixels long in a picture that is {width} pixels wide; choose a length near {}, or \
-         none",
-        short(*.length), short(*.pixels), short(*.fitting)
-    )]
-    DoesNotFit {
-        /// The length as given.
-        length: f64,
-        /// The length in pixels.
-        pixels: f64,
-        /// The width of the picture in pixels.
-        width: u32,
-        /// A length that fits.
-        fitting: f64,
-    },
-}
+/// Why there is no scale bar, on one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ScaleBarError(String);
 
 /// How many pixels a length of 1 across the picture has at the depth of `point`. For an orthographic camera that does
 /// not depend on the point. A camera with a lens has the scale of the ray through the centre of its lens.
@@ -70,16 +33,24 @@ pub enum ScaleBarError {
 pub fn pixels_per_unit(view: &View<'_>, point: DVec3) -> Result<f64, ScaleBarError> {
     let kind = view.camera.kind();
     if !kind.is_linear() {
-        return Err(ScaleBarError::Camera { camera: kind.name() });
+        return Err(ScaleBarError(format!(
+            "a scale bar has no meaning for the camera `{}`, whose pictures have another scale everywhere; choose a \
+             pinhole or an orthographic camera",
+            kind.name()
+        )));
     }
     let vectors = view.camera.vectors();
     // Any length gives the same quotient; this one keeps digits.
     let across = 0.5 * vectors.right * (point - vectors.origin).length().max(1.0)
         / vectors.forward.length().max(1.0);
-    let at = |point| view.camera.location_of(point).ok_or(ScaleBarError::Behind);
+    let behind = || {
+        let what = "a scale bar has no meaning here, because the middle of the scene lies behind the camera";
+        ScaleBarError(what.to_owned())
+    };
+    let at = |point| view.camera.location_of(point).ok_or_else(behind);
     let step = at(point + across)? - at(point - across)?;
     let pixels = 0.5 * f64::from(view.film.width()) * step.x / (2.0 * across.length());
-    if pixels.is_finite() && pixels > 0.0 { Ok(pixels) } else { Err(ScaleBarError::Behind) }
+    if pixels.is_finite() && pixels > 0.0 { Ok(pixels) } else { Err(behind()) }
 }
 
 impl ScaleBar {
@@ -97,11 +68,20 @@ impl ScaleBar {
         let fitting = round_down(f64::from(width) / 4.0 / pixels_per_unit);
         let length = length.unwrap_or(fitting);
         if !(length.is_finite() && length > 0.0) {
-            return Err(ScaleBarError::Length { length });
+            return Err(ScaleBarError(format!(
+                "the length of a scale bar is {}; it must be finite and greater than 0",
+                short(length)
+            )));
         }
         let pixels = length * pixels_per_unit;
         if !(2.0..=0.9 * f64::from(width)).contains(&pixels) {
-            return Err(ScaleBarError::DoesNotFit { length, pixels, width, fitting });
+            return Err(ScaleBarError(format!(
+                "a scale bar of {} would be {} pixels long in a picture that is {width} pixels wide; choose a length near \
+                 {}, or none",
+                short(length),
+                short(pixels),
+                short(fitting)
+            )));
         }
         Ok(Self { position: Position::BOTTOM_LEFT, unit: unit.into(), length, pixels })
     }

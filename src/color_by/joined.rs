@@ -1,8 +1,10 @@
-//! What colours mean in several frames together.
+//! What colours mean in several frames together, and colours of data that gives none, but says of what kinds its spheres
+//! are.
 
-use super::categories::order;
+use super::coloring::order;
 use super::key::{ColorKey, KeyKind};
 use super::{ColorBy, Limit, Limits};
+use crate::load::Loaded;
 
 /// What colours mean in several frames of a trajectory together, so that equal values have equal colours in all of them.
 ///
@@ -95,5 +97,26 @@ impl JoinedKeys {
     #[must_use]
     pub fn missing(&self) -> Option<[u8; 3]> {
         self.missing
+    }
+}
+
+/// Names of the columns of kinds, of which the first is taken.
+const KINDS: [&str; 2] = ["species", "type"];
+
+/// More kinds than this cannot be told apart by colour.
+const MOST_KINDS: usize = 32;
+
+impl ColorBy {
+    /// Colours by the kinds of spheres that have no colours: by the column `species` or else `type`, if it is text, and
+    /// there are from 2 to 32 kinds to tell apart. `None` if the data gives colours or says no kinds.
+    #[must_use]
+    pub fn of_kinds(loaded: &Loaded) -> Option<Self> {
+        if loaded.colors.is_some() {
+            return None;
+        }
+        let are_kinds = |name: &&str| {
+            loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()))
+        };
+        KINDS.into_iter().find(are_kinds).map(Self::column)
     }
 }

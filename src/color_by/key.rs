@@ -74,8 +74,7 @@ impl ColorScale {
     }
 
     /// The colour at a position from 0 to 1, in 8-bit sRGB.
-    #[must_use]
-    pub fn color_at(&self, position: f64) -> [u8; 3] {
+    pub(crate) fn color_at(&self, position: f64) -> [u8; 3] {
         self.colors.get(entry(position, self.colors.len())).copied().unwrap_or_default()
     }
 }

@@ -1,10 +1,9 @@
-//! Colour maps and palettes by their names.
+//! Colour maps by their names, and palettes for categories, whose colours colour-blind people can tell apart.
 
 use std::str::FromStr;
 
 use colorous::Gradient;
 
-use super::palettes::{PALETTES, Palette};
 use crate::text::one_line;
 
 /// Entries of a colour map.
@@ -144,14 +143,12 @@ impl MapName {
     }
 
     /// The same map backwards, if `reverse` is true.
-    #[must_use]
-    pub fn reversed_if(self, reverse: bool) -> Self {
+    pub(crate) fn reversed_if(self, reverse: bool) -> Self {
         Self { is_reversed: self.is_reversed != reverse, ..self }
     }
 
     /// Whether this is a palette: colours for categories, which lie on no scale.
-    #[must_use]
-    pub fn is_palette(&self) -> bool {
+    pub(crate) fn is_palette(&self) -> bool {
         self.palette().is_some()
     }
 
@@ -171,7 +168,11 @@ impl MapName {
 
     fn forward(&self) -> Vec<[u8; 3]> {
         if let Some(palette) = self.palette() {
-            return palette.colors.to_vec();
+            let rgb = |hex: &u32| {
+                let [_, r, g, b] = hex.to_be_bytes();
+                [r, g, b]
+            };
+            return palette.colors.iter().map(rgb).collect();
         }
         if let Some((_, gradient)) = COLOROUS.iter().find(|(name, _)| *name == self.name) {
             let color = |i| gradient.eval_rational(i, ENTRIES);
@@ -190,6 +191,41 @@ impl MapName {
     /// The palette of categories unless another is chosen.
     pub(super) const OKABE_ITO: Self = Self { name: "okabe-ito", is_reversed: false };
 }
+
+/// A palette with a name.
+struct Palette {
+    name: &'static str,
+    /// In 8-bit sRGB, as `0xrrggbb`.
+    colors: &'static [u32],
+}
+
+/// The palette of Okabe and Ito, "Color Universal Design", 2008, with black last, which light hardly shows; and palettes
+/// of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002, issue 3.2, 2021, without the grey that he keeps for missing data.
+const PALETTES: [Palette; 5] = [
+    Palette {
+        name: "okabe-ito",
+        colors: &[0xe69f00, 0x56b4e9, 0x009e73, 0xcc79a7, 0x0072b2, 0xd55e00, 0xf0e442, 0x000000],
+    },
+    Palette {
+        name: "tol-bright",
+        colors: &[0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377],
+    },
+    Palette {
+        name: "tol-muted",
+        colors: &[
+            0xcc6677, 0x332288, 0xddcc77, 0x117733, 0x88ccee, 0x882255, 0x44aa99, 0x999933,
+            0xaa4499,
+        ],
+    },
+    Palette {
+        name: "tol-vibrant",
+        colors: &[0xee7733, 0x0077bb, 0x33bbee, 0xee3377, 0xcc3311, 0x009988],
+    },
+    Palette {
+        name: "tol-light",
+        colors: &[0x77aadd, 0xee8866, 0xeedd88, 0xffaabb, 0x99ddff, 0x44bb99, 0xbbcc33, 0xaaaa00],
+    },
+];
 
 #[cfg(test)]
 mod tests {

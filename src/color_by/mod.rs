@@ -15,35 +15,28 @@
 //! # Ok::<(), pinhole::color_by::ColorByError>(())
 //! ```
 
-mod categories;
+mod coloring;
 pub mod column;
 mod error;
 mod joined;
 mod key;
-mod kinds;
-mod limits;
 mod mapping;
 mod maps;
 pub mod number;
-mod numbers;
-mod palettes;
 mod scale;
-mod surface;
-
-use crate::image::color::LinearRgb;
-use crate::load::{Column, ColumnValues};
-use crate::scene::Colors;
-use crate::scene::sphere_array::SphereArray;
 
 pub use column::ColumnError;
 pub use error::ColorByError;
 pub use joined::JoinedKeys;
 pub use key::{Category, ColorKey, ColorScale, KeyKind};
-pub use limits::{Limit, Limits};
-pub use mapping::{Mapped, Mapping, RadiusBy};
+pub use mapping::{EmissionBy, Mapped, Mapping, RadiusBy};
 pub use maps::{MapError, MapName};
-pub use scale::{Scale, ScaleError};
-pub use surface::EmissionBy;
+pub use scale::{Limit, Limits, Scale, ScaleError};
+
+use crate::image::color::LinearRgb;
+use crate::load::{Column, ColumnValues};
+use crate::scene::Colors;
+use crate::scene::sphere_array::SphereArray;
 
 /// How a column becomes colours.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,8 +122,7 @@ impl Coloring {
     }
 
     /// The colours for a scene, 4 bytes for each sphere.
-    #[must_use]
-    pub fn to_colors(&self) -> Colors {
+    pub(crate) fn to_colors(&self) -> Colors {
         Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
     }
 }

@@ -1,21 +1,17 @@
 //! Collects the atoms of one model of a molecule, as PDB and mmCIF have them.
 
-mod altloc;
-pub(super) mod cell;
 pub(super) mod element;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use altloc::Candidate;
-use element::Residue;
-
-use super::elements::{Appearance, appearance};
-use super::labels::{LabelsBuilder, Memo, retain};
-use super::unknown_species::UnknownSpecies;
+use super::elements::{Appearance, UnknownSpecies, appearance};
+use super::labels::{LabelsBuilder, Memo};
+use super::loaded::retain;
 use super::{Column, ColumnValues, Loaded};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere_array::SphereArray;
 use crate::text::listed;
+use element::Residue;
 
 /// An atom of a file.
 pub(super) struct Atom<'a> {
@@ -163,7 +159,7 @@ impl Atoms {
         if !self.has_alternates {
             return None;
         }
-        let keep = altloc::kept(self.candidates());
+        let keep = kept(self.candidates());
         let left_out = keep.iter().filter(|kept| !**kept).count();
         if left_out == 0 {
             return None;
@@ -276,4 +272,120 @@ impl Species {
         let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);
         UnknownSpecies::new(unknown.map(|(name, _)| name.clone()).collect(), true, true)
     }
+}
+
+/// An atom record, reduced to the fields that identify the atom and one of its alternate locations.
+#[derive(Clone, Copy)]
+struct Candidate {
+    /// The residue: its chain, its number and its insertion code.
+    key: (u32, u64, u8),
+    /// The index of the residue's name. Two residues can be alternatives for the same place in the chain.
+    residue: u32,
+    /// The index of the atom's name.
+    name: u32,
+    /// The letter of the location, or a blank.
+    letter: u8,
+    /// The occupancy of this location, usually from 0 to 1.
+    occupancy: f64,
+}
+
+/// The atoms of one residue that share a location letter.
+struct Location {
+    letter: u8,
+    residue: u32,
+    /// The highest occupancy of these atoms.
+    occupancy: f64,
+}
+
+/// Returns for each atom record whether it is kept.
+///
+/// In each residue the letters are ranked by the highest occupancy of their atoms, and by their order in the file
+/// where the occupancies are equal; the blank precedes them all. Each atom keeps the best-ranked of its locations, so
+/// that neighbouring atoms come from the same location. If a residue name other than that of the best letter occurs
+/// at the same place in the chain, its atoms are not kept.
+fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
+    let mut residues: HashMap<_, Vec<Location>> = HashMap::new();
+    for Candidate { key, residue, letter, occupancy, .. } in
+        atoms.clone().filter(|a| a.letter != b' ')
+    {
+        let locations = residues.entry(key).or_default();
+        match locations.iter_mut().find(|location| location.letter == letter) {
+            Some(location) => location.occupancy = location.occupancy.max(occupancy),
+            None => locations.push(Location { letter, residue, occupancy }),
+        }
+    }
+    for locations in residues.values_mut() {
+        locations.sort_by(|a, b| b.occupancy.total_cmp(&a.occupancy));
+    }
+    let rank = |atom: &Candidate| {
+        let locations = residues.get(&atom.key)?;
+        if atom.letter == b' ' {
+            return Some(0);
+        }
+        let same_residue = locations.first()?.residue == atom.residue;
+        let index = locations.iter().position(|location| location.letter == atom.letter)?;
+        same_residue.then_some(index + 1)
+    };
+    let mut best = HashMap::new();
+    for atom in atoms.clone() {
+        if let Some(rank) = rank(&atom) {
+            let best = best.entry((atom.key, atom.name)).or_insert(rank);
+            *best = rank.min(*best);
+        }
+    }
+    atoms
+        .map(|atom| {
+            atom.letter == b' '
+                || rank(&atom).is_some_and(|rank| best.get(&(atom.key, atom.name)) == Some(&rank))
+        })
+        .collect()
+}
+
+/// Returns the edge vectors of the cell, the first along x and the second in the plane of x and y; `None` if the
+/// values are only placeholders, as in files of structures that are not crystals.
+///
+/// # Errors
+/// Says that there is no such cell.
+pub(super) fn cell_edges(
+    lengths: [f64; 3],
+    angles: [f64; 3],
+) -> Result<Option<[[f64; 3]; 3]>, String> {
+    let all = |values: [f64; 3], wanted| values.iter().all(|value| same(*value, wanted));
+    // Programs write zeros for a structure without a cell.
+    if all(lengths, 0.0) || (all(lengths, 1.0) && all(angles, 90.0)) {
+        return Ok(None);
+    }
+    let possible = lengths.iter().all(|length| *length > 0.0)
+        && angles.iter().all(|angle| 0.0 < *angle && *angle < 180.0);
+    let edges = edges_of(lengths, angles.map(cos_degrees)).filter(|_| possible);
+    edges.map(Some).ok_or_else(|| {
+        format!(
+            "no periodic cell has edges of the lengths {lengths:?} and the angles {angles:?}; lengths must be greater than \
+             0, and the angles in degrees must belong to three edges that are not in one plane"
+        )
+    })
+}
+
+/// The edges of these lengths whose angles have these cosines, the first along x and the second in the plane of x and y;
+/// `None` if they are in one plane.
+pub(super) fn edges_of(
+    [a, b, c]: [f64; 3],
+    [alpha, beta, gamma]: [f64; 3],
+) -> Option<[[f64; 3]; 3]> {
+    let sin_gamma = (1.0 - gamma * gamma).sqrt();
+    let y = (alpha - beta * gamma) / sin_gamma;
+    let z_squared = 1.0 - beta * beta - y * y;
+    (z_squared > 0.0).then(|| {
+        [[a, 0.0, 0.0], [b * gamma, b * sin_gamma, 0.0], [c * beta, c * y, c * z_squared.sqrt()]]
+    })
+}
+
+/// The cosine of an angle in degrees: exactly 0 at a right angle, which most cells have.
+fn cos_degrees(angle: f64) -> f64 {
+    if same(angle, 90.0) { 0.0 } else { angle.to_radians().cos() }
+}
+
+/// Whether two values are equal in the formats, which have few decimals.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-6
 }

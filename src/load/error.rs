@@ -134,6 +134,15 @@ impl fmt::Display for LoadError {
     }
 }
 
+/// The first five names, and how many more there are.
+#[allow(dead_code, reason = "not every build has a format of names")]
+pub(super) fn first_names(names: impl ExactSizeIterator<Item = String>) -> String {
+    const MOST: usize = 5;
+    let more = names.len().saturating_sub(MOST);
+    let named = names.take(MOST).collect::<Vec<_>>().join(", ");
+    if more == 0 { named } else { format!("{named} and {more} more") }
+}
+
 /// What stands before a message.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

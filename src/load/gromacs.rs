@@ -3,27 +3,55 @@
 //! atoms.
 
 mod trr;
-mod unpack;
 mod xtc;
-
-use super::binary::Reader;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::FrameIndex;
-use super::frame::FrameSpan;
 
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
 
+use super::binary::{Order, Reader};
+use super::error::{LoadError, LoadErrorKind};
+use super::format::{FrameIndex, FrameReader, FrameSpan, Options};
+use super::loaded::Loaded;
+use super::source::Bytes;
+use super::topology::{Positions, Topology};
+
 /// Å in a nm.
 const ANGSTROMS: f64 = 10.0;
+
+/// Reads the positions of a frame, whose number of atoms the topology has.
+type ReadFrame = fn(&mut Reader<'_>, usize, &Topology) -> Result<Positions, LoadError>;
+
+#[derive(Debug)]
+struct Trajectory {
+    topology: Topology,
+    read: ReadFrame,
+}
+
+impl FrameReader for Trajectory {
+    fn read(
+        &self,
+        source: &mut dyn Bytes,
+        frame: usize,
+        span: &FrameSpan,
+        _: &Options,
+    ) -> Result<Loaded, LoadError> {
+        let mut reader = Reader::new(source, Order::Big)?;
+        reader.seek(span.bytes.start)?;
+        let positions = (self.read)(&mut reader, frame, &self.topology)?;
+        self.topology.join(frame, positions)
+    }
+}
 
 /// Finds frames one after the other: `next` checks a frame's header, and returns where the frame ends and whether it has
 /// positions.
 fn find_frames(
-    reader: &mut Reader<'_>,
+    source: &mut dyn Bytes,
     last: Option<usize>,
-    mut next: impl FnMut(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>,
+    topology: Topology,
+    next: fn(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>,
+    read: ReadFrame,
 ) -> Result<FrameIndex, LoadError> {
+    let reader = &mut Reader::new(source, Order::Big)?;
     let mut found = FrameIndex { stands_alone: true, ..FrameIndex::default() };
     let mut without = 0_u64;
     loop {
@@ -59,6 +87,7 @@ fn find_frames(
         let message = "no frame has positions";
         found.problem = Some(LoadError::byte(0, message));
     }
+    found.reader = Some(Box::new(Trajectory { topology, read }));
     Ok(found)
 }
 

@@ -5,20 +5,18 @@
 
 mod index;
 
-use std::collections::BTreeSet;
+pub(super) use index::starts;
 
-use index::{Chunk, Index};
+use std::collections::BTreeSet;
 
 use super::binary::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::elements::appearance;
 use super::error::LoadError;
-use super::format::{FrameIndex, FrameReader, Frames, Options};
-use super::frame::FrameSpan;
+use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::source::Bytes;
 use super::table::{Table, TableColumn};
-
-pub(super) use index::starts;
+use index::{Chunk, Index};
 
 /// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Bytes { find };

@@ -89,23 +89,12 @@ impl LabelsBuilder {
 
     /// Keeps some atoms and the names that they use. Returns the former index of each of these names.
     pub(super) fn retain(&mut self, keep: &[bool]) -> Vec<u32> {
-        retain(&mut self.indices, keep);
-        let mut names = Vec::new();
-        let mut former = Vec::new();
-        let mut renumbered = vec![None; self.names.len()];
-        for index in &mut self.indices {
-            let old = *index as usize;
-            let (Some(new), Some(name)) = (renumbered.get_mut(old), self.names.get_mut(old)) else {
-                continue;
-            };
-            let next = names.len() as u32;
-            if new.is_none() {
-                names.push(std::mem::take(name));
-                former.push(*index);
-            }
-            *index = *new.get_or_insert(next);
-        }
-        self.names = names;
+        let mut labels = Labels {
+            names: std::mem::take(&mut self.names),
+            indices: std::mem::take(&mut self.indices),
+        };
+        let former = labels.keep(keep);
+        (self.names, self.indices) = (labels.names, labels.indices);
         former
     }
 
@@ -135,12 +124,6 @@ fn packed(text: &[u8]) -> Option<u64> {
         },
     };
     Some(bytes | (length as u64) << 56)
-}
-
-/// Keeps the values for which `keep` is true.
-pub(super) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
-    let mut keep = keep.iter();
-    values.retain(|_| keep.next().copied().unwrap_or(true));
 }
 
 #[cfg(test)]

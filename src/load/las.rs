@@ -187,10 +187,9 @@ fn chunk<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ColumnValues;
     use super::*;
     use crate::image::color::LinearRgb;
-    use crate::scene::sphere_array::SphereArray;
+    use crate::load::tests::{numbers, spheres};
 
     /// A file of two points, with these bytes after what all formats begin with.
     fn file(format: u8, minor: u8, rest: &[u8]) -> Vec<u8> {
@@ -220,21 +219,13 @@ mod tests {
         bytes
     }
 
-    fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
-        let Some(ColumnValues::Numbers(numbers)) = loaded.column(name) else {
-            panic!("there is no column {name}");
-        };
-        numbers.clone()
-    }
-
     #[test]
     fn old_and_new_points() {
         let mut rest = vec![0b0001_1010, 0b1110_0010, 0, 0, 0, 0];
         rest.extend(12.5_f64.to_le_bytes());
         rest.extend([0xff, 0xff, 0, 0, 0, 0x80]);
         let old = read(&file(3, 2, &rest), &Options::default()).unwrap();
-        let SphereArray::F64(spheres) = &old.spheres else { panic!("{:?}", old.spheres) };
-        assert_eq!(spheres[1][..3].to_vec(), [1.0, 998.0, 2003.0]);
+        assert_eq!(spheres(&old)[1][..3].to_vec(), [1.0, 998.0, 2003.0]);
         for (name, value) in [
             ("intensity", 700.0),
             ("return_number", 2.0),

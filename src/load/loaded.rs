@@ -1,6 +1,6 @@
 //! The contents of a file of spheres.
 
-use super::unknown_species::UnknownSpecies;
+use super::elements::UnknownSpecies;
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
@@ -60,11 +60,12 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Leaves out the spheres for which `is_kept` is false, and texts that no sphere has then.
-    fn keep(&mut self, is_kept: &[bool]) {
+    /// Leaves out the spheres for which `is_kept` is false, and texts that no sphere has then. Returns the former index
+    /// of each text that is left.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) -> Vec<u32> {
         retain(&mut self.indices, is_kept);
         let mut renumbered: Vec<Option<u32>> = vec![None; self.names.len()];
-        let mut names = Vec::new();
+        let (mut names, mut former) = (Vec::new(), Vec::new());
         for index in &mut self.indices {
             let old = *index as usize;
             // An index without a text stays one.
@@ -74,14 +75,17 @@ impl Labels {
             };
             *index = *new.get_or_insert_with(|| {
                 names.push(std::mem::take(name));
+                former.push(old as u32);
                 names.len() as u32 - 1
             });
         }
         self.names = names;
+        former
     }
 }
 
-fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
+/// Keeps the values for which `is_kept` is true.
+pub(super) fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
     let mut is_kept = is_kept.iter();
     values.retain(|_| is_kept.next().copied().unwrap_or(true));
 }
@@ -151,7 +155,7 @@ impl Loaded {
         self.opacities.iter_mut().for_each(|opacities| retain(opacities, is_kept));
         for column in &mut self.columns {
             match &mut column.values {
-                ColumnValues::Labels(labels) => labels.keep(is_kept),
+                ColumnValues::Labels(labels) => drop(labels.keep(is_kept)),
                 ColumnValues::Numbers(numbers) => retain(numbers, is_kept),
             }
         }

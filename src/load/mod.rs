@@ -15,8 +15,6 @@
 
 mod atoms;
 mod binary;
-#[cfg(feature = "scene-file")]
-mod covalent;
 pub mod csv;
 mod dcd;
 mod elements;
@@ -25,21 +23,15 @@ pub mod environment;
 mod error;
 mod format;
 mod formats;
-mod frame;
-mod frames;
 mod gromacs;
 mod gsd;
-mod gzip;
 mod labels;
 pub mod lammps;
 mod las;
-mod line_reader;
 mod loaded;
-mod lookup;
 pub mod mmcif;
 pub mod npy;
 pub mod npz;
-mod numbers;
 mod open;
 pub mod pdb;
 #[cfg(any(feature = "png", feature = "exr"))]
@@ -47,18 +39,18 @@ pub mod picture;
 mod ply;
 pub mod raw;
 mod rows;
-mod scalar;
 mod source;
 mod spacing;
 mod table;
+#[cfg(test)]
+mod tests;
 mod topology;
-mod unknown_species;
 #[cfg(feature = "vtk")]
 mod vtk;
 pub mod xyz;
 
 #[cfg(feature = "scene-file")]
-pub(crate) use covalent::{Covalent, covalent};
+pub(crate) use elements::{Covalent, covalent};
 pub use error::{LoadError, LoadErrorKind, Place};
 pub use format::{Format, Options};
 pub use formats::FORMATS;

@@ -9,7 +9,7 @@ use flate2::bufread::DeflateDecoder;
 use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
-use super::error::{LoadError, Place};
+use super::error::{LoadError, Place, first_names};
 use super::format::Options;
 use super::loaded::Loaded;
 use super::npy::{Array, Spheres};
@@ -83,23 +83,17 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, LoadError> {
     let mut loaded = loaded.map_err(of_array(&first.name))?;
     loaded.notes.append(&mut notes);
     if !unused.is_empty() {
-        let more = unused.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        unused.truncate(NAMED);
-        let unused = unused.join(", ");
+        let unused = first_names(unused.into_iter());
         loaded.notes.push(format!(
             "these arrays are not used, because they do not have a row for each of the {count} spheres, or are not \
-             numbers: {unused}{more}"
+             numbers: {unused}"
         ));
     }
     Ok(loaded)
 }
 
 /// Returns the uncompressed size in bytes of the arrays, as the archive declares it.
-///
-/// # Errors
-/// If no array has positions.
-pub fn array_bytes(bytes: &[u8]) -> Result<u64, LoadError> {
+pub(crate) fn array_bytes(bytes: &[u8]) -> Result<u64, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
     main_array(&entries)?;
@@ -253,16 +247,7 @@ pub(super) fn of_array(name: &str) -> impl Fn(LoadError) -> LoadError {
     }
 }
 
-/// How many names a message lists.
-const NAMED: usize = 5;
-
 /// Lists the names of arrays on one line, however many there are.
 fn listed(entries: &[Entry]) -> String {
-    let named = entries.iter().take(NAMED);
-    let named = named.map(|entry| format!("`{}`", shortened(&one_line(&entry.name))));
-    let more = match entries.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    named.collect::<Vec<_>>().join(", ") + &more
+    first_names(entries.iter().map(|entry| format!("`{}`", shortened(&one_line(&entry.name)))))
 }

@@ -5,11 +5,9 @@ use std::io::{self, BufRead as _, Read as _};
 use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, LoadErrorKind, Place};
-use super::format::{Format, FrameIndex, Frames, Options, Reading};
-use super::frames::read_from_memory;
-use super::gzip;
+use super::format::{Format, FrameIndex, Frames, Options, Reading, read_from_memory};
 use super::loaded::Loaded;
-use super::source::{Source, without_gz};
+use super::source::{Source, decompressed, is_gzip, without_gz};
 use super::topology::Topology;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
@@ -46,8 +44,8 @@ pub fn from_bytes(
 ) -> Result<Loaded, LoadError> {
     let format = match options.format {
         Some(format) => format,
-        None if gzip::starts(bytes) => {
-            let bytes = gzip::decompressed(bytes)?;
+        None if is_gzip(bytes) => {
+            let bytes = decompressed(bytes)?;
             return from_bytes(&bytes, without_gz(name.as_ref()), options);
         }
         None => Format::of_file(name.as_ref(), bytes)?,
@@ -62,8 +60,8 @@ impl Format {
     /// If the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
         self.check(options)?;
-        if gzip::starts(bytes) {
-            return self.read_plain(&gzip::decompressed(bytes)?, options);
+        if is_gzip(bytes) {
+            return self.read_plain(&decompressed(bytes)?, options);
         }
         self.read_plain(bytes, options)
     }

@@ -10,23 +10,19 @@
 //! Many programs deviate from the format, so this reader accepts more than it allows: residue names of four
 //! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
 
-mod cell;
-mod hybrid36;
 mod record;
 #[cfg(test)]
 mod tests;
 
 use std::io;
 
-use record::{Kind, Lines, Record};
-
 use super::Loaded;
 use super::atoms::{Atom, Atoms};
 use super::error::{LoadError, Place};
-use super::format::{FrameIndex, Frames, Options};
-use super::frame::{FrameSpan, FrameText};
-use super::line_reader::LineReader;
+use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
+use super::source::LineReader;
 use crate::text::without_byte_order_mark;
+use record::{Kind, Lines, Record, cell_of, hybrid36};
 
 /// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.
 ///
@@ -142,7 +138,7 @@ impl Reader {
             Kind::Atom => self.atom(line, text, "ATOM"),
             Kind::Hetatm => self.atom(line, text, "HETATM"),
             Kind::Cryst1 if self.before_end_of_frame() => {
-                self.cell = cell::edges(&Record::new(line, text, "CRYST1")?)?;
+                self.cell = cell_of(&Record::new(line, text, "CRYST1")?)?;
                 Ok(())
             }
             Kind::Model => self.model(line),
@@ -273,7 +269,7 @@ const NEEDED: [(&str, usize, usize); 6] = [
 fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
     record.must_have(&NEEDED)?;
     let text = record.text(23, 26);
-    let number = hybrid36::decode(text).ok_or_else(|| {
+    let number = hybrid36(text).ok_or_else(|| {
         let found = record::not_valid(text, "a valid residue number");
         let place = Place::Columns { line: record.line, first: 23, last: 26 };
         let message = format!(

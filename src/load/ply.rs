@@ -5,14 +5,7 @@
 //! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
 //! one by one, such as the crate ply-rs-bw, would take more memory and time.
 
-mod header;
-#[cfg(test)]
-mod tests;
-
-pub(super) use header::starts;
-use header::{Element, Encoding, Header};
-
-use super::binary::Order;
+use super::binary::{Order, Scalar};
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
 use super::loaded::Loaded;
@@ -22,7 +15,7 @@ use crate::text::{one_line, shortened};
 
 /// Reads the vertices of a PLY file.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    let header = header::read(bytes)?;
+    let header = read_header(bytes)?;
     let data = &bytes[header.bytes..];
     let vertex = header.elements.iter().position(|element| element.name == "vertex");
     let Some(vertex) = vertex else {
@@ -55,7 +48,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
 /// Makes the columns of the properties that are not lists. `values` has one entry for each property.
 fn columns(element: &Element, values: Vec<Option<Vec<f64>>>) -> Vec<TableColumn> {
     let named = element.properties.iter().zip(values);
-    let column = |(property, values): (&header::Property, Option<Vec<f64>>)| {
+    let column = |(property, values): (&Property, Option<Vec<f64>>)| {
         let full = property.scalar.full();
         Some(TableColumn { full, ..TableColumn::numbers(&property.name, values?) })
     };
@@ -220,4 +213,231 @@ fn walk<'a>(
         }
     }
     Ok(rest)
+}
+
+/// How the data after the header are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+#[derive(Debug)]
+struct Property {
+    name: String,
+    scalar: Scalar,
+    /// The type of the number of values, if this is a list.
+    list: Option<Scalar>,
+}
+
+#[derive(Debug)]
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+#[derive(Debug)]
+struct Header {
+    encoding: Encoding,
+    elements: Vec<Element>,
+    /// Number of lines.
+    lines: usize,
+    /// Number of bytes.
+    bytes: usize,
+}
+
+/// Returns the type of this name.
+fn scalar_of_name(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "char" | "int8" => Scalar::I8,
+        "uchar" | "uint8" => Scalar::U8,
+        "short" | "int16" => Scalar::I16,
+        "ushort" | "uint16" => Scalar::U16,
+        "int" | "int32" => Scalar::I32,
+        "uint" | "uint32" => Scalar::U32,
+        "float" | "float32" => Scalar::F32,
+        "double" | "float64" => Scalar::F64,
+        _ => return None,
+    })
+}
+
+impl Element {
+    /// The number of bytes of each, if all have the same.
+    fn size(&self) -> Option<usize> {
+        let is_list = self.properties.iter().any(|property| property.list.is_some());
+        (!is_list).then(|| self.properties.iter().map(|property| property.scalar.size()).sum())
+    }
+}
+
+/// Whether the first line is `ply`.
+pub(super) fn starts(bytes: &[u8]) -> bool {
+    bytes.strip_prefix(b"ply").is_some_and(|rest| matches!(rest.first(), Some(b'\n' | b'\r')))
+}
+
+/// Reads the header.
+fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
+    if !starts(bytes) {
+        return Err(LoadError::new("this is not a PLY file: its first line is not `ply`"));
+    }
+    let (mut encoding, mut elements) = (None, Vec::<Element>::new());
+    let (mut rest, mut line) = (bytes, 0);
+    loop {
+        let end = rest.iter().position(|byte| *byte == b'\n').ok_or_else(|| {
+            let message =
+                "the header has no line `end_header`; the file is cut off or is not a PLY file";
+            LoadError::new(message).of_kind(LoadErrorKind::CutOff)
+        })?;
+        let text = String::from_utf8_lossy(&rest[..end]);
+        rest = &rest[end + 1..];
+        line += 1;
+        let refused = |message: String| LoadError::line(line, message);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        match *words.as_slice() {
+            ["end_header"] => break,
+            ["ply"] if line == 1 => {}
+            ["format", name, version] => {
+                let wanted = match name {
+                    "ascii" => Encoding::Ascii,
+                    "binary_little_endian" => Encoding::LittleEndian,
+                    "binary_big_endian" => Encoding::BigEndian,
+                    _ => {
+                        return Err(refused(format!(
+                            "the format `{}` is not one of ascii, binary_little_endian, binary_big_endian",
+                            shortened(&one_line(name))
+                        )));
+                    }
+                };
+                if version != "1.0" {
+                    let version = shortened(&one_line(version));
+                    return Err(refused(format!("the version `{version}` is not 1.0")));
+                }
+                encoding = Some(wanted);
+            }
+            ["element", name, count] => {
+                let count = count.parse().map_err(|_| {
+                    let count = shortened(&one_line(count));
+                    refused(format!("`{count}` is not a valid number of elements"))
+                })?;
+                let name = shortened(&one_line(name));
+                elements.push(Element { name, count, properties: Vec::new() });
+            }
+            ["property", ref words @ ..] => {
+                let (list, scalar, name) = match *words {
+                    ["list", count, scalar, name] => (Some(count), scalar, name),
+                    [scalar, name] => (None, scalar, name),
+                    _ => return Err(refused("write `property TYPE NAME`".to_owned())),
+                };
+                let of_name = |name: &str| {
+                    scalar_of_name(name).ok_or_else(|| {
+                        refused(format!(
+                            "`{}` is not a type of PLY; these are char, uchar, short, ushort, int, uint, float, double, \
+                             and int8 to uint32, float32 and float64",
+                            shortened(&one_line(name))
+                        ))
+                    })
+                };
+                let (list, scalar) = (list.map(of_name).transpose()?, of_name(scalar)?);
+                if list.is_some_and(|count| matches!(count, Scalar::F32 | Scalar::F64)) {
+                    return Err(refused("the length of a list cannot be a fraction".to_owned()));
+                }
+                let element = elements.last_mut().ok_or_else(|| {
+                    refused("a property must come after the element that has it".to_owned())
+                })?;
+                element.properties.push(Property { name: one_line(name), scalar, list });
+            }
+            ["comment" | "obj_info", ..] => {}
+            _ => {
+                return Err(refused(format!(
+                    "`{}` is not a line of a PLY header, which are format, comment, obj_info, element, property, \
+                     end_header",
+                    shortened(&one_line(&text))
+                )));
+            }
+        }
+    }
+    let encoding = encoding.ok_or_else(|| {
+        let message = "the header ends without a line `format`, such as `format ascii 1.0`";
+        LoadError::line(line, message)
+    })?;
+    Ok(Header { encoding, elements, lines: line, bytes: bytes.len() - rest.len() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::color::LinearRgb;
+    use crate::load::ColumnValues;
+    use crate::scene::sphere_array::SphereArray;
+
+    const TEXT: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 2\nproperty float x\nproperty double y\n\
+                        property int z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+                        property float radius\nproperty float nx\nproperty list uchar int near\nelement face 1\n\
+                        property list uchar int vertex_indices\nend_header\n\
+                        0 0.5 0 255 0 0 0.25 0.1 2 7 8\n\n1 -2.5e0 3 0 0 255 0.75 0 0\n3 0 1 0\n";
+
+    /// The same as [`TEXT`], as binary data.
+    fn binary(is_little: bool) -> Vec<u8> {
+        let name = if is_little { "binary_little_endian" } else { "binary_big_endian" };
+        let header = TEXT.split_inclusive("end_header\n").next().unwrap().replace("ascii", name);
+        let mut bytes = header.into_bytes();
+        macro_rules! put {
+            ($($number:expr),*) => {$(
+                bytes.extend(if is_little { $number.to_le_bytes().to_vec() } else { $number.to_be_bytes().to_vec() });
+            )*};
+        }
+        put!(0_f32, 0.5_f64, 0_i32, 255_u8, 0_u8, 0_u8, 0.25_f32, 0.1_f32, 2_u8, 7_i32, 8_i32);
+        put!(1_f32, -2.5_f64, 3_i32, 0_u8, 0_u8, 255_u8, 0.75_f32, 0_f32, 0_u8);
+        put!(3_u8, 0_i32, 1_i32, 0_i32);
+        bytes
+    }
+
+    fn read_text(text: &str) -> Result<Loaded, String> {
+        read(text.as_bytes(), &Options::default()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn text_and_binary_data_are_the_same() {
+        let text = read_text(TEXT).unwrap();
+        let SphereArray::F64(spheres) = &text.spheres else { panic!("{:?}", text.spheres) };
+        assert_eq!(*spheres, [[0.0, 0.5, 0.0, 0.25], [1.0, -2.5, 3.0, 0.75]]);
+        let [red, blue] = [[255, 0, 0], [0, 0, 255]].map(LinearRgb::from_srgb8);
+        assert_eq!(text.colors, Some(vec![red, blue]));
+        assert_eq!(text.column("nx"), Some(&ColumnValues::Numbers(vec![0.1_f32.into(), 0.0])));
+        assert_eq!(text.columns.len(), 1);
+        assert_eq!(
+            text.notes,
+            [
+                "the property near of the vertices is a list, and is not used",
+                "vertices become spheres; not used are 1 of face"
+            ]
+        );
+        assert_eq!(read_text(&TEXT.replace('\n', "\r\n")).unwrap(), text);
+        for is_little in [true, false] {
+            assert_eq!(read(&binary(is_little), &Options::default()).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn without_lists_vertices_are_read_column_by_column() {
+        let header = "ply\nformat binary_big_endian 1.0\nelement camera 2\nproperty list char double view\n\
+                      element vertex 3\nproperty ushort x\nproperty float y\nproperty short z\nproperty uint id\nend_header\n";
+        let mut bytes = header.as_bytes().to_vec();
+        bytes.extend([&[1, 0, 0, 0, 0, 0, 0, 0, 0][..], &[0]].concat());
+        for i in 0..3_u16 {
+            bytes.extend(i.to_be_bytes());
+            bytes.extend(f32::from(i).to_be_bytes());
+            bytes.extend((-2 * i as i16).to_be_bytes());
+            bytes.extend((70_000 + u32::from(i)).to_be_bytes());
+        }
+        let loaded = read(&bytes, &Options::default().with_radius(2.0)).unwrap();
+        let SphereArray::F64(spheres) = &loaded.spheres else { panic!("{:?}", loaded.spheres) };
+        assert_eq!(spheres[2].to_vec(), [2.0, 2.0, -4.0, 2.0]);
+        assert_eq!(
+            loaded.column("id"),
+            Some(&ColumnValues::Numbers(vec![70_000.0, 70_001.0, 70_002.0]))
+        );
+        assert_eq!(loaded.notes, ["vertices become spheres; not used are 2 of camera"]);
+    }
 }

@@ -3,13 +3,7 @@
 //! The text is cut into pieces at the ends of lines. The lines of every piece are counted, so that columns are allocated
 //! once and every piece writes into its own part of them; the result is the same on any number of cores.
 
-mod number;
-#[cfg(test)]
-mod tests;
-
 use memchr::{memchr, memchr_iter};
-
-pub(super) use number::number;
 
 use super::error::{LoadError, Place};
 use super::format::Options;
@@ -306,5 +300,176 @@ pub(super) fn into_loaded(
     match spheres.iter().enumerate().find_map(|(row, sphere)| Some((row, check(*sphere).err()?))) {
         Some((row, error)) => Err(LoadError::line(line_of(row), error.to_string())),
         None => Ok(loaded),
+    }
+}
+
+/// Parses a number, also with an exponent as Fortran writes it (`1.5D-3`), `nan` and `inf`.
+#[inline]
+pub(super) fn number(text: &[u8]) -> Option<f64> {
+    short_decimal(text).or_else(|| any_number(text))
+}
+
+fn any_number(text: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(text).ok()?;
+    text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse()).ok()
+}
+
+/// Parses a decimal number with at most 15 digits and no exponent: its digits are an integer that f64 holds exactly, as it
+/// does the power of ten, so one division rounds correctly. (W. D. Clinger, "How to read floating point numbers
+/// accurately", PLDI 1990.)
+#[inline]
+fn short_decimal(text: &[u8]) -> Option<f64> {
+    const TENS: [f64; 16] =
+        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    let (is_negative, digits) = match text {
+        [b'-', digits @ ..] => (true, digits),
+        digits => (false, digits),
+    };
+    // A dot counts as one of the bytes.
+    if digits.len() > 16 {
+        return None;
+    }
+    let (mut integer, mut count, mut decimals) = (0_u64, 0, None);
+    for byte in digits {
+        match byte {
+            b'0'..=b'9' => {
+                integer = 10 * integer + u64::from(byte - b'0');
+                count += 1;
+            }
+            b'.' if decimals.is_none() => decimals = Some(count),
+            _ => return None,
+        }
+    }
+    if count == 0 || count > 15 {
+        return None;
+    }
+    let decimals: usize = decimals.map_or(0, |before| count - before);
+    let value = integer as f64 / TENS[decimals];
+    Some(if is_negative { -value } else { value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::loaded::ColumnValues;
+
+    fn fields() -> Vec<Field> {
+        vec![
+            Field::new("species", Kind::Text),
+            Field::new("x", Kind::Number),
+            Field::new("mark", Kind::Text),
+            Field::new("y", Kind::Number),
+            Field::new("name", Kind::Text),
+        ]
+    }
+
+    fn rows(text: &str) -> Rows<'_> {
+        Rows { text: text.as_bytes(), lines_before: 2, may_be_longer: false }
+    }
+
+    fn values(columns: Vec<TableColumn>) -> Vec<(String, ColumnValues)> {
+        columns.into_iter().map(|column| (column.name, column.values)).collect()
+    }
+
+    /// Columns for so many rows as there are lines would take 80 GB.
+    #[test]
+    fn short_lines_of_many_columns_take_little_memory() {
+        let fields = vec![Field::new("a", Kind::Number); 100_000];
+        let lines = "1\n".repeat(100_000);
+        let error = rows(&lines).read(&fields).map(drop).unwrap_err();
+        assert_eq!(error, missing(3, "a", 1, 1));
+    }
+
+    #[test]
+    fn pieces_are_joined_in_order() {
+        let mut random = fastrand::Rng::with_seed(3);
+        for _ in 0..50 {
+            let mut wanted = (Vec::new(), Vec::new());
+            let text: String = (0..random.usize(..60))
+                .map(|_| {
+                    let (x, name) = (random.f64(), random.u8(..9));
+                    wanted.0.push(x);
+                    wanted.1.push(format!("a_rather_long_name_{name}"));
+                    format!(" H{}\t{x} - 1e-3  a_rather_long_name_{name} \r\n", random.bool())
+                })
+                .collect();
+            let text = text.trim_end_matches('\n');
+            let whole = values(rows(text).read(&fields()).unwrap());
+            for size in [1, 7, 100, 1 << 20] {
+                assert_eq!(values(rows(text).read_in_pieces(&fields(), size).unwrap()), whole);
+            }
+            let names: Vec<&str> = whole.iter().map(|(name, _)| name.as_str()).collect();
+            assert_eq!(names, ["species", "x", "mark", "y", "name"]);
+            assert_eq!(whole[1].1, ColumnValues::Numbers(wanted.0));
+            let ColumnValues::Labels(labels) = &whole[4].1 else { panic!("no text") };
+            let found: Vec<_> =
+                labels.indices.iter().map(|i| labels.names[*i as usize].clone()).collect();
+            assert_eq!(found, wanted.1);
+        }
+    }
+
+    #[test]
+    fn the_first_bad_line_is_named() {
+        let good = "H 1 2 3 n\n".repeat(20);
+        for size in [1, 30, 1 << 20] {
+            let refused =
+                |text: &str| rows(text).read_in_pieces(&fields(), size).unwrap_err().to_string();
+            assert_eq!(
+                refused(&format!("{good}H 1 2 x n\nH z\n{good}H y\n")),
+                "line 23, column 4: y is `x`, which is not a number"
+            );
+            assert_eq!(
+                refused(&format!("{good}H 1 2\nH z\n")),
+                "line 23: y, which is column 4, is missing; the line has 3 columns"
+            );
+            assert_eq!(
+                refused(&format!("{good}H 1 2 3 n 5 6\n")),
+                "line 23: this line has 7 columns, but only 5 have names"
+            );
+            assert_eq!(
+                refused(&format!("{good}\n")),
+                "line 23: species, which is column 1, is missing; the line has 0 columns"
+            );
+        }
+        for bad in [&b"H\xff 1 2 3 n"[..], b"H 1 2 \xff n"] {
+            let rows = Rows { text: bad, lines_before: 0, may_be_longer: false };
+            assert_eq!(rows.read(&fields()).map(drop), Err(not_text(1)));
+        }
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_standard_library() {
+        let mut random = fastrand::Rng::with_seed(5);
+        for _ in 0..200_000 {
+            let digits = random.usize(1..19);
+            let mut text: String = (0..digits).map(|_| random.digit(10)).collect();
+            if random.bool() {
+                text.insert(random.usize(..=digits), '.');
+            }
+            if random.bool() {
+                text.insert(0, '-');
+            }
+            let wanted: f64 = text.parse().unwrap();
+            assert_eq!(number(text.as_bytes()).map(f64::to_bits), Some(wanted.to_bits()), "{text}");
+        }
+    }
+
+    #[test]
+    fn ways_to_write_a_number() {
+        for (text, wanted) in [
+            ("1e3", 1e3),
+            ("1.5D-3", 1.5e-3),
+            ("-0", 0.0),
+            ("+2.5", 2.5),
+            (".5", 0.5),
+            ("5.", 5.0),
+            ("inf", f64::INFINITY),
+        ] {
+            assert!(number(text.as_bytes()) == Some(wanted), "{text}");
+        }
+        assert!(number(b"NaN").is_some_and(f64::is_nan));
+        for text in ["", "-", ".", "1,5", "1 2", "x", "1.2.3", "--1", "0x10", "\u{e9}"] {
+            assert_eq!(number(text.as_bytes()), None, "{text}");
+        }
     }
 }

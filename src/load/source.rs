@@ -1,4 +1,4 @@
-//! The bytes of a file, whether it is compressed with gzip or not.
+//! The bytes and the lines of a file, whether it is compressed with gzip or not.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -6,8 +6,9 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use flate2::read::MultiGzDecoder;
+
 use super::error::LoadError;
-use super::gzip::{self, Gunzip};
 
 /// How much of a file is read at a time.
 const PIECE: usize = 1 << 18;
@@ -32,7 +33,7 @@ impl Source {
     /// Opens a file. It is taken as compressed if its first bytes say so.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let mut plain = BufReader::with_capacity(PIECE, File::open(path)?);
-        if gzip::starts(plain.fill_buf()?) {
+        if is_gzip(plain.fill_buf()?) {
             plain.rewind()?;
             let gunzip = Gunzip::new(plain.into_inner());
             return Ok(Self::Gzip(BufReader::with_capacity(PIECE, gunzip)));
@@ -102,9 +103,165 @@ pub(super) fn without_gz(path: &Path) -> PathBuf {
     if is_gz { path.with_extension("") } else { path.to_path_buf() }
 }
 
+/// Whether the first bytes are those of a file that is compressed with gzip.
+pub(super) fn is_gzip(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// Decompresses a file that is in memory.
+pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut all = Vec::new();
+    MultiGzDecoder::new(bytes).read_to_end(&mut all)?;
+    Ok(all)
+}
+
+/// How many bytes a file decompresses to, as its last four bytes say: right for a file of one member and less than
+/// 4 GiB. Nothing depends on it but the check whether there is enough memory.
+pub(super) fn gzip_size_hint(bytes: &[u8]) -> u64 {
+    bytes.last_chunk().map_or(0, |last| u32::from_le_bytes(*last).into())
+}
+
+/// Decompresses a file as it is read. Seeking forward decompresses what lies between, and seeking back begins again.
+#[derive(Debug)]
+pub(super) struct Gunzip<R> {
+    /// `None` only while the decoder is being replaced.
+    decoder: Option<MultiGzDecoder<R>>,
+    /// How many decompressed bytes were read.
+    position: u64,
+}
+
+impl<R: Read + Seek> Gunzip<R> {
+    /// Decompresses `compressed`, which stands at its start.
+    pub(super) fn new(compressed: R) -> Self {
+        Self { decoder: Some(MultiGzDecoder::new(compressed)), position: 0 }
+    }
+
+    fn restart(&mut self) -> io::Result<()> {
+        if let Some(decoder) = self.decoder.take() {
+            let mut compressed = decoder.into_inner();
+            compressed.rewind()?;
+            *self = Self::new(compressed);
+        }
+        Ok(())
+    }
+
+    /// Reads on until `position`, or until the end, whichever comes first.
+    fn read_up_to(&mut self, position: u64) -> io::Result<()> {
+        let between = position.saturating_sub(self.position);
+        io::copy(&mut self.by_ref().take(between), &mut io::sink())?;
+        Ok(())
+    }
+}
+
+impl<R: Read> Read for Gunzip<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.decoder.as_mut().map_or(Ok(0), |decoder| decoder.read(buffer))?;
+        self.position += read as u64;
+        Ok(read)
+    }
+}
+
+impl<R: Read + Seek> Seek for Gunzip<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let outside = || io::Error::new(io::ErrorKind::InvalidInput, "a place before the start");
+        let wanted = match to {
+            SeekFrom::Start(position) => position,
+            SeekFrom::Current(by) => self.position.checked_add_signed(by).ok_or_else(outside)?,
+            SeekFrom::End(by) => {
+                self.read_up_to(u64::MAX)?;
+                self.position.checked_add_signed(by).ok_or_else(outside)?
+            }
+        };
+        if wanted < self.position {
+            self.restart()?;
+        }
+        self.read_up_to(wanted)?;
+        // A place after the end is one where nothing can be read, as in a plain file.
+        Ok(wanted)
+    }
+}
+
+/// Reads lines one by one, and counts them and their bytes.
+pub(super) struct LineReader<'a> {
+    source: &'a mut dyn Bytes,
+    /// Bytes so far.
+    pub(super) offset: u64,
+    /// Lines so far.
+    pub(super) line: usize,
+    text: Vec<u8>,
+}
+
+impl<'a> LineReader<'a> {
+    pub(super) fn new(source: &'a mut dyn Bytes) -> Self {
+        Self { source, offset: 0, line: 0, text: Vec::new() }
+    }
+
+    /// Returns the next line without its line end; `None` at the end of the file. Of a line longer than 1 KiB only the
+    /// start.
+    pub(super) fn next(&mut self) -> io::Result<Option<&[u8]>> {
+        const LONGEST: u64 = 1 << 10;
+        self.text.clear();
+        // Most lines are short and lie in what has been read.
+        let buffer = self.source.fill_buf()?;
+        let near = &buffer[..buffer.len().min(LONGEST as usize)];
+        if let Some(end) = memchr::memchr(b'\n', near) {
+            self.text.extend_from_slice(&near[..end]);
+            self.source.consume(end + 1);
+            self.offset += end as u64 + 1;
+            self.line += 1;
+            return Ok(Some(&self.text));
+        }
+        let read = (&mut *self.source).take(LONGEST).read_until(b'\n', &mut self.text)?;
+        if read == 0 {
+            return Ok(None);
+        }
+        self.offset += read as u64;
+        self.line += 1;
+        if self.text.last() == Some(&b'\n') {
+            self.text.pop();
+        } else {
+            self.offset += self.source.skip_until(b'\n')? as u64;
+        }
+        Ok(Some(&self.text))
+    }
+
+    /// Skips lines, and returns how many there were. The last may lack a line end.
+    pub(super) fn skip(&mut self, lines: usize) -> io::Result<usize> {
+        const BLOCK: usize = 1 << 13;
+        let (mut found, mut is_within) = (0, false);
+        while found < lines {
+            let buffer = self.source.fill_buf()?;
+            if buffer.is_empty() {
+                found += usize::from(is_within);
+                break;
+            }
+            // Counting is faster than looking at every line, but where a frame ends is not known.
+            let block = &buffer[..buffer.len().min(BLOCK)];
+            let wanted = lines - found;
+            let count = memchr::memchr_iter(b'\n', block).count();
+            let last = if count < wanted {
+                None
+            } else {
+                memchr::memchr_iter(b'\n', block).nth(wanted - 1)
+            };
+            let end = last.map_or(block.len(), |last| last + 1);
+            is_within = block[end - 1] != b'\n';
+            found += count.min(wanted);
+            self.offset += end as u64;
+            self.source.consume(end);
+        }
+        self.line += found;
+        Ok(found)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::{Cursor, Write as _};
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
 
     #[test]
     fn names_of_compressed_files() {
@@ -113,5 +270,41 @@ mod tests {
         {
             assert_eq!(without_gz(Path::new(name)), Path::new(inner), "{name}");
         }
+    }
+
+    fn compressed(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn seeks_forward_and_back() {
+        let bytes: Vec<u8> = (0..100_000_u32).flat_map(u32::to_le_bytes).collect();
+        // Two members, as `cat a.gz b.gz` makes them.
+        let (first, second) = bytes.split_at(123_456);
+        let file = [compressed(first), compressed(second)].concat();
+        assert!(is_gzip(&file));
+        assert_eq!(decompressed(&file).unwrap(), bytes);
+        assert_eq!(gzip_size_hint(&compressed(&bytes)), 400_000);
+        let mut gunzip = BufReader::new(Gunzip::new(Cursor::new(file)));
+        for at in [300_000_u64, 17, 399_996, 0, 123_456] {
+            gunzip.seek(SeekFrom::Start(at)).unwrap();
+            assert_eq!(gunzip.stream_position().unwrap(), at);
+            let mut four = [0; 4];
+            gunzip.read_exact(&mut four).unwrap();
+            assert_eq!(four, bytes[at as usize..][..4]);
+        }
+        assert_eq!(gunzip.seek(SeekFrom::End(-4)).unwrap(), 399_996);
+        assert_eq!(gunzip.fill_buf().unwrap(), &bytes[399_996..]);
+    }
+
+    #[test]
+    fn a_damaged_file_is_an_error() {
+        let mut file = compressed(&[7; 1000]);
+        file.truncate(file.len() - 6);
+        let mut all = Vec::new();
+        assert!(decompressed(&file).is_err());
+        assert!(Gunzip::new(Cursor::new(file)).read_to_end(&mut all).is_err());
     }
 }

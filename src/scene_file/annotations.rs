@@ -2,12 +2,11 @@
 
 use std::fmt;
 
-use serde::Deserialize;
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use serde::de::{Deserializer, SeqAccess, Visitor};
+use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{Keys, Lines, Number, SceneFileError, Span};
-use super::value::ColorValue;
+use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
 use crate::annotate::{
     AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
 };

@@ -4,8 +4,7 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::span::{Lines, Number, SceneFileError, Span};
-use super::words::explain;
+use super::span::{Lines, Number, SceneFileError, Span, explain};
 use crate::camera::{CameraKey, CameraPath, KeyPlace, PathClock, Viewpoint};
 use crate::exact::{self, Table};
 

@@ -1,8 +1,7 @@
 //! Applies the keys of a scene file to the spheres of its data.
 
-use super::additions;
-use super::data::{Data, Element};
-use super::value::DEFAULT_COLOR;
+use super::data::{Data, Element, add_spheres};
+use super::span::DEFAULT_COLOR;
 use crate::added::{AddError, Added};
 use crate::color_by::{ColorByError, ColorKey, Mapped, Mapping};
 use crate::image::color::LinearRgb;
@@ -51,43 +50,9 @@ pub enum DataError {
     /// A column cannot decide what it should.
     #[error(transparent)]
     ColorBy(#[from] ColorByError),
-    /// The data has no text columns.
-    #[error(
-        "`{key}` applies only to data with text, such as the names of atoms, and {file} has none; remove it"
-    )]
-    NoText {
-        /// The key of the scene file.
-        key: &'static str,
-        /// Path of the data file.
-        file: String,
-    },
-    /// The data has no text column of this name.
-    #[error("`{key}`: {file} has no text column `{column}`; its text columns are {columns}")]
-    NoColumn {
-        /// The key of the scene file.
-        key: &'static str,
-        /// The column that the scene file names.
-        column: String,
-        /// Path of the data file.
-        file: String,
-        /// Names of the text columns of the data.
-        columns: String,
-    },
-}
-
-/// Factors of radii, which differ between species.
-struct RadiusFactors<'a> {
-    of_species: Vec<f64>,
-    labels: Option<&'a Labels>,
-    other: f64,
-}
-
-impl RadiusFactors<'_> {
-    fn of(&self, index: usize) -> f64 {
-        let species = self.labels.and_then(|labels| labels.indices.get(index));
-        let factor = species.and_then(|species| self.of_species.get(*species as usize));
-        factor.copied().unwrap_or(self.other)
-    }
+    /// The data has no text column that a key of the scene file names.
+    #[error("{0}")]
+    NoColumn(String),
 }
 
 impl Data {
@@ -126,6 +91,12 @@ impl Data {
         let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &is_left_out)?;
         notes.extend_from_slice(mapped.notes());
+        let has_chosen_radii = self.radius.is_some()
+            || self.mapping.radius.is_some()
+            || self.radius_scale.to_bits() != 1.0_f64.to_bits();
+        if !has_chosen_radii {
+            self.additions.shrink(&mut loaded);
+        }
         let species = ["species".to_owned()];
         let by = if self.elements_by.is_empty() && self.elements.is_empty() {
             &[]
@@ -147,14 +118,12 @@ impl Data {
             })
         };
         let color = self.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
-        let factors = self.radius_factors(&loaded);
         let (mut spheres, mut indices) = (Vec::new(), Vec::new());
         for (index, mut sphere) in loaded.colored_spheres(color).enumerate() {
             if is_left_out.get(index).copied().unwrap_or(false) {
                 continue;
             }
             let element = element_at(index);
-            sphere.radius *= factors.of(index);
             let mut surface = element.map_or(self.surface, |element| element.surface);
             // Columns take precedence over what the file says by itself, here too.
             if self.mapping.opacity.is_none() {
@@ -189,27 +158,10 @@ impl Data {
                 self.file
             )
         }));
-        let added = additions::add(&self.additions, &mut spheres, &loaded, &indices)?;
+        let added = add_spheres(&self.additions, &mut spheres, &loaded, &indices)?;
         notes.extend_from_slice(added.notes());
         let (spheres, color_key) = (DataSpheres::Spheres(spheres), mapped.key().cloned());
         Ok(AppliedData { spheres, color_key, notes, kept, added })
-    }
-
-    /// The factors of the radii of the data that bonds need.
-    fn radius_factors<'a>(&self, loaded: &'a Loaded) -> RadiusFactors<'a> {
-        let is_chosen = self.radius.is_some()
-            || self.mapping.radius.is_some()
-            || self.radius_scale.to_bits() != 1.0_f64.to_bits();
-        if is_chosen {
-            return RadiusFactors { of_species: Vec::new(), labels: None, other: 1.0 };
-        }
-        let labels = loaded.labels("species");
-        let factor = |name: &String| self.additions.radius_factor(Some(name));
-        RadiusFactors {
-            of_species: labels.map_or(Vec::new(), |l| l.names.iter().map(factor).collect()),
-            labels,
-            other: self.additions.radius_factor(None),
-        }
     }
 
     /// Whether keys ask for columns of text.
@@ -221,9 +173,10 @@ impl Data {
     fn labels<'a>(
         &self,
         loaded: &'a Loaded,
-        key: &'static str,
+        key: &str,
         column: &str,
     ) -> Result<&'a Labels, DataError> {
+        let file = &self.file;
         loaded.labels(column).ok_or_else(|| {
             let mut texts = loaded
                 .columns
@@ -231,11 +184,14 @@ impl Data {
                 .filter(|column| matches!(column.values, ColumnValues::Labels(_)))
                 .peekable();
             if texts.peek().is_none() {
-                return DataError::NoText { key, file: self.file.clone() };
+                return DataError::NoColumn(format!(
+                    "`{key}` applies only to data with text, such as the names of atoms, and {file} has none; remove it"
+                ));
             }
             let columns = texts.map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
-            let (column, file) = (column.to_owned(), self.file.clone());
-            DataError::NoColumn { key, column, file, columns }
+            DataError::NoColumn(format!(
+                "`{key}`: {file} has no text column `{column}`; its text columns are {columns}"
+            ))
         })
     }
 

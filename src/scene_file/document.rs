@@ -5,23 +5,21 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::additions::{BondsValue, BoxValue};
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::camera_path::CameraPathTable;
-use super::data::ElementTable;
+use super::data::{BondsValue, BoxValue, ElementTable};
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
 use super::mapping::{ByColumn, ColorTable, ColumnTable};
 use super::materials::{MaterialTable, Materials};
-use super::output::OutputTable;
-use super::span::{Lines, Number, SceneFileError, WithSpan};
-use super::value::ColorValue;
-use super::words::explain;
+use super::span::{ColorValue, Lines, Number, SceneFileError, WithSpan, explain};
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
+use crate::image::encoding::{Bits, Encoding, EncodingError};
+use crate::image::tone::ToneCurve;
 use crate::render::Shading;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
@@ -91,55 +89,6 @@ impl Document {
     }
 }
 
-impl Default for Document {
-    /// The document of an empty file.
-    fn default() -> Self {
-        Self {
-            style: None,
-            film: default_film(),
-            camera: default_camera(),
-            camera_path: None,
-            output: Table::default(),
-            background: None,
-            shading: None,
-            integrator: None,
-            studio: None,
-            path: None,
-            sampling: None,
-            lights: None,
-            sky: None,
-            sun: None,
-            ground: None,
-            materials: BTreeMap::new(),
-            spheres: Vec::new(),
-            data: None,
-            format: None,
-            frame: None,
-            topology: None,
-            columns: None,
-            radius: None,
-            radius_scale: None,
-            color: None,
-            material: None,
-            opacity: None,
-            elements: BTreeMap::new(),
-            elements_by: None,
-            leave_out: None,
-            select: None,
-            cell: None,
-            bonds: None,
-            color_by: None,
-            radius_by: None,
-            opacity_by: None,
-            emission_by: None,
-            legend: None,
-            scale_bar: None,
-            labels: Vec::new(),
-            text: None,
-        }
-    }
-}
-
 fn default_film() -> Spanned<Table<FilmTable>> {
     Spanned::new(0..0, Table::default())
 }
@@ -198,5 +147,36 @@ impl SphereTable {
         let mut sphere = Sphere::new(center, radius, color.0);
         sphere.surface = materials.over(SurfaceProperties::default(), material, opacity, lines)?;
         Ok(WithSpan { value: sphere, span })
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct OutputTable {
+    exposure: Option<Spanned<f32>>,
+    tone: ToneCurve,
+    transparent: bool,
+    bits: Option<Spanned<u32>>,
+    dpi: Option<Spanned<f32>>,
+}
+
+impl OutputTable {
+    pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
+        let span = |start| move |error: EncodingError| lines.span(start).error(error);
+        let mut encoding =
+            Encoding::default().with_tone(self.tone).with_transparent(self.transparent);
+        if let Some(exposure) = self.exposure {
+            let start = exposure.span().start;
+            encoding = encoding.with_exposure(exposure.into_inner()).map_err(span(start))?;
+        }
+        if let Some(bits) = self.bits {
+            let start = bits.span().start;
+            encoding = encoding.with_bits(Bits::new(bits.into_inner()).map_err(span(start))?);
+        }
+        if let Some(dpi) = self.dpi {
+            let start = dpi.span().start;
+            encoding = encoding.with_dots_per_inch(Some(dpi.into_inner())).map_err(span(start))?;
+        }
+        Ok(encoding)
     }
 }

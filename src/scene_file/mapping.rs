@@ -4,13 +4,12 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{self, Deserializer, MapAccess, Visitor};
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{Lines, Number, SceneFileError, range_of};
-use super::value::ColorValue;
+use super::span::{ColorValue, Lines, Number, SceneFileError, range_of};
 use crate::color_by::{ColorBy, EmissionBy, Limit, Limits, MISSING, MapName, Mapping, RadiusBy};
 
 /// A table that may also be written as a text, the name of its column.

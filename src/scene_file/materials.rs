@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::span::{Keys, Lines, Number, SceneFileError, range_of, refuse_foreign};
-use super::words::unknown;
+use super::span::{
+    Keys, Lines, Number, SceneFileError, name_of, range_of, refuse_foreign, unknown,
+};
 use crate::exact::Table;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::text::{one_line, shortened};
@@ -19,17 +20,6 @@ enum Kind {
     Conductor,
     Dielectric,
     Emissive,
-}
-
-impl Kind {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Lambert => "lambert",
-            Self::Conductor => "conductor",
-            Self::Dielectric => "dielectric",
-            Self::Emissive => "emissive",
-        }
-    }
 }
 
 #[derive(Deserialize)]
@@ -54,7 +44,7 @@ impl MaterialTable {
         let is_one = |kinds: &[Kind]| kinds.contains(&kind);
         refuse_foreign(
             lines,
-            kind.name(),
+            &name_of(kind),
             &[
                 ("specular", range_of(&self.specular), is_one(&[Kind::Lambert])),
                 ("roughness", range_of(&self.roughness), !is_one(&[Kind::Emissive])),

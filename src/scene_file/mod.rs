@@ -3,7 +3,6 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
-mod additions;
 mod annotations;
 mod camera_path;
 mod data;
@@ -12,48 +11,39 @@ mod document;
 mod lighting;
 mod mapping;
 mod materials;
-mod output;
-mod settings;
 mod span;
-mod value;
-mod words;
 mod write;
-mod write_annotations;
-mod write_data;
-mod write_surfaces;
-mod write_values;
 
 pub use camera_path::parse_camera_path;
 pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
-pub use span::SceneFileError;
-pub use value::DEFAULT_COLOR;
+pub use span::{DEFAULT_COLOR, SceneFileError};
 pub use write::{Contents, write};
 
-use additions::AdditionKeys;
+use toml::Spanned;
+
+use crate::annotate::AnnotationPlan;
+use crate::camera::film::Film;
+use crate::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
+use crate::color_by::Mapped;
+use crate::image::color::LinearRgb;
+use crate::image::encoding::Encoding;
+use crate::light::environment::Environment;
+use crate::light::{Sky, SkyLight};
+use crate::render::{Integrator, RenderSettings, SettingsError, Shading};
+use crate::scene::material::Material;
+use crate::scene::sphere::Sphere;
+use crate::scene::sphere_array::SphereArray;
+use crate::scene::{Colors, Scene, SceneError};
+use crate::style::{Style, fit};
 use annotations::AnnotationTables;
-use data::DataKeys;
+use data::{AdditionKeys, DataKeys};
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
 use mapping::MappingKeys;
 use materials::Materials;
-use span::{Lines, Span, WithSpan};
-use toml::Spanned;
-use value::ColorValue;
-use words::unknown;
-
-use crate::annotate::AnnotationPlan;
-use crate::camera::film::Film;
-use crate::camera::{Camera, CameraError, CameraParameters, CameraPath};
-use crate::color_by::Mapped;
-use crate::image::color::LinearRgb;
-use crate::image::encoding::Encoding;
-use crate::render::Shading;
-use crate::scene::sphere::Sphere;
-use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Colors, Scene, SceneError};
-use crate::style::Style;
+use span::{ColorValue, Lines, Span, WithSpan, scaled, unknown};
 
 /// The contents of a scene file.
 #[derive(Debug)]
@@ -92,11 +82,13 @@ impl SceneFile {
     /// Returns the first error in the text, with its line and column.
     pub fn parse_in_style(text: &str, style: Option<Style>) -> Result<Self, SceneFileError> {
         let lines = Lines::of(text);
-        let document = Document::parse(text, &lines)?;
+        let mut document = Document::parse(text, &lines)?;
         let named = document.style.as_ref().map(|name| style_of(name, &lines)).transpose()?;
         let style = style.or(named);
-        let of_style = style.map(|style| Document::parse(style.text(), &Lines::of(style.text())));
-        let of_style = of_style.transpose()?.unwrap_or_default();
+        let text_of_style = style.map_or("", Style::text);
+        let mut of_style = Document::parse(text_of_style, &Lines::of(text_of_style))?;
+        let lighting_of_style = lighting_tables(&mut of_style);
+        let mut lighting = lighting_tables(&mut document);
         let materials = Materials::new(document.materials, &lines)?;
         let mapping = MappingKeys {
             color: document.color_by,
@@ -138,35 +130,8 @@ impl SceneFile {
         let spheres: Vec<_> = spheres
             .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
             .collect::<Result<_, _>>()?;
-        let lighting = LightingTables {
-            shading: document.shading.as_ref().map(|shading| shading.span().start),
-            integrator: document.integrator,
-            studio: document.studio,
-            path: document.path,
-            sampling: document.sampling,
-            lights: document.lights,
-            sky: document.sky,
-            sun: document.sun,
-            ground: document.ground,
-            has_materials: has_lighting || has_surface(&spheres, data.as_ref()),
-        };
-        let of_style = StyleTables {
-            lighting: LightingTables {
-                shading: None,
-                integrator: of_style.integrator,
-                studio: of_style.studio,
-                path: of_style.path,
-                sampling: of_style.sampling,
-                lights: of_style.lights,
-                sky: of_style.sky,
-                sun: of_style.sun,
-                ground: of_style.ground,
-                has_materials: false,
-            },
-            background: of_style.background,
-            shading: of_style.shading,
-        };
-        let lighting = lighting.read(of_style.lighting, &lines)?;
+        lighting.has_materials = has_lighting || has_surface(&spheres, data.as_ref());
+        let lighting = lighting.read(lighting_of_style, &lines)?;
         Ok(Self {
             film: FilmTable::film(document.film, &lines)?,
             style,
@@ -209,13 +174,7 @@ impl SceneFile {
         data: SphereArray,
         color: LinearRgb,
     ) -> Result<Scene, SceneFileError> {
-        let surface = self.data().map(|data| data.surface).unwrap_or_default();
-        if self.spheres.is_empty() {
-            let scene = data.scene(color).map_err(|error| self.spanned(&error))?;
-            return Ok(scene.with_surface(surface));
-        }
-        let colored = data.with_color(color).map(|sphere| Sphere { surface, ..sphere });
-        self.scene(&colored.collect::<Vec<_>>())
+        self.scene_with_mapped(data, &Mapped::default(), color)
     }
 
     /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
@@ -320,11 +279,20 @@ impl SceneFile {
     }
 }
 
-/// What a style says, as its file gives it.
-struct StyleTables {
-    lighting: LightingTables,
-    background: Option<ColorValue>,
-    shading: Option<Spanned<Shading>>,
+/// Takes the tables about light.
+fn lighting_tables(document: &mut Document) -> LightingTables {
+    LightingTables {
+        shading: document.shading.as_ref().map(|shading| shading.span().start),
+        integrator: document.integrator,
+        studio: document.studio.take(),
+        path: document.path.take(),
+        sampling: document.sampling.take(),
+        lights: document.lights.take(),
+        sky: document.sky.take(),
+        sun: document.sun.take(),
+        ground: document.ground.take(),
+        has_materials: false,
+    }
 }
 
 /// Returns the style of a name.
@@ -343,4 +311,103 @@ fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> b
         elements.chain([data.value.surface])
     });
     spheres.iter().map(|sphere| sphere.value.surface).chain(of_data).any(|surface| surface != matt)
+}
+
+impl SceneFile {
+    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity
+    /// that needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
+    #[must_use]
+    pub fn integrator(&self) -> Option<IntegratorKind> {
+        self.lighting.integrator
+    }
+
+    /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
+    #[must_use]
+    pub fn sky_image(&self) -> Option<&str> {
+        self.lighting.sky.as_ref()?.image()
+    }
+
+    /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
+    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there
+    /// are the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is
+    /// the image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
+    ///
+    /// # Errors
+    /// For a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
+    /// image of the sky is needed and not given.
+    pub fn settings(
+        &self,
+        kind: IntegratorKind,
+        scene: &Scene,
+        camera: &dyn Camera,
+        image: Option<Environment>,
+    ) -> Result<RenderSettings, SceneFileError> {
+        let (says, defaults) = (&self.lighting, RenderSettings::studio());
+        let background = self.background;
+        let integrator = match kind {
+            IntegratorKind::Primary => {
+                let integrator = Integrator::Primary(self.shading);
+                return Ok(RenderSettings { integrator, background, ..RenderSettings::default() });
+            }
+            IntegratorKind::Studio => {
+                Integrator::Studio(says.studio.studio(scene, camera, background)?)
+            }
+            IntegratorKind::Path => Integrator::Path(says.path),
+        };
+        // Only path tracing is lit by a sky and needs its image.
+        let sky = match &says.sky {
+            _ if kind == IntegratorKind::Studio => defaults.sky,
+            Some(sky) => sky.sky(image)?,
+            None if says.lights.is_none() || !says.given.light => defaults.sky,
+            None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
+        };
+        let mut settings = RenderSettings {
+            integrator,
+            sampling: says.sampling,
+            lights: says.lights.clone().unwrap_or(defaults.lights),
+            sky,
+            ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
+            background,
+            is_transparent: false,
+            is_denoised: says.is_denoised,
+        };
+        self.check_colors()?;
+        if let Some(style) = self.style {
+            fit(&mut settings, style, says.given, scene, &View::new(camera, self.film));
+        }
+        settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
+    }
+
+    /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
+    fn check_colors(&self) -> Result<(), SceneFileError> {
+        for (index, sphere) in self.spheres.iter().enumerate() {
+            let (color, surface) = (sphere.value.color, sphere.value.surface);
+            let (rgb, what) = (color.to_array(), format!("sphere {index}"));
+            match surface.material {
+                Material::Emissive { strength } => {
+                    scaled(color, strength.into(), &what)
+                        .map_err(|error| sphere.span.error(error))?;
+                }
+                _ if rgb.iter().any(|c| *c > 1.0) => {
+                    return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been
+    /// checked before, so only a few errors are left.
+    fn span_of(&self, error: &SettingsError) -> Span {
+        let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
+        let data = || self.data.as_ref().map(|data| data.span);
+        match error {
+            SettingsError::Ground | SettingsError::Catcher => ground(),
+            SettingsError::Albedo { what, .. } if what == "the ground" => ground(),
+            SettingsError::Albedo { .. } | SettingsError::TooBright { .. } => data(),
+            _ => None,
+        }
+        .unwrap_or(Span::START)
+    }
 }

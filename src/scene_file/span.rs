@@ -1,11 +1,19 @@
-//! Positions in the text of a scene file, and errors with a position.
+//! Positions in the text of a scene file, errors with a position in the words of scene files, and types of values that
+//! occur in several tables: colours and vectors.
 
 use std::fmt;
 use std::ops::Range;
 
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, de};
 use toml::Spanned;
 
+use crate::camera::CameraKind;
+use crate::exact;
+use crate::image::color::LinearRgb;
 use crate::range::RangeError;
+use crate::render::{BRIGHTEST, SettingsError};
+use crate::text::{one_line, shortened};
 
 /// An error in a scene file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -115,6 +123,11 @@ pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
     Some(Spanned::new(number.span(), f64::from(*number.get_ref())))
 }
 
+/// The name of a kind in scene files, each of which is one word.
+pub(super) fn name_of(kind: impl fmt::Debug) -> String {
+    format!("{kind:?}").to_lowercase()
+}
+
 /// Refuses keys that do not apply to the kind of their table. Each key has its position, if it is given, and whether it
 /// applies.
 pub(super) fn refuse_foreign(
@@ -136,4 +149,117 @@ pub(super) fn refuse_foreign(
 /// Returns the position of a value in bytes, if it is given.
 pub(super) fn range_of<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
     value.as_ref().map(Spanned::span)
+}
+
+/// A colour, written as a CSS colour or as a linear triple.
+#[derive(Clone, Copy)]
+pub(super) struct ColorValue(pub(super) LinearRgb);
+
+/// Colour of spheres without a colour, in 8-bit sRGB: a light grey.
+pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
+
+impl Default for ColorValue {
+    fn default() -> Self {
+        Self(LinearRgb::from_srgb8(DEFAULT_COLOR))
+    }
+}
+
+impl<'de> Deserialize<'de> for ColorValue {
+    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ColorVisitor;
+
+        impl<'de> Visitor<'de> for ColorVisitor {
+            type Value = ColorValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<ColorValue, E> {
+                LinearRgb::from_css(text).map(ColorValue).map_err(E::custom)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ColorValue, A::Error> {
+                let rgb = exact::elements(seq, &self)?;
+                LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
+            }
+        }
+
+        deserializer.deserialize_any(ColorVisitor)
+    }
+}
+
+/// A vector of three numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Vector(pub(super) [f64; 3]);
+
+impl<'de> Deserialize<'de> for Vector {
+    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        exact::array(deserializer).map(Self)
+    }
+}
+
+/// Multiplies a colour by a number that was checked. The result is light that `what` emits, and may be too bright.
+pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, SettingsError> {
+    let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
+    let too_bright = || SettingsError::TooBright { what: what.to_owned(), rgb };
+    let is_bearable = rgb.iter().all(|c| *c <= BRIGHTEST);
+    LinearRgb::new(rgb).ok().filter(|_| is_bearable).ok_or_else(too_bright)
+}
+
+/// Rewrites a message of serde or toml. A message about an unknown key or name also gets a suggestion.
+pub(super) fn explain(message: &str) -> String {
+    let (what, rest) = match message.split_once(" `") {
+        Some(("unknown field", rest)) => ("key", rest),
+        Some(("unknown variant", rest)) => ("name", rest),
+        // The camera is the only enumeration whose variants have contents.
+        _ if message.starts_with("wanted exactly 1 element, more") => {
+            return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
+        }
+        _ if message.starts_with("wanted exactly 1 element")
+            || message.starts_with("invalid type: unit variant") =>
+        {
+            return format!("a camera is a table; write {}", camera_tables());
+        }
+        // The messages of toml itself are good, but may have several lines.
+        _ => return in_plain_words(message),
+    };
+    // For example: unknown field `widht`, expected one of `width`, `height`
+    let mut quoted = rest.split('`').step_by(2);
+    let name = quoted.next().unwrap_or_default();
+    let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
+    unknown(what, name, &known)
+}
+
+/// Returns the message for a name that is not one of the known names.
+pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+    let unknown = &shortened(name);
+    let nearest = known.iter().copied().max_by(|a, b| {
+        strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
+    });
+    match nearest.filter(|name| strsim::jaro_winkler(name, unknown) > 0.75) {
+        Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
+        None => format!("unknown {what} `{unknown}`; valid here: {}", known.join(", ")),
+    }
+}
+
+/// Replaces Rust's names of types, and serde's term for a key, by plain words.
+fn in_plain_words(message: &str) -> String {
+    let mut text = one_line(message);
+    for (rust, plain) in [
+        ("expected f64", "expected a number"),
+        ("expected f32", "expected a number"),
+        ("expected u32", "expected a whole number from 0 to 4294967295"),
+        ("expected usize", "expected a whole number, 0 or more"),
+        ("missing field", "missing key"),
+    ] {
+        text = text.replace(rust, plain);
+    }
+    text
+}
+
+/// Lists the tables of all cameras: `[camera.pinhole]` or …
+fn camera_tables() -> String {
+    let tables = CameraKind::ALL.iter().map(|kind| format!("`[camera.{}]`", kind.name()));
+    tables.collect::<Vec<_>>().join(" or ")
 }

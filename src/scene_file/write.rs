@@ -5,17 +5,16 @@ use std::fmt::Write as _;
 use toml::Value;
 
 use super::data::Data;
-use super::write_annotations::annotations;
-use super::write_data::data_keys;
-use super::write_surfaces::Surfaces;
-use super::write_values::{color, degrees_of, string};
-use crate::annotate::AnnotationPlan;
+use crate::added::BondLength;
+use crate::annotate::{AnnotationPlan, LegendPlan, Panel, Position, ScaleBarPlan};
 use crate::camera::CameraParameters;
 use crate::camera::film::Film;
+use crate::color_by::{ColorBy, Limit, Limits, MISSING, Mapping};
+use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
-use crate::scene::material::SurfaceProperties;
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::sphere::Sphere;
 
 /// Everything that a scene file can say.
@@ -242,4 +241,217 @@ fn ground(ground: &Ground) -> String {
     format!(
         "\n[ground]\npoint = {point:?}\nnormal = {normal:?}\ncolor = {color}\nshadow_catcher = {catcher}"
     )
+}
+
+/// A colour: in 8-bit sRGB if that is exact, and as a linear triple otherwise.
+fn color(color: LinearRgb) -> String {
+    let [r, g, b] = color.to_srgb8();
+    if LinearRgb::from_srgb8([r, g, b]) == color {
+        return format!("\"#{r:02x}{g:02x}{b:02x}\"");
+    }
+    format!("{:?}", color.to_array())
+}
+
+/// An angle in degrees from which `is_same` finds the same radians: a round number if one does.
+fn degrees_of(radians: f64, is_same: impl Fn(f64) -> bool) -> f64 {
+    let exact = radians.to_degrees();
+    let round = [1e2, 1e6, 1e9].map(|digits| (exact * digits).round() / digits);
+    let near = [exact, exact.next_up(), exact.next_down()];
+    let further = [exact.next_up().next_up(), exact.next_down().next_down()];
+    let all = round.into_iter().chain(near).chain(further);
+    all.into_iter().find(|degrees| is_same(degrees.to_radians())).unwrap_or(exact)
+}
+
+/// A text in quotes.
+fn string(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// Texts in quotes, as a list.
+fn strings(list: &[String]) -> String {
+    let quoted: Vec<String> = list.iter().map(|one| string(one)).collect();
+    format!("[{}]", quoted.join(", "))
+}
+
+/// Surface properties that have a name in the file.
+#[derive(Default)]
+struct Surfaces(Vec<SurfaceProperties>);
+
+impl Surfaces {
+    /// The key for surface properties, unless they are those that hold without one.
+    fn key(&mut self, surface: SurfaceProperties, base: SurfaceProperties) -> Option<String> {
+        if surface == base {
+            return None;
+        }
+        let known = self.0.iter().position(|one| *one == surface);
+        let index = known.unwrap_or_else(|| {
+            self.0.push(surface);
+            self.0.len() - 1
+        });
+        Some(format!("material = \"surface-{index}\""))
+    }
+
+    fn tables(&self) -> Vec<String> {
+        let table = |(index, surface): (usize, &SurfaceProperties)| {
+            let opacity = surface.opacity;
+            let keys = match surface.material {
+                Material::Lambert { specular, roughness } => {
+                    format!(
+                        "kind = \"lambert\"\nspecular = {specular:?}\nroughness = {roughness:?}"
+                    )
+                }
+                Material::Conductor { roughness } => {
+                    format!("kind = \"conductor\"\nroughness = {roughness:?}")
+                }
+                Material::Dielectric { ior, roughness, attenuation_distance } => {
+                    let attenuation = attenuation_distance
+                        .map_or(String::new(), |far| format!("\nattenuation_distance = {far:?}"));
+                    format!(
+                        "kind = \"dielectric\"\nior = {ior:?}\nroughness = {roughness:?}{attenuation}"
+                    )
+                }
+                Material::Emissive { strength } => {
+                    format!("kind = \"emissive\"\nstrength = {strength:?}")
+                }
+            };
+            format!("\n[materials.surface-{index}]\n{keys}\nopacity = {opacity:?}")
+        };
+        self.0.iter().enumerate().map(table).collect()
+    }
+}
+
+/// The keys at the top of the file that concern its data.
+fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
+    let mut lines = vec![format!("data = {}", string(&data.file))];
+    lines.extend(data.format.as_ref().map(|name| format!("format = {}", string(name))));
+    lines.extend(data.frame.map(|frame| format!("frame = {frame}")));
+    lines.extend(data.topology.as_ref().map(|file| format!("topology = {}", string(file))));
+    if !data.columns.is_empty() {
+        lines.push(format!("columns = {}", strings(&data.columns)));
+    }
+    lines.extend(data.radius.map(|radius| format!("radius = {radius:?}")));
+    if data.radius_scale.to_bits() != 1.0_f64.to_bits() {
+        lines.push(format!("radius_scale = {:?}", data.radius_scale));
+    }
+    lines.extend(data.color.map(|one| format!("color = {}", color(one))));
+    lines.extend(surfaces.key(data.surface, SurfaceProperties::default()));
+    if !data.elements_by.is_empty() {
+        lines.push(format!("elements_by = {}", strings(&data.elements_by)));
+    }
+    if !data.leave_out.is_empty() {
+        let columns = data.leave_out.iter();
+        let columns = columns.map(|(name, list)| format!("{} = {}", string(name), strings(list)));
+        lines.push(format!("leave_out = {{ {} }}", columns.collect::<Vec<_>>().join(", ")));
+    }
+    lines.extend(
+        data.select.as_ref().map(|select| format!("select = {}", string(&select.to_string()))),
+    );
+    mapping_keys(&data.mapping, &mut lines);
+    lines.extend(data.additions.cell.as_ref().map(|cell| match cell.width {
+        Some(width) => format!("box = {{ width = {width:?} }}"),
+        None => "box = true".to_owned(),
+    }));
+    lines.extend(data.additions.bonds.as_ref().map(|bonds| match bonds.length {
+        BondLength::Covalent(factor) => format!("bonds = {factor:?}"),
+        BondLength::Below(length) => format!("bonds = {{ length = {length:?} }}"),
+    }));
+    lines
+}
+
+/// The keys by which columns decide how spheres look.
+fn mapping_keys(mapping: &Mapping, lines: &mut Vec<String>) {
+    let Mapping { color, radius, opacity, emission } = mapping;
+    lines.extend(color.as_ref().map(color_by));
+    let with_factor = |key: &str, column: &str, factor: f64| {
+        format!("{key} = {{ column = {}, factor = {factor:?} }}", string(column))
+    };
+    lines.extend(radius.as_ref().map(|by| with_factor("radius_by", &by.column, by.factor)));
+    lines.extend(opacity.as_ref().map(|column| format!("opacity_by = {}", string(column))));
+    lines.extend(emission.as_ref().map(|by| with_factor("emission_by", &by.column, by.factor)));
+}
+
+fn color_by(by: &ColorBy) -> String {
+    // Categories are given only between the frames of a movie.
+    let ColorBy { column, map, is_reversed, limits, is_log, missing, categories: _ } = by;
+    let mut keys = vec![format!("column = {}", string(column))];
+    keys.extend(map.map(|map| {
+        let ending = if map.is_reversed() { "_r" } else { "" };
+        format!("map = \"{}{ending}\"", map.name())
+    }));
+    if *is_reversed {
+        keys.push("reverse = true".to_owned());
+    }
+    if *limits != Limits::default() {
+        let limit = |limit| match limit {
+            Limit::Automatic => "\"\"".to_owned(),
+            Limit::Value(value) => format!("{value:?}"),
+            Limit::Percentile(percent) => format!("\"{percent:?}%\""),
+        };
+        keys.push(format!("range = [{}, {}]", limit(limits.low), limit(limits.high)));
+    }
+    if *is_log {
+        keys.push("log = true".to_owned());
+    }
+    if *missing != MISSING {
+        keys.push(format!("missing = {}", color(LinearRgb::from_srgb8(*missing))));
+    }
+    format!("color_by = {{ {} }}", keys.join(", "))
+}
+
+/// The tables, one text each.
+fn annotations(plan: &AnnotationPlan) -> Vec<String> {
+    let AnnotationPlan { legend, scale_bar, labels, text_scale, color: text_color, panel } = plan;
+    let at = |at: Option<Position>| at.map(|at| format!("position = {}", position(at)));
+    let table = |header: &str, keys: Vec<Option<String>>| {
+        let lines = [Some(format!("\n{header}"))].into_iter().chain(keys).flatten();
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let mut tables = Vec::new();
+    tables.extend(legend.as_ref().map(|LegendPlan { title, position }| {
+        let title = title.as_ref().map(|title| format!("title = {}", string(title)));
+        table("[legend]", vec![title, at(*position)])
+    }));
+    tables.extend(scale_bar.as_ref().map(|ScaleBarPlan { length, unit, position }| {
+        let length = length.map(|length| format!("length = {length:?}"));
+        let unit = (!unit.is_empty()).then(|| format!("unit = {}", string(unit)));
+        table("[scale_bar]", vec![length, unit, at(*position)])
+    }));
+    tables.extend(labels.iter().map(|label| {
+        let text = format!("text = {}", string(&label.text));
+        table("[[labels]]", vec![Some(text), at(Some(label.position))])
+    }));
+    let text = vec![
+        text_scale.map(|scale| format!("scale = {scale:?}")),
+        text_color.map(|one| format!("color = {}", color(LinearRgb::from_srgb8(one)))),
+        panel.map(|panel| {
+            let name = match panel {
+                Panel::Auto => "auto",
+                Panel::Always => "always",
+                Panel::Never => "never",
+            };
+            format!("panel = \"{name}\"")
+        }),
+    ];
+    if text.iter().any(Option::is_some) {
+        tables.push(table("[text]", text));
+    }
+    tables
+}
+
+fn position(position: Position) -> String {
+    match position {
+        Position::Anchor(anchor) => format!("\"{}\"", anchor.name()),
+        Position::At([x, y]) => format!("[{x:?}, {y:?}]"),
+    }
 }

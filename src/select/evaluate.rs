@@ -2,13 +2,15 @@
 
 use std::borrow::Cow;
 
-use super::error::{SelectError, SelectProblem};
-use super::parse::{Comparison, Expression, Operand, Operator, Value, error_at};
+use super::parse::{Comparison, Expression, Operand, Operator, SelectError, Value, error_at};
 use crate::color_by::ColumnError;
 use crate::color_by::column::{Found, column};
 use crate::load::{Column, ColumnValues, Labels};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{listed, one_line, shortened};
+
+const NO_COLUMN: &str =
+    "this compares two fixed values; one of them must be a column, without quotation marks";
 
 /// What expressions are evaluated for.
 struct Data<'a> {
@@ -56,7 +58,7 @@ impl<'a> Data<'a> {
         Ok(joined)
     }
 
-    fn error(&self, operand: &Operand, problem: impl Into<SelectProblem>) -> SelectError {
+    fn error(&self, operand: &Operand, problem: impl Into<String>) -> SelectError {
         error_at(self.text, operand.character, problem)
     }
 
@@ -65,14 +67,14 @@ impl<'a> Data<'a> {
         let found = |name: &str| column(name, self.spheres, self.columns);
         match &operand.value {
             Value::Text(_) => Ok(Side::Text),
-            Value::Column(name) => {
-                found(name).map(Side::Column).map_err(|error| self.error(operand, error))
-            }
+            Value::Column(name) => found(name)
+                .map(Side::Column)
+                .map_err(|error| self.error(operand, error.to_string())),
             Value::Word(word) => match (number(word), found(word)) {
                 (Some(number), _) => Ok(Side::Number(number)),
                 (None, Ok(found)) => Ok(Side::Column(found)),
                 (None, Err(error @ ColumnError::Unknown { .. })) => Ok(Side::Unknown(error)),
-                (None, Err(error)) => Err(self.error(operand, error)),
+                (None, Err(error)) => Err(self.error(operand, error.to_string())),
             },
         }
     }
@@ -101,7 +103,7 @@ impl<'a> Data<'a> {
                 b.iter().map(|b| operator.holds(a, *b)).collect()
             }
             (Numbers::One(_), Numbers::One(_)) => {
-                return Err(self.error(left, SelectProblem::NoColumn));
+                return Err(self.error(left, NO_COLUMN));
             }
         })
     }
@@ -124,23 +126,24 @@ impl<'a> Data<'a> {
                 }
                 // Columns of text were compared before.
                 Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => {
-                    SelectProblem::NoColumn
+                    NO_COLUMN.to_owned()
                 }
             },
-            Side::Unknown(error) => error.into(),
+            Side::Unknown(error) => error.to_string(),
             Side::Text => {
                 let (Value::Word(other) | Value::Column(other)) = other else {
-                    return Err(self.error(operand, SelectProblem::NoColumn));
+                    return Err(self.error(operand, NO_COLUMN));
                 };
                 match number(other) {
-                    Some(_) => SelectProblem::NoColumn,
-                    None if self.is_column(other) => SelectProblem::TextForNumbers {
-                        text: shortened(operand.value.text()),
-                        column: one_line(other),
-                    },
+                    Some(_) => NO_COLUMN.to_owned(),
+                    None if self.is_column(other) => format!(
+                        "`{}` is a text, but `{}` holds numbers",
+                        shortened(operand.value.text()),
+                        one_line(other)
+                    ),
                     None => match column(other, self.spheres, self.columns) {
-                        Err(error) => error.into(),
-                        Ok(_) => SelectProblem::NoColumn,
+                        Err(error) => error.to_string(),
+                        Ok(_) => NO_COLUMN.to_owned(),
                     },
                 }
             }
@@ -164,24 +167,32 @@ impl<'a> Data<'a> {
         let is_there = labels.names.iter().any(|label| label == wanted);
         let is_name = matches!(other.value, Value::Column(_));
         if is_name || (texts(side).is_some() && !is_there) {
-            return Err(self.error(other, SelectProblem::TwoTexts(one_line(wanted))));
+            let problem = format!(
+                "`{}` is a column of text, too, and columns of text are compared only with texts; put quotation marks \
+                 around a text",
+                one_line(wanted)
+            );
+            return Err(self.error(other, problem));
         }
         let wanted_number = match other.value {
             Value::Word(_) => number(wanted),
             _ => None,
         };
-        let is_equality = matches!(operator, Operator::Equal | Operator::NotEqual);
+        let is_equality = operator.is_equality();
         if !is_equality && wanted_number.is_none() {
-            return Err(self.error(other, SelectProblem::OrderOfText { column: one_line(name) }));
+            let name = one_line(name);
+            let problem = format!(
+                "`{name}` holds text, which is compared only with == and !=, or with a number"
+            );
+            return Err(self.error(other, problem));
         }
         let is_equal = |label: &String| {
             let numbers = number(label).zip(wanted_number);
-            label == wanted || numbers.is_some_and(|(a, b)| Operator::Equal.holds(a, b))
+            label == wanted || numbers.is_some_and(|(a, b)| Operator::EQUAL.holds(a, b))
         };
         let label_matches = |label: &String| match operator {
             _ if label.trim().is_empty() => false,
-            Operator::Equal => is_equal(label),
-            Operator::NotEqual => !is_equal(label),
+            _ if is_equality => is_equal(label) == (operator == Operator::EQUAL),
             _ => number(label).zip(wanted_number).is_some_and(|(a, b)| operator.holds(a, b)),
         };
         let are_matches: Vec<bool> = labels.names.iter().map(label_matches).collect();

@@ -19,17 +19,16 @@
 //! # Ok::<(), pinhole::select::SelectError>(())
 //! ```
 
-mod error;
 mod evaluate;
 mod parse;
+
+pub use parse::SelectError;
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::load::{Column, ColumnValues, Loaded};
 use crate::scene::sphere_array::SphereArray;
-
-pub use error::{SelectError, SelectProblem};
 
 /// An expression that says which spheres are kept.
 ///

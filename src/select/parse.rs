@@ -1,6 +1,7 @@
 //! Parses expressions, by recursive descent.
 
-use super::error::{SelectError, SelectProblem};
+use std::cmp::Ordering;
+
 use crate::text::one_line;
 
 /// How many parentheses may lie in each other, so that the stack suffices.
@@ -41,61 +42,53 @@ pub(super) enum Value {
     Column(String),
 }
 
+/// Which order of its sides a comparison accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Operator {
-    Equal,
-    NotEqual,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
+pub(super) struct Operator {
+    less: bool,
+    equal: bool,
+    greater: bool,
 }
 
 impl Operator {
+    pub(super) const EQUAL: Self = Self::new(false, true, false);
+
     /// All signs. A sign comes before those that it begins with.
     const SIGNS: [(&'static str, Self); 6] = [
-        ("==", Self::Equal),
-        ("!=", Self::NotEqual),
-        ("<=", Self::LessEqual),
-        (">=", Self::GreaterEqual),
-        ("<", Self::Less),
-        (">", Self::Greater),
+        ("==", Self::EQUAL),
+        ("!=", Self::new(true, false, true)),
+        ("<=", Self::new(true, true, false)),
+        (">=", Self::new(false, true, true)),
+        ("<", Self::new(true, false, false)),
+        (">", Self::new(false, false, true)),
     ];
+
+    const fn new(less: bool, equal: bool, greater: bool) -> Self {
+        Self { less, equal, greater }
+    }
 
     /// The operator that holds where this one does not.
     fn opposite(self) -> Self {
-        match self {
-            Self::Equal => Self::NotEqual,
-            Self::NotEqual => Self::Equal,
-            Self::Less => Self::GreaterEqual,
-            Self::LessEqual => Self::Greater,
-            Self::Greater => Self::LessEqual,
-            Self::GreaterEqual => Self::Less,
-        }
+        Self::new(!self.less, !self.equal, !self.greater)
     }
 
     /// The operator for the sides in the other order.
     pub(super) fn mirrored(self) -> Self {
-        match self {
-            Self::Equal | Self::NotEqual => self,
-            Self::Less => Self::Greater,
-            Self::LessEqual => Self::GreaterEqual,
-            Self::Greater => Self::Less,
-            Self::GreaterEqual => Self::LessEqual,
-        }
+        Self::new(self.greater, self.equal, self.less)
+    }
+
+    /// Whether it asks only whether the sides are equal or not.
+    pub(super) fn is_equality(self) -> bool {
+        self.less == self.greater
     }
 
     /// Compares two numbers. NaN never matches.
-    #[allow(clippy::float_cmp, reason = "the user asks whether numbers are equal")]
     pub(super) fn holds(self, a: f64, b: f64) -> bool {
-        match self {
-            Self::Equal => a == b,
-            Self::NotEqual => a != b && !a.is_nan() && !b.is_nan(),
-            Self::Less => a < b,
-            Self::LessEqual => a <= b,
-            Self::Greater => a > b,
-            Self::GreaterEqual => a >= b,
-        }
+        a.partial_cmp(&b).is_some_and(|order| match order {
+            Ordering::Less => self.less,
+            Ordering::Equal => self.equal,
+            Ordering::Greater => self.greater,
+        })
     }
 }
 
@@ -110,11 +103,7 @@ pub(super) fn parse(text: &str) -> Result<Expression, SelectError> {
 }
 
 /// An error at a byte of an expression.
-pub(super) fn error_at(
-    text: &str,
-    character: usize,
-    problem: impl Into<SelectProblem>,
-) -> SelectError {
+pub(super) fn error_at(text: &str, character: usize, problem: impl Into<String>) -> SelectError {
     SelectError::At { expression: one_line(text), character, problem: problem.into() }
 }
 
@@ -144,7 +133,7 @@ impl<'a> Parser<'a> {
         self.text.get(..self.at).unwrap_or_default().chars().count() + 1
     }
 
-    fn error(&self, problem: SelectProblem) -> SelectError {
+    fn error(&self, problem: impl Into<String>) -> SelectError {
         error_at(self.text, self.character(), problem)
     }
 
@@ -155,7 +144,7 @@ impl<'a> Parser<'a> {
             ("", Some(sign)) => format!("`{sign}`"),
             (word, _) => format!("`{}`", crate::text::shortened(word)),
         };
-        self.error(SelectProblem::Wanted { wanted, found })
+        self.error(format!("{wanted} belongs here, but {found} stands here"))
     }
 
     /// The next word, which is empty if there is none.
@@ -187,7 +176,7 @@ impl<'a> Parser<'a> {
             parts.push(self.all(is_negated)?);
         }
         if self.rest().starts_with('|') {
-            return Err(self.error(SelectProblem::Single('|')));
+            return Err(self.error("write ||, or the word"));
         }
         Ok(joined(parts, if is_negated { Expression::All } else { Expression::Any }))
     }
@@ -199,7 +188,7 @@ impl<'a> Parser<'a> {
             parts.push(self.one(is_negated)?);
         }
         if self.rest().starts_with('&') {
-            return Err(self.error(SelectProblem::Single('&')));
+            return Err(self.error("write &&, or the word"));
         }
         Ok(joined(parts, if is_negated { Expression::Any } else { Expression::All }))
     }
@@ -216,7 +205,9 @@ impl<'a> Parser<'a> {
         }
         if self.depth == DEEPEST {
             self.at = open;
-            return Err(self.error(SelectProblem::TooDeep(DEEPEST)));
+            return Err(self.error(format!(
+                "parentheses lie in more than {DEEPEST} others; simplify the expression"
+            )));
         }
         self.depth += 1;
         let inside = self.any(is_negated)?;
@@ -224,7 +215,7 @@ impl<'a> Parser<'a> {
         match self.rest() {
             "" => {
                 self.at = open;
-                Err(self.error(SelectProblem::Unclosed(')')))
+                Err(self.error("there is no closing )"))
             }
             _ if self.take(")") => Ok(inside),
             _ => Err(self.wanted("`and`, `or` or `)`")),
@@ -242,7 +233,7 @@ impl<'a> Parser<'a> {
         if self.operator()?.is_some() {
             self.at = before;
             self.rest();
-            return Err(self.error(SelectProblem::Chain));
+            return Err(self.error("a comparison has two sides; join two comparisons with `and`, such as 1 < z and z < 3"));
         }
         let operator = if is_negated { operator.opposite() } else { operator };
         Ok(Expression::Compare(Comparison { sides: [left, right], operator }))
@@ -253,7 +244,7 @@ impl<'a> Parser<'a> {
             return Ok(Some(found));
         }
         match self.rest().starts_with('=') {
-            true => Err(self.error(SelectProblem::SingleEqual)),
+            true => Err(self.error("write == to compare")),
             false => Ok(None),
         }
     }
@@ -284,7 +275,7 @@ impl<'a> Parser<'a> {
     fn quoted(&mut self, mark: char) -> Result<&'a str, SelectError> {
         let inside = self.rest().get(mark.len_utf8()..).unwrap_or_default();
         let Some(length) = inside.find(mark) else {
-            return Err(self.error(SelectProblem::Unclosed(mark)));
+            return Err(self.error(format!("there is no closing {mark}")));
         };
         self.at += length + 2 * mark.len_utf8();
         Ok(&inside[..length])
@@ -300,4 +291,30 @@ fn joined(mut parts: Vec<Expression>, joint: fn(Vec<Expression>) -> Expression) 
             joint(parts)
         }
     }
+}
+
+/// Why a selection cannot be read, or does not apply to the data.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SelectError {
+    /// A part of the expression is wrong.
+    #[error("character {character} of `{expression}`: {problem}")]
+    At {
+        /// The expression.
+        expression: String,
+        /// The character at which the wrong part begins, counted from 1.
+        character: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// No sphere matches.
+    #[error("`{expression}` selects none of the {of} spheres{hint}")]
+    Nothing {
+        /// The expression.
+        expression: String,
+        /// The number of spheres.
+        of: usize,
+        /// What may be the reason, after a semicolon; empty if it is not known.
+        hint: String,
+    },
 }

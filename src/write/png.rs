@@ -26,7 +26,7 @@ const CHUNK: usize = 1 << 14;
 /// If the picture lacks one of [the layers that the encoding needs](Encoding::layers), or if the encoder fails, which does not
 /// happen for sizes that PNG allows.
 pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
-    encode_with(picture, encoding, |_, _, _| {})
+    encode_samples(picture, encoding, &samples(picture, encoding)?)
 }
 
 /// Encodes a picture as [`encode`] does, and draws annotations over it. Exposure and tone curve do not change them.
@@ -39,11 +39,7 @@ pub fn encode_annotated(
     encoding: &Encoding,
     annotations: &Annotations,
 ) -> Result<Vec<u8>, PngError> {
-    encode_with(picture, encoding, |size, channels, samples| {
-        if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits(), samples) {
-            annotations.draw(&mut canvas);
-        }
-    })
+    encode_samples(picture, encoding, &samples_annotated(picture, encoding, annotations)?)
 }
 
 /// The samples of a picture that [`encode`] would compress: RGB or, if the encoding is transparent, RGBA, row by row from
@@ -52,7 +48,23 @@ pub fn encode_annotated(
 /// # Errors
 /// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
 pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
-    Ok(samples_of(picture, encoding)?.1)
+    let alpha = match encoding.layers().contains(Layer::Alpha) {
+        true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
+        false => None,
+    };
+    let pixels = Pixels { color: picture.color(), alpha, encoding };
+    Ok(match encoding.bits() {
+        Bits::Eight => pixels.samples(to_srgb8, |alpha| [(255.0 * unit(alpha)).round() as u8]),
+        Bits::Sixteen => {
+            let big_endian = |sample: u16| sample.to_be_bytes();
+            let alpha_sample = |alpha| big_endian((65535.0 * unit(alpha)).round() as u16);
+            let rgb = |rgb| {
+                let [[a, b], [c, d], [e, f]] = to_srgb16(rgb).map(big_endian);
+                [a, b, c, d, e, f]
+            };
+            pixels.samples(rgb, alpha_sample)
+        }
+    })
 }
 
 /// The samples of a picture that [`encode_annotated`] would compress: RGB or, if the encoding is transparent, RGBA, row
@@ -66,27 +78,18 @@ pub fn samples_annotated(
     encoding: &Encoding,
     annotations: &Annotations,
 ) -> Result<Vec<u8>, PngError> {
-    let (_, mut samples) = samples_of(picture, encoding)?;
+    let mut samples = samples(picture, encoding)?;
     let size = [picture.width(), picture.height()];
-    if let Some(mut canvas) =
-        Canvas::new(size, color_type(encoding).samples(), encoding.bits(), &mut samples)
-    {
+    let channels = kind(encoding).0.samples();
+    if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits(), &mut samples) {
         annotations.draw(&mut canvas);
     }
     Ok(samples)
 }
 
-/// Encodes a picture; `draw` may change its samples, and is given its size and the samples for each pixel.
-fn encode_with(
-    picture: &Image,
-    encoding: &Encoding,
-    draw: impl FnOnce([u32; 2], usize, &mut [u8]),
-) -> Result<Vec<u8>, PngError> {
-    let (depth, mut samples) = samples_of(picture, encoding)?;
-    let color_type = color_type(encoding);
-    let size = [picture.width(), picture.height()];
-    draw(size, color_type.samples(), &mut samples);
-    write(size, (color_type, depth), encoding.dots_per_inch(), None, &samples)
+fn encode_samples(image: &Image, encoding: &Encoding, samples: &[u8]) -> Result<Vec<u8>, PngError> {
+    let size = [image.width(), image.height()];
+    write(size, kind(encoding), encoding.dots_per_inch(), None, samples)
 }
 
 /// Encodes samples that [`samples`] returned for the same encoding as a PNG file, which carries a certificate as a text.
@@ -99,39 +102,16 @@ pub fn encode_certified(
     samples: &[u8],
     certificate: &str,
 ) -> Result<Vec<u8>, PngError> {
-    let depth = match encoding.bits() {
-        Bits::Eight => BitDepth::Eight,
-        Bits::Sixteen => BitDepth::Sixteen,
-    };
-    let kind = (color_type(encoding), depth);
-    write(size, kind, encoding.dots_per_inch(), Some(certificate), samples)
+    write(size, kind(encoding), encoding.dots_per_inch(), Some(certificate), samples)
 }
 
-fn color_type(encoding: &Encoding) -> ColorType {
-    if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb }
-}
-
-fn samples_of(picture: &Image, encoding: &Encoding) -> Result<(BitDepth, Vec<u8>), PngError> {
-    let alpha = match encoding.layers().contains(Layer::Alpha) {
-        true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
-        false => None,
-    };
-    let pixels = Pixels { color: picture.color(), alpha, encoding };
-    Ok(match encoding.bits() {
-        Bits::Eight => {
-            let alpha_sample = |alpha| [(255.0 * unit(alpha)).round() as u8];
-            (BitDepth::Eight, pixels.samples(to_srgb8, alpha_sample))
-        }
-        Bits::Sixteen => {
-            let big_endian = |sample: u16| sample.to_be_bytes();
-            let alpha_sample = |alpha| big_endian((65535.0 * unit(alpha)).round() as u16);
-            let rgb = |rgb| {
-                let [[a, b], [c, d], [e, f]] = to_srgb16(rgb).map(big_endian);
-                [a, b, c, d, e, f]
-            };
-            (BitDepth::Sixteen, pixels.samples(rgb, alpha_sample))
-        }
-    })
+/// The channels and the depth of an encoding.
+fn kind(encoding: &Encoding) -> (ColorType, BitDepth) {
+    let color = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
+    match encoding.bits() {
+        Bits::Eight => (color, BitDepth::Eight),
+        Bits::Sixteen => (color, BitDepth::Sixteen),
+    }
 }
 
 /// Encodes sRGB bytes as a PNG file. `size` is the width and height; `rgb` has three bytes per pixel, row by row from

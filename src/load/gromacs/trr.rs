@@ -4,14 +4,13 @@
 use super::{ANGSTROMS, cell_of, find_frames};
 use crate::load::binary::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
-use crate::load::format::{FrameIndex, FrameReader, Frames, Options};
-use crate::load::frame::FrameSpan;
-use crate::load::loaded::{Column, ColumnValues, Loaded};
+use crate::load::format::{FrameIndex, Frames};
+use crate::load::loaded::{Column, ColumnValues};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
 
 /// How frames are found and read one by one.
-pub(in crate::load) const FRAMES: Frames = Frames::Positions { find };
+pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 const MAGIC: i32 = 1993;
 /// The text that follows: its length with and without a NUL, and itself.
@@ -33,7 +32,7 @@ const BOX: usize = 2;
 const POSITIONS: usize = 7;
 
 /// Whether the first bytes are those of a TRR file.
-pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+pub(crate) fn starts(bytes: &[u8]) -> bool {
     bytes.strip_prefix(&MAGIC.to_be_bytes()).is_some_and(|rest| rest.starts_with(NAME))
 }
 
@@ -43,15 +42,13 @@ fn find(
     topology: Option<Topology>,
 ) -> Result<FrameIndex, LoadError> {
     let topology = Topology::required(topology, "trr")?;
-    let mut reader = Reader::new(source, Order::Big)?;
-    let mut found = find_frames(&mut reader, last, |reader, index| {
+    let next = |reader: &mut Reader<'_>, index| {
         let header = Header::read(reader, index)?;
         let bytes = header.sizes.iter().sum();
         reader.check(bytes, format!("frame {index}"))?;
         Ok((reader.offset + bytes, header.sizes[POSITIONS] > 0))
-    })?;
-    found.reader = Some(Box::new(Trr { topology }));
-    Ok(found)
+    };
+    find_frames(source, last, topology, next, read)
 }
 
 /// What a frame says about itself.
@@ -114,62 +111,51 @@ impl Header {
     }
 }
 
-#[derive(Debug)]
-struct Trr {
-    topology: Topology,
-}
-
-impl FrameReader for Trr {
-    fn read(
-        &self,
-        source: &mut dyn Bytes,
-        frame: usize,
-        span: &FrameSpan,
-        _: &Options,
-    ) -> Result<Loaded, LoadError> {
-        let mut reader = Reader::new(source, Order::Big)?;
-        reader.seek(span.bytes.start)?;
-        let header = Header::read(&mut reader, frame)?;
-        self.topology.check(frame, header.atoms)?;
-        let mut positions = Positions::default();
-        for (part, what) in PARTS.into_iter().enumerate() {
-            let offset = reader.offset;
-            let size = header.sizes[part];
-            if size == 0 || !(part == BOX || part >= POSITIONS) {
-                reader.seek(offset + size)?;
-                continue;
-            }
-            let bytes = reader.bytes(size, what)?;
-            let values: Vec<f64> = match header.is_double {
-                true => numbers::<f64>(&bytes, Order::Big).collect(),
-                false => numbers::<f32>(&bytes, Order::Big).map(f64::from).collect(),
-            };
-            match part {
-                BOX => {
-                    let edges = *values.first_chunk().unwrap_or(&[0.0; 9]);
-                    positions.cell = cell_of(edges, offset, frame)?;
-                }
-                POSITIONS => {
-                    positions.centers = values
-                        .as_chunks()
-                        .0
-                        .iter()
-                        .map(|center: &[f64; 3]| center.map(|length| length * ANGSTROMS))
-                        .collect();
-                    if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                        let width = if header.is_double { 8 } else { 4 };
-                        let (byte, atom) = (offset + width * index as u64, index / 3);
-                        let (axis, found) = (['x', 'y', 'z'][index % 3], values[index]);
-                        return Err(wrong_position(byte, frame, atom, axis, found));
-                    }
-                }
-                // Forces are energies for a length.
-                8 => positions.columns.extend(columns("velocity", &values, ANGSTROMS)),
-                _ => positions.columns.extend(columns("force", &values, 1.0 / ANGSTROMS)),
-            }
+fn read(
+    reader: &mut Reader<'_>,
+    frame: usize,
+    topology: &Topology,
+) -> Result<Positions, LoadError> {
+    let header = Header::read(reader, frame)?;
+    topology.check(frame, header.atoms)?;
+    let mut positions = Positions::default();
+    for (part, what) in PARTS.into_iter().enumerate() {
+        let offset = reader.offset;
+        let size = header.sizes[part];
+        if size == 0 || !(part == BOX || part >= POSITIONS) {
+            reader.seek(offset + size)?;
+            continue;
         }
-        self.topology.join(frame, positions)
+        let bytes = reader.bytes(size, what)?;
+        let values: Vec<f64> = match header.is_double {
+            true => numbers::<f64>(&bytes, Order::Big).collect(),
+            false => numbers::<f32>(&bytes, Order::Big).map(f64::from).collect(),
+        };
+        match part {
+            BOX => {
+                let edges = *values.first_chunk().unwrap_or(&[0.0; 9]);
+                positions.cell = cell_of(edges, offset, frame)?;
+            }
+            POSITIONS => {
+                positions.centers = values
+                    .as_chunks()
+                    .0
+                    .iter()
+                    .map(|center: &[f64; 3]| center.map(|length| length * ANGSTROMS))
+                    .collect();
+                if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                    let width = if header.is_double { 8 } else { 4 };
+                    let (byte, atom) = (offset + width * index as u64, index / 3);
+                    let (axis, found) = (['x', 'y', 'z'][index % 3], values[index]);
+                    return Err(wrong_position(byte, frame, atom, axis, found));
+                }
+            }
+            // Forces are energies for a length.
+            8 => positions.columns.extend(columns("velocity", &values, ANGSTROMS)),
+            _ => positions.columns.extend(columns("force", &values, 1.0 / ANGSTROMS)),
+        }
     }
+    Ok(positions)
 }
 
 fn columns(name: &str, values: &[f64], factor: f64) -> impl Iterator<Item = Column> {

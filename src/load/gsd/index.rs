@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use crate::load::binary::{Order, Reader, numbers, shown, wrong_start};
+use crate::load::binary::{Order, Reader, Scalar, shown, wrong_start};
 use crate::load::error::LoadError;
 
 const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
@@ -42,20 +42,26 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    /// Bytes of each of its numbers; `None` if its type is not known.
-    fn width(self) -> Option<u64> {
-        match self.kind {
-            1 | 5 | 11 => Some(1),
-            2 | 6 => Some(2),
-            3 | 7 | 9 => Some(4),
-            4 | 8 | 10 => Some(8),
-            _ => None,
-        }
+    /// The type of its numbers; `None` if it is not known.
+    fn scalar(self) -> Option<Scalar> {
+        Some(match self.kind {
+            1 | 11 => Scalar::U8,
+            2 => Scalar::U16,
+            3 => Scalar::U32,
+            4 => Scalar::U64,
+            5 => Scalar::I8,
+            6 => Scalar::I16,
+            7 => Scalar::I32,
+            8 => Scalar::I64,
+            9 => Scalar::F32,
+            10 => Scalar::F64,
+            _ => return None,
+        })
     }
 
     /// Bytes of all of its numbers; `None` if the type is not known or there are more than any file has.
     pub(super) fn bytes(self) -> Option<u64> {
-        self.rows.checked_mul(self.columns.into())?.checked_mul(self.width()?)
+        self.rows.checked_mul(self.columns.into())?.checked_mul(self.scalar()?.size() as u64)
     }
 
     /// Reads its numbers, row by row.
@@ -65,19 +71,9 @@ impl Chunk {
         name: &str,
     ) -> Result<Vec<f64>, LoadError> {
         let bytes = self.raw(reader, name)?;
-        let order = Order::Little;
-        Ok(match self.kind {
-            1 | 11 => numbers::<u8>(&bytes, order).map(f64::from).collect(),
-            2 => numbers::<u16>(&bytes, order).map(f64::from).collect(),
-            3 => numbers::<u32>(&bytes, order).map(f64::from).collect(),
-            4 => numbers::<u64>(&bytes, order).map(|number| number as f64).collect(),
-            5 => numbers::<i8>(&bytes, order).map(f64::from).collect(),
-            6 => numbers::<i16>(&bytes, order).map(f64::from).collect(),
-            7 => numbers::<i32>(&bytes, order).map(f64::from).collect(),
-            8 => numbers::<i64>(&bytes, order).map(|number| number as f64).collect(),
-            9 => numbers::<f32>(&bytes, order).map(f64::from).collect(),
-            _ => numbers::<f64>(&bytes, order).collect(),
-        })
+        let Some(scalar) = self.scalar() else { return Ok(Vec::new()) };
+        let numbers = bytes.chunks_exact(scalar.size());
+        Ok(numbers.map(|number| scalar.decode(number, Order::Little)).collect())
     }
 
     /// Reads its rows of text, each of which ends with a NUL unless it fills its row.
@@ -201,7 +197,7 @@ impl Index {
             .bytes()
             .and_then(|bytes| location.checked_add(bytes))
             .is_some_and(|end| end <= size);
-        Ok(if chunk.width().is_none() {
+        Ok(if chunk.scalar().is_none() {
             Err((frame, format!("frame {frame}: the chunk {name} has the unknown type {kind}")))
         } else if fits {
             Ok(Some(chunk))

@@ -3,19 +3,20 @@
 
 use std::collections::HashMap;
 
-use super::cell::Cell;
-use super::elements::{self, Types};
-use super::styles::fields_of;
-use super::{order, too_few_atoms, wrong_text};
+use mendeleev::Element;
+
+use super::{Cell, by_id, too_few_atoms, wrong_text};
+use crate::load::elements::appearance;
 use crate::load::error::LoadError;
 use crate::load::format::Options;
+use crate::load::labels::LabelsBuilder;
 use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
-use crate::load::table::Table;
+use crate::load::table::{Table, TableColumn};
 use crate::text::{shortened, without_byte_order_mark};
 
 /// Whether one of the first lines declares a number of atoms.
-pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+pub(crate) fn starts(bytes: &[u8]) -> bool {
     let lines = Lines::new(without_byte_order_mark(bytes)).skip(1).take(20);
     lines
         .map(without_comment)
@@ -23,7 +24,7 @@ pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
 }
 
 /// Reads a data file.
-pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let mut file = File::new(without_byte_order_mark(bytes));
     // The first line is a comment, whatever it is.
     file.next();
@@ -106,8 +107,8 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
         return Err(LoadError::new("there is no section Atoms; a data file of LAMMPS has one"));
     };
     let mut table = Table { columns: rows.read(&fields)? };
-    let mut notes = Vec::from_iter(elements::name_types(&mut table, &types));
-    let order = order::by_id(&mut table);
+    let mut notes = Vec::from_iter(name_types(&mut table, &types));
+    let order = by_id(&mut table);
     if let Some(rows) = velocities {
         notes.extend(add_velocities(&mut table, rows)?);
     }
@@ -129,7 +130,7 @@ fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, L
     let fields = ["id", "vx", "vy", "vz"].map(|name| Field::new(name, Kind::Number));
     let rows = Rows { may_be_longer: true, ..rows };
     let mut velocities = Table { columns: rows.read(&fields)? };
-    order::by_id(&mut velocities);
+    by_id(&mut velocities);
     let ids = |table: &Table| {
         let column = table.columns.iter().find(|column| column.name == "id")?;
         match &column.values {
@@ -255,4 +256,196 @@ fn numbers_of<const COUNT: usize>(line: &[u8]) -> Option<[f64; COUNT]> {
         *value = values.next().and_then(number).filter(|number| number.is_finite())?;
     }
     Some(numbers)
+}
+
+/// The columns of each style, as the manual's page of `read_data` lists them.
+const STYLES: [(&str, &str); 22] = [
+    ("angle", "id mol type x y z"),
+    ("atomic", "id type x y z"),
+    ("body", "id type bodyflag mass x y z"),
+    ("bond", "id mol type x y z"),
+    ("charge", "id type q x y z"),
+    ("dielectric", "id type q x y z mux muy muz area ed em epsilon curvature"),
+    ("dipole", "id type q x y z mux muy muz"),
+    ("dpd", "id type theta x y z"),
+    ("edpd", "id type edpd_temp edpd_cv x y z"),
+    ("electron", "id type q espin eradius x y z"),
+    ("ellipsoid", "id type ellipsoidflag density x y z"),
+    ("full", "id mol type q x y z"),
+    ("line", "id mol type lineflag density x y z"),
+    ("mdpd", "id type rho x y z"),
+    ("molecular", "id mol type x y z"),
+    ("peri", "id type volume density x y z"),
+    ("rheo", "id type status rho x y z"),
+    ("sph", "id type rho esph cv x y z"),
+    ("sphere", "id type diameter density x y z"),
+    ("spin", "id type x y z spx spy spz sp"),
+    ("template", "id type mol template_index template_atom x y z"),
+    ("tri", "id mol type triangleflag density x y z"),
+];
+
+fn columns_of(style: &str) -> Option<Vec<&'static str>> {
+    let (_, columns) = STYLES.iter().find(|(name, _)| *name == style)?;
+    Some(columns.split(' ').collect())
+}
+
+/// The columns of a style by its name, for messages.
+fn listed(style: &str) -> String {
+    columns_of(style).unwrap_or_default().join(",")
+}
+
+/// Returns the columns of the rows: those that are given, or those of the style, or those of the only style that they can
+/// be of. Three whole numbers behind them count how often the atom has crossed the box.
+fn fields_of(
+    rows: Rows<'_>,
+    style: Option<&str>,
+    given: &[String],
+) -> Result<Vec<Field>, LoadError> {
+    let line = rows.lines_before + 1;
+    let first: Vec<&[u8]> = Values { rest: Lines::new(rows.text).next().unwrap_or_default() }
+        .take_while(|value| !value.starts_with(b"#"))
+        .collect();
+    let found = first.len();
+    let is_whole =
+        |value: &&[u8]| std::str::from_utf8(value).is_ok_and(|text| text.parse::<i64>().is_ok());
+    let has_images = |count: usize| found == count + 3 && first[count..].iter().all(is_whole);
+    // A hybrid style has the columns of its parts in an order that only their names tell.
+    let style = style.and_then(|style| style.split_whitespace().next()).map(str::to_owned);
+    let names: Vec<String> = if given.is_empty() {
+        let columns = match &style {
+            Some(style) => {
+                columns_of(style).ok_or_else(|| {
+                    let style = shortened(style);
+                    let message = format!(
+                        "the columns of the style {style} are not known; name them, such as with --columns id,type,x,y,z"
+                    );
+                    LoadError::line(line, message)
+                })?
+            }
+            None if found == 5 || has_images(5) => columns_of("atomic").unwrap_or_default(),
+            None if rows.text.is_empty() => columns_of("atomic").unwrap_or_default(),
+            None => {
+                let message = format!(
+                    "atoms have {found} columns, and the file does not say which; name their style, as in `Atoms # full`, \
+                     or the columns, as with --columns {}",
+                    listed("charge")
+                );
+                return Err(LoadError::line(line, message));
+            }
+        };
+        columns.into_iter().map(str::to_owned).collect()
+    } else {
+        given.to_vec()
+    };
+    let images = if has_images(names.len()) { &["ix", "iy", "iz"][..] } else { &[] };
+    if found != names.len() + images.len() && !rows.text.is_empty() {
+        let (names, declared) = (names.join(" "), names.len());
+        let message = format!(
+            "this line has {found} columns, but {declared} have names ({names}); three whole numbers may follow"
+        );
+        return Err(LoadError::line(line, message));
+    }
+    let field = |name: &str| {
+        let is_text = matches!(name, "type" | "element");
+        Field::new(name, if is_text { Kind::Text } else { Kind::Number })
+    };
+    Ok(names.iter().map(String::as_str).chain(images.iter().copied()).map(field).collect())
+}
+
+/// What a data file says about types. Types are numbers, as text, or labels.
+#[derive(Debug, Default)]
+struct Types {
+    /// The mass of each type, by its number or label. Of several the first counts.
+    masses: Vec<(String, f64)>,
+    /// The label of each number.
+    labels: HashMap<String, String>,
+}
+
+impl Types {
+    fn add_mass(&mut self, name: String, mass: f64) {
+        self.masses.push((name, mass));
+    }
+
+    fn add_label(&mut self, number: String, label: String) {
+        self.labels.entry(number).or_insert(label);
+    }
+
+    fn label_of<'a>(&'a self, name: &'a str) -> &'a str {
+        self.labels.get(name).map_or(name, String::as_str)
+    }
+
+    /// The symbol of each type, by its label or else by its mass.
+    fn symbols_of(&self, names: &[String]) -> Vec<Option<String>> {
+        // The place of a mass in the file, by the number or label that it has there and by the label of the number.
+        let mut places = HashMap::new();
+        for (place, (name, _)) in self.masses.iter().enumerate() {
+            for name in [name, self.label_of(name)] {
+                places.entry(name).or_insert(place);
+            }
+        }
+        // Where nothing has another mass than 1, masses are in units of their own.
+        let has_masses = self.masses.iter().any(|(_, mass)| (mass - 1.0).abs() >= 1e-9);
+        let symbol = |name: &String| {
+            let label = self.label_of(name);
+            if label.parse::<f64>().is_err() && appearance(label).is_element {
+                return Some(label.to_owned());
+            }
+            let place = [name, label].into_iter().filter_map(|name| places.get(name)).min();
+            let (_, mass) = self.masses[*place.filter(|_| has_masses)?];
+            let distance = |element: &Element| (f64::from(element.atomic_weight()) - mass).abs();
+            let nearest =
+                Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            // Programs round masses to one digit after the point.
+            (distance(nearest) < 0.06).then(|| nearest.symbol().to_owned())
+        };
+        names.iter().map(symbol).collect()
+    }
+}
+
+/// Gives the types their labels, and the atoms the elements that these or the masses tell. Returns a note.
+fn name_types(table: &mut Table, types: &Types) -> Option<String> {
+    /// How many types the note names.
+    const MOST: usize = 16;
+    let column = table.columns.iter().find(|column| column.name == "type")?;
+    let ColumnValues::Labels(labels) = &column.values else { return None };
+    let symbols = types.symbols_of(&labels.names);
+    let named = || labels.names.iter().zip(&symbols);
+    let mut known = named().filter_map(|(name, symbol)| {
+        let (label, symbol) = (types.label_of(name), symbol.as_ref()?);
+        (label != symbol).then(|| format!("{} is {symbol}", shortened(label)))
+    });
+    let mut shown: Vec<String> = known.by_ref().take(MOST).collect();
+    let more = known.count();
+    if more > 0 {
+        shown.push(format!("{more} more"));
+    }
+    let species: Vec<&str> = named()
+        .map(|(name, symbol)| symbol.as_deref().unwrap_or_else(|| types.label_of(name)))
+        .collect();
+    let is_any = symbols.iter().any(Option::is_some);
+    let species = is_any.then(|| relabelled(column, "species", &species)).flatten();
+    let labels: Vec<&str> = labels.names.iter().map(|name| types.label_of(name)).collect();
+    let types = relabelled(column, "type", &labels)?;
+    table.columns.retain(|column| column.name != "type");
+    table.columns.push(types);
+    let has_elements = table.columns.iter().any(|column| column.name == "element");
+    if has_elements {
+        return None;
+    }
+    table.columns.extend(species);
+    let note =
+        format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
+    (!shown.is_empty()).then_some(note)
+}
+
+/// A column of text from another one, with other texts in place of its names.
+fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
+    let ColumnValues::Labels(labels) = &column.values else { return None };
+    let mut labels = labels.clone();
+    // Several types may be of one element.
+    let mut unique = LabelsBuilder::default();
+    let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
+    labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
+    labels.names = unique.names;
+    Some(TableColumn::labels(name, labels))
 }

@@ -2,20 +2,19 @@
 
 use std::io;
 
-use super::cell::{Cell, Shape};
-use super::{order, too_few_atoms, wrong_text};
+use super::{Cell, Shape, by_id, too_few_atoms, wrong_text};
 use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
-use crate::load::format::{FrameIndex, Frames, Options};
-use crate::load::frame::{FrameSpan, FrameText};
-use crate::load::line_reader::LineReader;
+use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
 use crate::load::loaded::{ColumnValues, Loaded};
-use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
-use crate::load::table::{self, Table, TableColumn};
+use crate::load::rows::{Field, Kind, Lines, Rows, Values, number};
+use crate::load::source::LineReader;
+use crate::load::table::{Table, TableColumn};
+use crate::load::{rows, table};
 use crate::text::without_byte_order_mark;
 
 /// How frames are found and read one by one.
-pub(in crate::load) const FRAMES: Frames = Frames::Lines { find, read };
+pub(crate) const FRAMES: Frames = Frames::Lines { find, read };
 
 /// Names of positions, in the order in which they are preferred, and whether they are fractions of the box.
 const POSITIONS: [([&str; 3], bool); 4] = [
@@ -26,7 +25,7 @@ const POSITIONS: [([&str; 3], bool); 4] = [
 ];
 
 /// Whether the first item is one that begins a dump.
-pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+pub(crate) fn starts(bytes: &[u8]) -> bool {
     let bytes = without_byte_order_mark(bytes).trim_ascii_start();
     [&b"ITEM: TIMESTEP"[..], b"ITEM: UNITS", b"ITEM: TIME"]
         .iter()
@@ -142,7 +141,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
     let mut table = Table { columns: rows.read(&fields(names, lines.rest))? };
     make_positions(&mut table, &cell);
     let is_noted = types_as_elements(&mut table);
-    let order = order::by_id(&mut table);
+    let order = by_id(&mut table);
     let line_of = |row| line + 1 + order.as_ref().map_or(row, |order| order[row] as usize);
     let columns = table.names();
     let mut loaded = rows::into_loaded(table, options, line_of).map_err(|error| match error.kind {

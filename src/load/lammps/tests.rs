@@ -1,34 +1,10 @@
 //! Dumps and data files that are made here.
 
-use super::data_tests::DATA;
-use crate::load::{self, ColumnValues, Loaded, Options};
-use crate::scene::sphere_array::SphereArray;
+use crate::load::tests::{centers, damage, labels, numbers, spheres};
+use crate::load::{self, Loaded, Options};
 
 fn dump(text: &str) -> Loaded {
     load::from_bytes(text.as_bytes(), "dump.0", &Options::default()).unwrap()
-}
-
-pub(super) fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
-    match &loaded.spheres {
-        SphereArray::F64(spheres) => spheres,
-        SphereArray::F32(_) => panic!("f32"),
-    }
-}
-
-pub(super) fn centers(loaded: &Loaded) -> Vec<[f64; 3]> {
-    spheres(loaded).iter().map(|[x, y, z, _]| [*x, *y, *z]).collect()
-}
-
-pub(super) fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
-    match loaded.column(column) {
-        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
-        other => panic!("{column}: {other:?}"),
-    }
-}
-
-pub(super) fn labels(loaded: &Loaded, column: &str) -> Vec<String> {
-    let labels = loaded.labels(column).unwrap();
-    labels.indices.iter().map(|index| labels.names[*index as usize].clone()).collect()
 }
 
 const HEAD: &str = "ITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\n";
@@ -131,24 +107,72 @@ fn names_of_columns_may_be_given() {
 fn no_input_panics() {
     let text =
         format!("{HEAD}{BOX}ITEM: ATOMS id type xs ys zs\n2 1 .5 .5 .5\n1 2 0 0 0\n").repeat(2);
-    let mut random = fastrand::Rng::with_seed(1);
-    for _ in 0..5000 {
-        let mut bytes = if random.bool() { text.clone() } else { DATA.to_owned() }.into_bytes();
-        for _ in 0..random.usize(1..6) {
-            let at = random.usize(..bytes.len().max(1));
-            if bytes.is_empty() {
-                break;
-            }
-            match random.u8(..4) {
-                0 => bytes[at] = random.u8(..),
-                1 => drop(bytes.remove(at)),
-                2 => bytes.insert(at, *random.choice(b"\n\t -.e09\xff").unwrap()),
-                _ => bytes.truncate(at.max(1)),
-            }
-        }
-        for format in ["lammps-dump", "lammps-data"] {
-            let options = Options::default().with_format(load::Format::of_name(format).unwrap());
-            drop(load::from_bytes(&bytes, "", &options));
-        }
+    for (text, format) in [
+        (text.as_str(), "lammps-dump"),
+        (&text, "lammps-data"),
+        (DATA, "lammps-dump"),
+        (DATA, "lammps-data"),
+    ] {
+        let format = load::Format::of_name(format).unwrap();
+        damage(text, b"\n\t -.e09\xff", |bytes, frame| {
+            let options = Options::default();
+            let options = if format.has_frames() { options.with_frame(frame) } else { options };
+            format.read(bytes, &options).ok()
+        });
     }
+}
+
+const DATA: &str = "made by hand\n\n3 atoms\n2 atom types\n0 4 xlo xhi\n0 5 ylo yhi # a comment\n-1 5 zlo zhi\n\
+    1 0 0.5 xy xz yz\n\nMasses\n\n1 15.9994 # O\n2 1.008\n\nBond Coeffs\n\n1 2 3\n\nAtoms # full\n\n2 1 2 0.4 1 0 0 0 0 -1\n\
+    1 1 1 -0.8 0 0 0 0 0 0 # first\n3 1 2 0.4 0 1 0 0 0 0\n\nVelocities\n\n3 7 8 9\n1 1 2 3\n2 4 5 6\n\nBonds\n\n1 1 1 2\n";
+
+fn data(text: &str) -> Result<Loaded, String> {
+    let loaded = load::from_bytes(text.as_bytes(), "a.data", &Options::default());
+    loaded.map_err(|error| error.to_string())
+}
+
+#[test]
+fn data_files() {
+    let loaded = data(DATA).unwrap();
+    assert_eq!(centers(&loaded), [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    assert_eq!(labels(&loaded, "species"), ["O", "H", "H"]);
+    assert_eq!(labels(&loaded, "type"), ["1", "2", "2"]);
+    assert_eq!(numbers(&loaded, "q"), [-0.8, 0.4, 0.4]);
+    assert_eq!(numbers(&loaded, "iz"), [0.0, -1.0, 0.0]);
+    assert_eq!(numbers(&loaded, "vy"), [2.0, 5.0, 8.0]);
+    assert_eq!(loaded.cell, Some([[4.0, 0.0, 0.0], [1.0, 5.0, 0.0], [0.0, 0.5, 6.0]]));
+    assert!(loaded.notes[0].ends_with("by their masses: 2 is H, 1 is O"), "{:?}", loaded.notes);
+    // By content, as these files often have no extension.
+    let named = load::from_bytes(DATA.as_bytes(), "data.water", &Options::default()).unwrap();
+    assert_eq!(named, loaded);
+    let labelled = DATA.replace("\nMasses", "\nAtom Type Labels\n\n1 OW\n2 HW\n\nMasses");
+    let labelled = data(&labelled).unwrap();
+    assert_eq!(labels(&labelled, "type"), ["OW", "HW", "HW"]);
+    assert_eq!(labels(&labelled, "species"), ["O", "H", "H"]);
+    // Masses of one are in units of their own; masses of beads are of no element.
+    for masses in ["1 1\n2 1\n", "1 45.5\n2 36.3\n"] {
+        let beads = data(&DATA.replace("1 15.9994 # O\n2 1.008\n", masses)).unwrap();
+        assert_eq!(beads.labels("species"), None, "{masses}");
+    }
+}
+
+#[test]
+fn styles_of_data_files() {
+    let atom =
+        |style: &str, values: &str| data(&format!("\n1 atoms\n\nAtoms{style}\n\n{values}\n"));
+    for (style, values) in [
+        ("", "1 1 1 2 3"),
+        ("", "1 1 1 2 3 0 0 0"),
+        (" # atomic", "1 1 1 2 3"),
+        (" # charge", "1 1 0.5 1 2 3"),
+        ("# molecular", "1 1 1 1 2 3 0 0 -1"),
+        (" # sphere", "1 1 0.5 2.5 1 2 3"),
+    ] {
+        let loaded = atom(style, values).unwrap();
+        assert_eq!(centers(&loaded), [[1.0, 2.0, 3.0]], "{style}");
+    }
+    assert_eq!(spheres(&atom(" # sphere", "1 1 0.5 2.5 1 2 3").unwrap())[0][3], 0.25);
+    let named = Options::default().with_columns(["id", "type", "q", "x", "y", "z"]);
+    let text = b"\n1 atoms\n\nAtoms\n\n1 1 0.5 1 2 3\n";
+    assert_eq!(centers(&load::from_bytes(text, "a.lmp", &named).unwrap()), [[1.0, 2.0, 3.0]]);
 }

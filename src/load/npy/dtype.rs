@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::load::binary::{Number, Order};
+use crate::load::binary::{Number, Order, Scalar};
 use crate::load::loaded::Labels;
 use crate::load::table::TableColumn;
 use crate::text::{one_line, shortened};
@@ -48,7 +48,7 @@ impl Dtype {
 
     /// Whether its elements are real numbers.
     pub(super) fn is_real(&self) -> bool {
-        matches!((self.kind, self.size), ('f', 2 | 4 | 8) | ('i' | 'u', 1 | 2 | 4 | 8))
+        (self.kind, self.size) == ('f', 2) || self.scalar().is_some()
     }
 
     /// Whether its elements can be a column: real numbers, truth values as 0 and 1, or text.
@@ -60,13 +60,21 @@ impl Dtype {
         matches!(self.kind, 'S' | 'a' | 'U')
     }
 
-    /// The largest value of the type, if it is u8 or u16: colours are fractions of it.
-    pub(super) fn full(&self) -> Option<f64> {
-        match (self.kind, self.size) {
-            ('u', 1) => Some(255.0),
-            ('u', 2) => Some(65535.0),
-            _ => None,
-        }
+    /// The type of its elements, if other formats have it as well.
+    fn scalar(&self) -> Option<Scalar> {
+        Some(match (self.kind, self.size) {
+            ('f', 4) => Scalar::F32,
+            ('f', 8) => Scalar::F64,
+            ('i', 1) => Scalar::I8,
+            ('i', 2) => Scalar::I16,
+            ('i', 4) => Scalar::I32,
+            ('i', 8) => Scalar::I64,
+            ('u', 1) => Scalar::U8,
+            ('u', 2) => Scalar::U16,
+            ('u', 4) => Scalar::U32,
+            ('u', 8) => Scalar::U64,
+            _ => return None,
+        })
     }
 
     /// Decodes a column. The type must be one that [`Dtype::is_column`] and the data must have the place.
@@ -80,7 +88,7 @@ impl Dtype {
         }
         let mut column =
             TableColumn::numbers(name, values.map(|value| self.number(value)).collect());
-        column.full = self.full();
+        column.full = self.scalar().and_then(Scalar::full);
         column
     }
 
@@ -97,19 +105,11 @@ impl Dtype {
 
     /// Decodes a real number.
     pub(super) fn number(&self, bytes: &[u8]) -> f64 {
-        let order = self.order;
-        match (self.kind, self.size) {
-            ('f', 2) => half(u16::decode(bytes, order)),
-            ('f', 4) => f32::decode(bytes, order).into(),
-            ('f', _) => f64::decode(bytes, order),
-            ('i', 1) => i8::decode(bytes, order).into(),
-            ('i', 2) => i16::decode(bytes, order).into(),
-            ('i', 4) => i32::decode(bytes, order).into(),
-            ('i', _) => i64::decode(bytes, order) as f64,
-            (_, 1) => u8::decode(bytes, order).into(),
-            (_, 2) => u16::decode(bytes, order).into(),
-            (_, 4) => u32::decode(bytes, order).into(),
-            _ => u64::decode(bytes, order) as f64,
+        match self.scalar() {
+            Some(scalar) => scalar.decode(bytes, self.order),
+            None if self.kind == 'f' => half(u16::decode(bytes, self.order)),
+            // Truth values.
+            None => u8::decode(bytes, self.order).into(),
         }
     }
 

@@ -6,17 +6,16 @@ pub mod pixels;
 
 use std::collections::TryReserveError;
 
-use dtype::{Dtype, Place};
-use header::{Elements, Header};
-
 use super::binary::component_names;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
 use super::loaded::Loaded;
-use super::numbers::{Layout, rows};
+use super::raw::{Layout, rows};
 use super::table::{Table, TableColumn};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
+use dtype::{Dtype, Place};
+use header::{Elements, Header};
 
 /// Names of the columns of plain arrays with these numbers of columns.
 const COLUMNS: [&[&str]; 5] = [

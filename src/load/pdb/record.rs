@@ -1,5 +1,6 @@
-//! Splits a PDB file into lines, and reads fields by their columns.
+//! Splits a PDB file into lines, and reads fields by their columns: numbers, residue numbers in hybrid-36, and the cell.
 
+use crate::load::atoms::cell_edges;
 use crate::load::error::{LoadError, Place};
 use crate::load::rows::number;
 
@@ -162,6 +163,84 @@ pub(super) fn not_valid(text: &[u8], kind: &str) -> String {
         _ => {
             let found = String::from_utf8_lossy(text);
             format!("`{}`, which is not {kind}", found.escape_debug())
+        }
+    }
+}
+
+/// Count of the four-digit numbers in base 36 that begin with a given digit.
+const BLOCK: i32 = 36 * 36 * 36;
+
+/// Decodes a field that has no blanks around it; `None` if it is not a valid number.
+pub(super) fn hybrid36(text: &[u8]) -> Option<i32> {
+    match *text {
+        [first @ b'A'..=b'Z', b, c, d] => {
+            base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000)
+        }
+        [first @ b'a'..=b'z', b, c, d] => {
+            base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000)
+        }
+        _ => std::str::from_utf8(text).ok()?.parse().ok(),
+    }
+}
+
+/// Decodes four digits in base 36. The digit 10 is the letter `ten`, and the letters after it follow.
+fn base36(digits: [u8; 4], ten: u8) -> Option<i32> {
+    digits.into_iter().try_fold(0, |number, digit| {
+        let value = match digit {
+            b'0'..=b'9' => digit - b'0',
+            _ => digit.checked_sub(ten).filter(|letter| *letter < 26)? + 10,
+        };
+        Some(number * 36 + i32::from(value))
+    })
+}
+
+/// Returns the edge vectors of the cell, the first along x and the second in the plane of x and y; or `None` if the
+/// record is only a placeholder, as in files of structures that are not crystals.
+pub(super) fn cell_of(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
+    const FIELDS: [(&str, usize, usize); 6] = [
+        ("length of the cell's edge a", 7, 15),
+        ("length of the cell's edge b", 16, 24),
+        ("length of the cell's edge c", 25, 33),
+        ("cell's angle alpha", 34, 40),
+        ("cell's angle beta", 41, 47),
+        ("cell's angle gamma", 48, 54),
+    ];
+    record.must_have(&FIELDS)?;
+    let mut values = [0.0; 6];
+    for (value, (what, first, last)) in values.iter_mut().zip(FIELDS) {
+        *value = record.number(what, first, last)?;
+    }
+    let [a, b, c, alpha, beta, gamma] = values;
+    let (lengths, angles) = ([a, b, c], [alpha, beta, gamma]);
+    cell_edges(lengths, angles).map_err(|message| LoadError::line(record.line, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimal_then_capitals_then_small_letters() {
+        for (text, number) in [
+            ("0", 0),
+            ("-999", -999),
+            ("9999", 9999),
+            ("A000", 10_000),
+            ("A001", 10_001),
+            ("A00Z", 10_035),
+            ("A010", 10_036),
+            ("ZZZZ", 1_223_055),
+            ("a000", 1_223_056),
+            ("zzzz", 2_436_111),
+        ] {
+            assert_eq!(hybrid36(text.as_bytes()), Some(number), "{text}");
+        }
+    }
+
+    #[test]
+    fn neither() {
+        for text in ["", "A00", "A0a0", "a0A0", "A 00", "1A00", "A00-", "*", "****", "1.5", "--1"] {
+            assert_eq!(hybrid36(text.as_bytes()), None, "{text}");
         }
     }
 }

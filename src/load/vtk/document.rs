@@ -7,9 +7,8 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use crate::load::binary::Order;
+use crate::load::binary::{Order, Scalar};
 use crate::load::error::{LoadError, LoadErrorKind};
-use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
 
 /// How a file stores bytes.

@@ -9,9 +9,9 @@ use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{Light, LightFrame, LightKind};
 use crate::scene_file::span::{
-    Keys, Lines, Number, SceneFileError, Span, range_of, refuse_foreign,
+    ColorValue, Keys, Lines, Number, SceneFileError, Span, Vector, name_of, range_of,
+    refuse_foreign, scaled,
 };
-use crate::scene_file::value::{ColorValue, Vector, scaled};
 
 /// The kinds of lights that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -23,20 +23,9 @@ enum Kind {
     Sphere,
 }
 
-impl Kind {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Head => "head",
-            Self::Directional => "directional",
-            Self::Point => "point",
-            Self::Sphere => "sphere",
-        }
-    }
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene_file) struct LightTable {
+pub(crate) struct LightTable {
     kind: Kind,
     at: Option<Spanned<LightFrame>>,
     toward: Option<Spanned<Vector>>,
@@ -53,7 +42,7 @@ pub(in crate::scene_file) struct LightTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene_file) struct SunTable {
+pub(crate) struct SunTable {
     toward: Option<Spanned<Vector>>,
     direction: Option<Spanned<Vector>>,
     angular_radius: Option<Number>,
@@ -150,7 +139,7 @@ fn position(
     keys: &Keys<'_>,
 ) -> Result<DVec3, SceneFileError> {
     let Some(vector) = vector else {
-        let kind = kind.name();
+        let kind = name_of(kind);
         return Err(keys
             .table
             .error(format!("a {kind} light needs a position; add `position = [x, y, z]`")));
@@ -176,7 +165,7 @@ pub(super) fn read(
     let (far, near) = (is_one(&[Kind::Directional]), is_one(&[Kind::Point, Kind::Sphere]));
     refuse_foreign(
         lines,
-        kind.name(),
+        &name_of(kind),
         &[
             ("at", range_of(&table.at), kind != Kind::Head),
             ("toward", range_of(&table.toward), far),

@@ -1,33 +1,25 @@
 //! Reads the tables of a scene file that concern light, and makes checked render settings of them.
 
+mod lights;
+mod sky;
+mod studio;
+
+pub(super) use lights::{LightTable, SunTable};
+pub(super) use sky::{GroundTable, SkyTable};
+pub(super) use studio::{PathTable, SamplingTable, StudioTable};
+
 use std::ops::Range;
 
 use serde::Deserialize;
 use toml::Spanned;
-
-mod either;
-mod ground;
-mod lights;
-mod samples;
-mod sky;
-mod studio;
-
-pub(super) use ground::GroundTable;
-pub(super) use lights::{LightTable, SunTable};
-pub(super) use samples::{PathTable, SamplingTable};
-pub(super) use sky::SkyTable;
-pub(super) use studio::StudioTable;
-
-use either::either;
-use ground::GroundPlan;
-use sky::SkyPlan;
-use studio::StudioPlan;
 
 use super::span::{Lines, SceneFileError, WithSpan, range_of};
 use crate::exact::Table;
 use crate::light::Light;
 use crate::render::{PathTracing, Sampling};
 use crate::style::Given;
+use sky::{GroundPlan, SkyPlan};
+use studio::{StudioPlan, either};
 
 /// The integrators that a scene file can name. The integrator computes the colour of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -90,14 +82,18 @@ impl LightingTables {
     fn given(&self) -> Given {
         let [occlusion_radius, outline, outline_depth] =
             self.studio.as_ref().map_or([false; 3], |studio| studio.get_ref().0.given());
-        let light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let light = self.names_light();
         Given { occlusion_radius, outline, outline_depth, ground: self.ground.is_some(), light }
+    }
+
+    fn names_light(&self) -> bool {
+        self.lights.is_some() || self.sun.is_some() || self.sky.is_some()
     }
 
     /// Takes the keys of these tables, and those of a style where there are none. A file that names lights, a sun or a
     /// sky gets none of the style's.
     fn over(self, style: Self) -> Self {
-        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let names_light = self.names_light();
         Self {
             shading: self.shading,
             integrator: self.integrator.or(style.integrator),
@@ -119,16 +115,16 @@ impl LightingTables {
         given: Given,
         lines: &Lines<'_>,
     ) -> Result<SceneLighting, SceneFileError> {
-        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let names_light = self.names_light();
         let sun = self.sun.map(|sun| lights::read_sun(sun, lines)).transpose()?;
         let lights = self.lights.into_iter().flatten().map(|light| lights::read(light, lines));
         let lights = lights.chain(sun.map(Ok)).collect::<Result<Vec<_>, _>>()?;
         Ok(SceneLighting {
             integrator,
             studio: StudioPlan::read(self.studio, lines)?,
-            path: samples::read_path(self.path, lines)?,
-            is_denoised: samples::is_denoised(&self.sampling),
-            sampling: samples::read_sampling(self.sampling, lines)?,
+            path: studio::read_path(self.path, lines)?,
+            is_denoised: studio::is_denoised(&self.sampling),
+            sampling: studio::read_sampling(self.sampling, lines)?,
             lights: names_light.then_some(lights),
             sky: self.sky.map(|sky| SkyPlan::read(sky, lines)).transpose()?,
             ground: self.ground.map(|ground| GroundPlan::read(ground, lines)).transpose()?,

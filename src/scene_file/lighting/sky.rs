@@ -1,18 +1,21 @@
-//! Reads the table `[sky]`.
+//! Reads the tables `[sky]` and `[ground]`.
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::exact::Table;
+use crate::geometry::math::{MAX_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::environment::Environment;
-use crate::light::{Sky, SkyLight};
+use crate::light::{Ground, Sky, SkyLight};
+use crate::scene::Scene;
 use crate::scene_file::span::{
-    Keys, Lines, Number, SceneFileError, WithSpan, range_of, refuse_foreign,
+    ColorValue, Keys, Lines, Number, SceneFileError, Vector, WithSpan, name_of, range_of,
+    refuse_foreign, scaled,
 };
-use crate::scene_file::value::{ColorValue, scaled};
 
 /// The kinds of skies that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -23,19 +26,9 @@ enum Kind {
     Image,
 }
 
-impl Kind {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Gradient => "gradient",
-            Self::Image => "image",
-        }
-    }
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene_file) struct SkyTable {
+pub(crate) struct SkyTable {
     kind: Kind,
     color: Option<Spanned<ColorValue>>,
     zenith: Option<Spanned<ColorValue>>,
@@ -49,7 +42,7 @@ pub(in crate::scene_file) struct SkyTable {
 
 /// The sky as the file gives it; its image is not loaded yet.
 #[derive(Debug)]
-pub(in crate::scene_file) struct SkyPlan {
+pub(crate) struct SkyPlan {
     light: SkyPlanLight,
     is_visible: bool,
 }
@@ -70,7 +63,7 @@ impl SkyPlan {
         let kind = table.kind;
         refuse_foreign(
             lines,
-            kind.name(),
+            &name_of(kind),
             &[
                 ("color", range_of(&table.color), kind == Kind::Constant),
                 ("zenith", range_of(&table.zenith), kind == Kind::Gradient),
@@ -111,17 +104,14 @@ impl SkyPlan {
         Ok(Self { light, is_visible: table.visible.unwrap_or(true) })
     }
 
-    pub(in crate::scene_file) fn image(&self) -> Option<&str> {
+    pub(crate) fn image(&self) -> Option<&str> {
         match &self.light {
             SkyPlanLight::Image { file, .. } => Some(&file.value),
             SkyPlanLight::Known(_) => None,
         }
     }
 
-    pub(in crate::scene_file) fn sky(
-        &self,
-        image: Option<Environment>,
-    ) -> Result<Sky, SceneFileError> {
+    pub(crate) fn sky(&self, image: Option<Environment>) -> Result<Sky, SceneFileError> {
         let light = match &self.light {
             SkyPlanLight::Known(light) => light.clone(),
             SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {
@@ -133,5 +123,84 @@ impl SkyPlan {
             },
         };
         Ok(Sky { light, is_visible: self.is_visible })
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GroundTable {
+    height: Option<Number>,
+    point: Option<Spanned<Vector>>,
+    normal: Option<Spanned<Vector>>,
+    #[serde(default)]
+    color: ColorValue,
+    #[serde(default)]
+    shadow_catcher: bool,
+}
+
+/// The ground as the file gives it. Without a point, it will touch the lowest sphere of the scene.
+#[derive(Debug)]
+pub(crate) struct GroundPlan {
+    point: Option<DVec3>,
+    normal: DVec3,
+    color: LinearRgb,
+    is_shadow_catcher: bool,
+}
+
+impl GroundPlan {
+    pub(super) fn read(
+        table: Spanned<Table<GroundTable>>,
+        lines: &Lines<'_>,
+    ) -> Result<WithSpan<Self>, SceneFileError> {
+        let span = lines.span(table.span().start);
+        let GroundTable { height, point, normal, color, shadow_catcher } = table.into_inner().0;
+        if let (Some(height), Some(_)) = (&height, point.as_ref().or(normal.as_ref())) {
+            return Err(lines.span(height.span().start).error(
+                "`height` cannot be combined with `point` or `normal`; remove one of them",
+            ));
+        }
+        if let (Some(normal), None) = (&normal, &point) {
+            let span = lines.span(normal.span().start);
+            return Err(span.error("`normal` needs a point on the ground; add `point = [x, y, z]`"));
+        }
+        let is_near = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= MAX_LENGTH);
+        for (key, vector) in [("point", &point), ("normal", &normal)] {
+            let Some(vector) = vector else {
+                continue;
+            };
+            let [x, y, z] = vector.get_ref().0;
+            let is_direction = key == "point" || unit(DVec3::new(x, y, z)).is_some();
+            if !(is_near(&[x, y, z]) && is_direction) {
+                return Err(lines.span(vector.span().start).error(format!(
+                    "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, \
+                     and a normal must not have the length 0"
+                )));
+            }
+        }
+        let keys = Keys { lines, numbers: vec![("height", height)], table: span };
+        let range = "between -2^56 and 2^56";
+        let height = keys.within("height", [-MAX_LENGTH, MAX_LENGTH], range)?;
+        let point = point.map(|point| DVec3::from(point.get_ref().0));
+        let value = Self {
+            point: point.or(height.map(|height| DVec3::new(0.0, height, 0.0))),
+            normal: normal.map_or(DVec3::Y, |normal| DVec3::from(normal.get_ref().0)),
+            color: color.0,
+            is_shadow_catcher: shadow_catcher,
+        };
+        Ok(WithSpan { value, span })
+    }
+
+    pub(crate) fn ground(&self, scene: &Scene) -> Ground {
+        let lowest = || {
+            let bounds = scene.bounds_to_frame();
+            let center = bounds.center();
+            DVec3::new(center.x, bounds.min().y, center.z)
+        };
+        Ground {
+            point: self.point.unwrap_or_else(lowest),
+            normal: self.normal,
+            color: self.color,
+            is_shadow_catcher: self.is_shadow_catcher,
+        }
     }
 }
