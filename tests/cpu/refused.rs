@@ -1,9 +1,10 @@
-//! Files that readers refuse: those of the cases in `tests/files/refused`, with the error that each must give. The tests
+//! Files of data and scene files that are refused: those of the cases in `tests/files/refused`, with the error that each must give. The tests
 //! of the program run the same cases, and rewrite them; see CONTRIBUTING.md.
 
 use std::path::Path;
 
 use pinhole::load::{self, Options};
+use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 
 use crate::cases::{Case, answered};
 
@@ -21,9 +22,25 @@ fn refused_files() {
     }
 }
 
+/// The first error, whether it appears in parsing, in the scene, in its camera or in the settings.
+fn scene_file_error(text: &str) -> Option<SceneFileError> {
+    let settings = || {
+        let file = SceneFile::parse(text)?;
+        let scene = file.scene(&[])?;
+        let camera = file.camera(&file.film, &scene)?;
+        let kind = file.integrator().unwrap_or(IntegratorKind::Studio);
+        file.settings(kind, &scene, camera.as_ref(), None)
+    };
+    settings().err()
+}
+
 /// What the program says to a file that cannot be read.
 fn answer(Case { files, arguments }: &Case<'_>) -> String {
     let [(name, bytes)] = &files[..] else { panic!("{arguments}: not one file") };
+    if name.ends_with(".toml") {
+        let error = scene_file_error(str::from_utf8(bytes).unwrap()).unwrap();
+        return format!("exit code 1\nerror: {name}: {error}\n");
+    }
     let words = arguments.split(' ');
     let flag = |name| words.clone().skip_while(|word| *word != name).nth(1);
     let mut options = Options::default();

@@ -20,6 +20,7 @@ pub(super) fn npy() -> Vec<Seed> {
             files::npy(">f8", true, "(2, 3)", &big[..48]),
             Options::default().with_radius(1.0),
         ),
+        Seed::new(files::structured()),
     ]
 }
 
@@ -30,6 +31,7 @@ pub(super) fn npz() -> Vec<Seed> {
         Seed::new(files::zip(&[("other.npy", &spheres), ("spheres.npy", &spheres)], false)),
         Seed::new(files::zip(&[("arr_0.npy", &spheres)], true)),
         Seed::with_options(files::zip(&[("a.npy", &positions.bytes)], true), radius),
+        Seed::new(files::zip(&[("a.npy", &files::structured())], false)),
     ]
 }
 
