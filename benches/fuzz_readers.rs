@@ -29,7 +29,7 @@ mod arrays;
 mod binary_files;
 #[path = "../tests/support/damage.rs"]
 mod damage;
-#[path = "../tests/support/seeds/mod.rs"]
+#[path = "../tests/support/seeds.rs"]
 mod seeds;
 
 #[global_allocator]
@@ -65,7 +65,7 @@ fn run(format: &'static Format, count: u64, first: u64) -> u64 {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     let seeds = seeds::of(format, folder.path());
-    assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds/mod.rs", format.name);
+    assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds.rs", format.name);
     let start = Instant::now();
     let mut failed = 0;
     let (mut slowest, mut most) = ((Duration::ZERO, 0), (0, 0));

@@ -1,19 +1,17 @@
-//! Cameras: their rays, their constructors, and what they refuse.
+//! Pinhole and orthographic cameras: their rays, their pictures, their constructors, and what they refuse.
 
-use glam::{DVec2, DVec3};
 use pinhole::camera::film::YAxis;
-use pinhole::camera::{Camera, CameraError, CameraKind, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{Camera, CameraError, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::geometry::basis::{BasisError, OrthonormalBasis};
 use pinhole::geometry::bounds::Bounds;
-use pinhole::{Film, glam};
+use pinhole::glam::{DVec2, DVec3};
+use pinhole::image::NO_ID;
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 
 const UP: DVec3 = DVec3::Y;
 
 fn assert_near(a: DVec3, b: DVec3, context: &str) {
     assert!((a - b).length() < 1e-12 * (1.0 + b.length()), "{a} is not {b}: {context}");
-}
-
-fn looking_at(eye: [f64; 3], look_at: [f64; 3]) -> Pose {
-    Pose::looking_at(eye, look_at, UP).unwrap()
 }
 
 fn random_point(random: &mut fastrand::Rng, size: f64) -> DVec3 {
@@ -22,7 +20,7 @@ fn random_point(random: &mut fastrand::Rng, size: f64) -> DVec3 {
 
 #[test]
 fn rays_on_paper() {
-    let pose = looking_at([1.0, 2.0, 10.0], [1.0, 2.0, 0.0]);
+    let pose = Pose::looking_at([1.0, 2.0, 10.0], [1.0, 2.0, 0.0], UP).unwrap();
     let pinhole = PinholeCamera::new(pose, 2.0, [4.0, 3.0]).unwrap();
     let orthographic = OrthographicCamera::new(pose, [4.0, 3.0]).unwrap();
     for (x, y) in [(0.0, 0.0), (1.0, 1.0), (-1.0, 0.5), (0.25, -1.0)] {
@@ -87,7 +85,7 @@ fn roll_turns_the_picture_about_its_middle() {
 
 #[test]
 fn a_field_of_view_spans_its_angle() {
-    let pose = looking_at([0.0; 3], [0.0, 0.0, -1.0]);
+    let pose = Pose::looking_at([0.0; 3], [0.0, 0.0, -1.0], UP).unwrap();
     for degrees in [1.0, 45.0, 120.0, 179.0_f64] {
         let camera = PinholeCamera::with_vertical_fov(pose, degrees.to_radians(), 1.6).unwrap();
         let ray = |x, y| camera.ray_in_world(DVec2::new(x, y)).direction;
@@ -118,7 +116,7 @@ fn a_framed_box_is_seen_whole_and_fills_the_picture() {
             let largest = bounds
                 .corners()
                 .map(|corner| {
-                    let location = project(camera.as_ref(), corner).expect("a corner is behind");
+                    let location = camera.location_of(corner).expect("a corner is behind");
                     location.abs().max_element()
                 })
                 .into_iter()
@@ -127,19 +125,6 @@ fn a_framed_box_is_seen_whole_and_fills_the_picture() {
             assert!(largest > 0.949, "{:?}: the box reaches only to {largest}", camera.kind());
         }
     }
-}
-
-/// The relative location of a point, from the camera's vectors; `None` if it lies behind.
-pub(crate) fn project(camera: &dyn Camera, point: DVec3) -> Option<DVec2> {
-    let v = camera.vectors();
-    let offset = point - v.origin;
-    let depth = offset.dot(v.forward) / v.forward.length_squared();
-    let scale = match camera.kind() {
-        CameraKind::Pinhole => depth,
-        _ => 1.0,
-    };
-    let along = |axis: DVec3| offset.dot(axis) / axis.length_squared() / scale;
-    (depth > 0.0).then(|| DVec2::new(along(v.right), along(v.up)))
 }
 
 #[test]
@@ -195,7 +180,7 @@ fn degenerate_poses_are_errors_that_say_which() {
 
 #[test]
 fn degenerate_lengths_and_angles_are_errors() {
-    let pose = looking_at([0.0, 0.0, 1.0], [0.0; 3]);
+    let pose = Pose::looking_at([0.0, 0.0, 1.0], [0.0; 3], UP).unwrap();
     let bounds = Bounds::of_sphere(DVec3::ZERO, 1.0);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-30, 1e30] {
         let is_length_error = |error| matches!(error, CameraError::Length { .. });
@@ -212,4 +197,171 @@ fn degenerate_lengths_and_angles_are_errors() {
             Err(CameraError::FieldOfView { .. })
         ));
     }
+}
+
+fn pose() -> Pose {
+    Pose::looking_at([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap()
+}
+
+fn perspective() -> PinholeCamera {
+    PinholeCamera::new(pose(), 1.0, [1.0, 1.0]).unwrap()
+}
+
+fn parallel() -> OrthographicCamera {
+    OrthographicCamera::new(pose(), [5.0, 5.0]).unwrap()
+}
+
+/// How many pixels a sphere at depth z covers.
+fn area(camera: &dyn Camera, z: f64) -> usize {
+    let scene = Scene::new(&[Sphere::new([0.0, 0.0, z], 1.0, LinearRgb::WHITE)]).unwrap();
+    let film = Film::new(200, 200).unwrap();
+    let image =
+        cpu::render(&scene, &View::new(camera, film), &RenderSettings::default(), LayerSet::DATA)
+            .unwrap();
+    image.id().unwrap().iter().filter(|id| **id != NO_ID).count()
+}
+
+#[test]
+fn things_shrink_with_distance() {
+    let depths = [5.0, 0.0, -10.0, -50.0];
+    let areas = depths.map(|z| area(&perspective(), z));
+    assert!(areas.is_sorted_by(|near, far| near > far), "{areas:?}");
+    // Twice as far, a quarter of the area, but for pixels and the sphere's own depth.
+    let ratio = areas[1] as f64 / areas[2] as f64;
+    assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
+
+    let areas = depths.map(|z| area(&parallel(), z));
+    assert!(areas.iter().all(|a| *a == areas[0] && *a > 0), "{areas:?}");
+}
+
+/// Picture points, from near to far, of a line through `start` along `direction`.
+fn line(camera: &dyn Camera, start: DVec3, direction: DVec3) -> Vec<DVec2> {
+    (0..40).map(|i| camera.location_of(start + direction * 1.5_f64.powi(i)).unwrap()).collect()
+}
+
+const STARTS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, -1.0, 1.0], [-3.0, 2.0, -2.0]];
+
+#[test]
+fn parallel_lines_into_the_picture_meet_in_one_point() {
+    let direction = DVec3::new(0.3, -0.2, -1.0);
+    let vanishing_point = DVec2::new(0.3, -0.2);
+    for start in STARTS {
+        let end = *line(&perspective(), start.into(), direction).last().unwrap();
+        assert!((end - vanishing_point).length() < 1e-5, "{end}");
+    }
+    // Seen in parallel, they keep their distance.
+    let ends = STARTS.map(|start| *line(&parallel(), start.into(), direction).last().unwrap());
+    let expected = DVec2::new(2.0, -1.0) / 5.0;
+    assert!((ends[1] - ends[0] - expected).length() < 1e-5);
+}
+
+#[test]
+fn parallel_lines_along_the_view_plane_stay_parallel() {
+    let direction = DVec3::new(1.0, 0.4, 0.0);
+    let cameras: [&dyn Camera; 2] = [&perspective(), &parallel()];
+    for camera in cameras {
+        for start in STARTS {
+            let points = line(camera, start.into(), direction);
+            for pair in points.windows(2) {
+                let step = (pair[1] - pair[0]).normalize();
+                assert!(step.perp_dot(DVec2::new(1.0, 0.4).normalize()).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_point_on_a_ray_is_seen_where_the_ray_comes_from() {
+    let cameras: [&dyn Camera; 2] = [&perspective(), &parallel()];
+    let mut random = fastrand::Rng::with_seed(11);
+    for camera in cameras {
+        for _ in 0..1000 {
+            let location = DVec2::new(random.f64(), random.f64()) * 2.0 - 1.0;
+            let point = camera.ray_in_world(location).at(random.f64() * 100.0 + 0.1);
+            assert!((camera.location_of(point).unwrap() - location).length() < 1e-12);
+        }
+    }
+}
+
+/// A vector of random direction, and of a length between 10⁻¹⁰⁰ and 10¹⁰⁰.
+fn random_vector(random: &mut fastrand::Rng) -> DVec3 {
+    let direction = DVec3::from([0; 3].map(|_| random.f64() * 2.0 - 1.0));
+    direction * 10_f64.powf(random.f64() * 200.0 - 100.0)
+}
+
+fn assert_orthonormal(basis: &OrthonormalBasis, context: &str) {
+    let (u, v, w) = (basis.u(), basis.v(), basis.w());
+    for (name, value, expected) in [
+        ("|u|", u.length(), 1.0),
+        ("|v|", v.length(), 1.0),
+        ("|w|", w.length(), 1.0),
+        ("u·v", u.dot(v), 0.0),
+        ("u·w", u.dot(w), 0.0),
+        ("v·w", v.dot(w), 0.0),
+        ("|u × v − w|", (u.cross(v) - w).length(), 0.0),
+    ] {
+        assert!((value - expected).abs() < 1e-14, "{name} = {value} for {context}");
+    }
+}
+
+#[test]
+fn any_two_vectors_make_a_right_handed_basis() {
+    let mut random = fastrand::Rng::with_seed(1);
+    for _ in 0..100_000 {
+        let (a, b) = (random_vector(&mut random), random_vector(&mut random));
+        let basis = OrthonormalBasis::from_vectors(a, b).unwrap();
+        assert_orthonormal(&basis, &format!("{a} and {b}"));
+        // w lies along a, and b in the half plane of v.
+        assert!(basis.w().dot(a) > 0.0 && basis.v().dot(b) > 0.0, "{a} and {b}");
+    }
+}
+
+#[test]
+fn nearly_parallel_vectors_make_a_basis_or_an_error() {
+    let mut random = fastrand::Rng::with_seed(2);
+    for _ in 0..10_000 {
+        let (a, c) = (random_vector(&mut random), random_vector(&mut random));
+        let across = OrthonormalBasis::from_vectors(a, c).unwrap().u();
+        let tilt = 10_f64.powf(-random.f64() * 20.0);
+        let b = a + across * a.length() * tilt;
+        match OrthonormalBasis::from_vectors(a, b) {
+            Ok(basis) => assert_orthonormal(&basis, &format!("tilt {tilt:e}")),
+            Err(error) => {
+                assert!(tilt < 1e-8, "tilt {tilt:e}: {error}");
+                assert!(matches!(error, BasisError::Parallel { .. }));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_known_basis() {
+    let basis = OrthonormalBasis::from_vectors([0.0, 0.0, 2.0], [0.0, 3.0, 5.0]).unwrap();
+    assert_eq!((basis.u(), basis.v(), basis.w()), (DVec3::X, DVec3::Y, DVec3::Z));
+}
+
+#[test]
+fn degenerate_vectors_are_errors_that_say_which() {
+    let good = DVec3::new(1.0, 2.0, 3.0);
+    let error = |a: DVec3, b: DVec3| OrthonormalBasis::from_vectors(a, b).unwrap_err();
+    assert_eq!(error(DVec3::ZERO, good), BasisError::Zero { name: "a" });
+    assert_eq!(error(good, DVec3::ZERO), BasisError::Zero { name: "b" });
+    for factor in [1.0, -1.0, 1e-300, -1e300] {
+        assert_eq!(error(good, good * factor), BasisError::Parallel { a: "a", b: "b" });
+    }
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let mut vector = good;
+            vector[axis] = bad;
+            assert!(matches!(error(vector, good), BasisError::NotFinite { name: "a", .. }));
+            assert!(matches!(error(good, vector), BasisError::NotFinite { name: "b", .. }));
+        }
+    }
+}
+
+#[test]
+fn points_at_the_end_of_f64_have_a_direction() {
+    let far = DVec3::new(f64::MAX, 0.0, 0.0);
+    let basis = OrthonormalBasis::looking_at(far, -far, DVec3::Y).unwrap();
+    assert_eq!(basis.w(), DVec3::X);
 }

@@ -165,52 +165,43 @@ fn what_is_no_camera_is_refused() {
     let view = view(&pose, -1.0);
     let edges = [-1.0, 1.0, -1.0, 1.0];
     let good = Convention::Perspective.projection(edges, [0.1, 10.0], -1.0);
-    let made = |view, projection| HostCamera::new(view, projection, order);
-    made(view, good).unwrap();
-    let refused = |view, projection, words: &str| {
-        let error = made(view, projection).unwrap_err().to_string();
-        assert!(error.contains(words), "{error}");
-    };
-
-    let mut broken = good;
-    broken.y_axis.x = f64::NAN;
-    refused(view, broken, "the projection matrix contains a number that is not finite");
-    let mut broken = view;
-    broken.w_axis.x = f64::INFINITY;
-    refused(broken, good, "the view matrix contains a number that is not finite");
-
-    // Row by row, or the two exchanged.
-    refused(view.transpose(), good, "the last row of the view matrix is");
-    refused(view, good.transpose(), "the last row of the projection matrix is");
-    refused(good, view, "the last row of the view matrix is");
-    // Perspective along x instead of z.
-    refused(view, good * DMat4::from_rotation_y(0.5), "the last row of the projection matrix is");
-
+    HostCamera::new(view, good, order).unwrap();
+    let (mut nan, mut infinite) = (good, view);
+    (nan.y_axis.x, infinite.w_axis.x) = (f64::NAN, f64::INFINITY);
     let flat = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
-    refused(view * flat, good, "the view matrix has no inverse");
-    refused(view, flat * good, "the projection matrix has no inverse");
     let nearly = DMat4::from_cols(
         DVec4::new(1.0, 1.0, 0.0, 0.0),
         DVec4::new(1.0, 1.0001, 0.0, 0.0),
         DVec4::Z,
         DVec4::W,
     );
-    refused(view * nearly, good, "lie nearly in one plane");
-
-    // Depth that runs in the other direction, or does not depend on the distance.
-    let reversed = Convention::Reversed.projection(edges, [0.1, 10.0], -1.0);
-    refused(
-        view,
-        reversed,
-        "NearIsZero was given, but the projection matrix maps the near plane to",
-    );
     let [x, y, _, w] = [0, 1, 2, 3].map(|row| good.row(row));
-    refused(view, from_rows([x, y, 0.5 * w, w]), "the third row of the projection matrix is");
-
-    // A view plane that is too small, and an eye that is too far away.
-    let narrow = DMat4::from_scale(DVec3::new(1e20, 1e20, 1.0)) * good;
-    refused(view, narrow, "the length of right is");
-    refused(view * DMat4::from_translation(DVec3::splat(1e18)), good, "the origin is");
+    for (view, projection, expected) in [
+        (view, nan, "the projection matrix contains a number that is not finite"),
+        (infinite, good, "the view matrix contains a number that is not finite"),
+        // Row by row, or the two exchanged.
+        (view.transpose(), good, "the last row of the view matrix is"),
+        (view, good.transpose(), "the last row of the projection matrix is"),
+        (good, view, "the last row of the view matrix is"),
+        // Perspective along x instead of z.
+        (view, good * DMat4::from_rotation_y(0.5), "the last row of the projection matrix is"),
+        (view * flat, good, "the view matrix has no inverse"),
+        (view, flat * good, "the projection matrix has no inverse"),
+        (view * nearly, good, "lie nearly in one plane"),
+        // Depth that runs in the other direction, or does not depend on the distance.
+        (
+            view,
+            Convention::Reversed.projection(edges, [0.1, 10.0], -1.0),
+            "NearIsZero was given, but the projection matrix maps the near plane to",
+        ),
+        (view, from_rows([x, y, 0.5 * w, w]), "the third row of the projection matrix is"),
+        // A view plane that is too small, and an eye that is too far away.
+        (view, DMat4::from_scale(DVec3::new(1e20, 1e20, 1.0)) * good, "the length of right is"),
+        (view * DMat4::from_translation(DVec3::splat(1e18)), good, "the origin is"),
+    ] {
+        let error = HostCamera::new(view, projection, order).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error} is not {expected}");
+    }
 }
 
 /// A reversed orthographic projection is not told from one of a camera at the other end, so the order decides.

@@ -1,9 +1,13 @@
-//! The CPU reference against answers known on paper.
+//! The CPU reference against answers known on paper, and the comparator, which must find what is planted, and only that.
 
-use pinhole::camera::{OrthographicCamera, PinholeCamera, Pose};
-use pinhole::image::NO_ID;
-use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu};
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::image::{NO_ID, Pixel};
+use pinhole::{
+    Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu,
+};
 
+use crate::scene::spheres_of;
+use crate::support::compare::{Picture, Violation, compare};
 use crate::support::{View, shaded};
 
 fn headlight() -> RenderSettings {
@@ -11,18 +15,25 @@ fn headlight() -> RenderSettings {
     shaded(Shading::Headlight, background)
 }
 
-/// One white sphere of radius 2 at the origin, seen in parallel along −z from z = 8, a pixel per unit.
-fn one_sphere() -> Image {
-    let scene = Scene::new(&[Sphere::new([0.0; 3], 2.0, LinearRgb::WHITE)]).unwrap();
-    let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
-    let camera = OrthographicCamera::new(pose, [3.5, 3.5]).unwrap();
-    let film = Film::new(7, 7).unwrap();
-    cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL).unwrap()
+/// All layers of a square picture.
+fn rendered(spheres: &[Sphere], camera: &dyn Camera, side: u32) -> Image {
+    let film = Film::new(side, side).unwrap();
+    let view = pinhole::View::new(camera, film);
+    cpu::render(&Scene::new(spheres).unwrap(), &view, &headlight(), LayerSet::ALL).unwrap()
+}
+
+/// Towards the origin along −z, as far to each side of it as `reach`.
+fn pinhole(z: f64, reach: f64) -> PinholeCamera {
+    let pose = Pose::looking_at([0.0, 0.0, z], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::new(pose, 1.0, [reach; 2]).unwrap()
 }
 
 #[test]
 fn layers_of_one_sphere() {
-    let image = one_sphere();
+    // Seen in parallel along −z from z = 8, a pixel per unit.
+    let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let camera = OrthographicCamera::new(pose, [3.5, 3.5]).unwrap();
+    let image = rendered(&[Sphere::new([0.0; 3], 2.0, LinearRgb::WHITE)], &camera, 7);
     for j in 0..7_i32 {
         for i in 0..7_i32 {
             let index = (j * 7 + i) as usize;
@@ -65,13 +76,8 @@ fn layers_of_one_sphere() {
 
 #[test]
 fn from_inside_the_far_side_is_seen() {
-    let scene = Scene::new(&[Sphere::new([0.0; 3], 3.0, LinearRgb::WHITE)]).unwrap();
-    let pose = Pose::looking_at([0.0, 0.0, 1.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
-    let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
-    let film = Film::new(1, 1).unwrap();
-    let image =
-        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL)
-            .unwrap();
+    let sphere = Sphere::new([0.0; 3], 3.0, LinearRgb::WHITE);
+    let image = rendered(&[sphere], &pinhole(1.0, 1.0), 1);
     assert_eq!(image.depth().unwrap(), [4.0]);
     // Still away from the centre, so it points along the view; the light does not mind.
     assert_eq!(image.normal().unwrap(), [[0.0, 0.0, -1.0]]);
@@ -81,13 +87,7 @@ fn from_inside_the_far_side_is_seen() {
 #[test]
 fn of_equal_spheres_the_first_is_seen() {
     let twice = [LinearRgb::WHITE, LinearRgb::BLACK].map(|c| Sphere::new([0.0; 3], 1.0, c));
-    let scene = Scene::new(&twice).unwrap();
-    let pose = Pose::looking_at([0.0, 0.0, 4.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
-    let camera = PinholeCamera::new(pose, 1.0, [0.1, 0.1]).unwrap();
-    let film = Film::new(5, 5).unwrap();
-    let image =
-        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL)
-            .unwrap();
+    let image = rendered(&twice, &pinhole(4.0, 0.1), 5);
     assert!(image.id().unwrap().iter().all(|id| *id == 0));
 }
 
@@ -118,9 +118,7 @@ fn three_spheres_have_exactly_their_colors_and_places() {
 
 #[test]
 fn a_picture_of_nothing_is_background() {
-    let scene = Scene::new(&[]).unwrap();
-    let pose = Pose::looking_at([0.0, 0.0, 4.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
-    let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
+    let (scene, camera) = (Scene::new(&[]).unwrap(), pinhole(4.0, 1.0));
     let film = Film::new(3, 2).unwrap();
     let image =
         cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::COLOR)
@@ -139,4 +137,151 @@ fn seen_in_parallel_the_three_spheres_are_equally_large() {
     assert_eq!([rows(0), rows(1), rows(2)], [240; 3]);
     let middle = &image.id().unwrap()[300 * 800..301 * 800];
     assert_eq!([middle[0], middle[400], middle[799]], [0, 2, 1], "red, blue, green");
+}
+
+/// A pixel in the middle of the red sphere, and one of the background.
+const RED: [u32; 2] = [19, 30];
+const BACKGROUND: [u32; 2] = [2, 3];
+
+fn scene() -> View {
+    let mut view = View::three_spheres();
+    view.film = Film::new(80, 60).unwrap().with_y_axis(view.film.y_axis());
+    view.settings.integrator = Integrator::Primary(Shading::Headlight);
+    view
+}
+
+fn picture(view: &View) -> Picture {
+    Picture::from(&view.reference())
+}
+
+/// What is found in a picture of the scene with something changed.
+fn found(change: impl FnOnce(&mut View)) -> Vec<Violation> {
+    let view = scene();
+    let mut other = scene();
+    change(&mut other);
+    compare(&view, &picture(&view), &picture(&other)).violations
+}
+
+/// What is found in the scene's picture with one pixel changed.
+fn spoilt([i, j]: [u32; 2], change: impl FnOnce(&mut Pixel)) -> Vec<Violation> {
+    let view = scene();
+    let mut other = picture(&view);
+    change(&mut other.pixels[(j * 80 + i) as usize]);
+    compare(&view, &picture(&view), &other).violations
+}
+
+/// The scene with every sphere changed.
+fn with_spheres(view: &View, change: impl Fn(&mut Vec<Sphere>)) -> Scene {
+    let mut spheres = spheres_of(&view.scene);
+    change(&mut spheres);
+    Scene::new(&spheres).unwrap()
+}
+
+#[test]
+fn equal_pictures_are_equal() {
+    assert_eq!(found(|_| ()), []);
+}
+
+#[test]
+fn another_size_is_found() {
+    assert_eq!(found(|view| view.film = Film::new(80, 61).unwrap()), [Violation::Size]);
+}
+
+#[test]
+fn one_pixel_of_each_layer_is_found() {
+    for pixel in [RED, BACKGROUND] {
+        let id = spoilt(pixel, |p| p.id = 1);
+        assert!(matches!(id[..], [Violation::Id { pixel: at, result: 1, .. }] if at == pixel));
+        let color = spoilt(pixel, |p| p.color[2] += 1e-4);
+        assert!(matches!(color[..], [Violation::Color { pixel: at, .. }] if at == pixel));
+        let normal = spoilt(pixel, |p| p.normal[1] += 1e-3);
+        assert!(matches!(normal[..], [Violation::Normal { pixel: at, .. }] if at == pixel));
+        let position = spoilt(pixel, |p| p.position[2] += 1e-4);
+        assert!(matches!(position[..], [Violation::Position { pixel: at, .. }] if at == pixel));
+        let albedo = spoilt(pixel, |p| p.albedo[1] += 1e-7);
+        assert!(matches!(albedo[..], [Violation::Albedo { pixel: at, .. }] if at == pixel));
+    }
+    let depth = spoilt(RED, |p| p.depth *= 1.000_01);
+    assert!(matches!(depth[..], [Violation::Depth { pixel: RED, .. }]), "{depth:?}");
+    let depth = spoilt(BACKGROUND, |p| p.depth = 1e30);
+    assert!(matches!(depth[..], [Violation::Depth { pixel: BACKGROUND, .. }]), "{depth:?}");
+}
+
+#[test]
+fn a_miss_in_the_middle_of_a_sphere_is_found() {
+    let violations = spoilt(RED, |p| p.id = NO_ID);
+    assert!(matches!(violations[..], [Violation::Id { reference: 0, result: NO_ID, .. }]));
+}
+
+#[test]
+fn a_normal_that_is_turned_over_or_too_short_is_found() {
+    for factor in [-1.0, 0.999_9] {
+        let violations = spoilt(RED, |p| p.normal = p.normal.map(|x| x * factor));
+        assert!(matches!(violations[..], [Violation::Normal { pixel: RED, .. }]), "{violations:?}");
+    }
+}
+
+#[test]
+fn what_is_not_a_number_is_found() {
+    let violations = spoilt(RED, |p| {
+        p.depth = f32::NAN;
+        p.normal[0] = f32::NAN;
+        p.color[0] = f32::NAN;
+        p.position[0] = f32::NAN;
+        p.albedo[0] = f32::NAN;
+    });
+    assert_eq!(violations.len(), 5, "{violations:?}");
+}
+
+#[test]
+fn one_shifted_row_is_found() {
+    let view = scene();
+    let mut other = picture(&view);
+    other.pixels[30 * 80..31 * 80].rotate_right(1);
+    let violations = compare(&view, &picture(&view), &other).violations;
+    // The row crosses three spheres: six silhouettes.
+    let ids = violations.iter().filter(|v| matches!(v, Violation::Id { .. })).count();
+    assert_eq!(ids, 6, "{violations:?}");
+}
+
+#[test]
+fn half_a_pixel_is_found() {
+    let violations = found(|view| {
+        let text = include_str!("../../examples/three-spheres.toml")
+            .replace("half_extent = [1, 1]", "half_extent = [1.0125, 1]");
+        view.camera = View::from_toml(&text).camera;
+    });
+    assert!(violations.iter().any(|v| matches!(v, Violation::Id { .. })), "{violations:?}");
+}
+
+#[test]
+fn a_picture_upside_down_is_found() {
+    let violations = found(|view| view.film = Film::new(80, 60).unwrap());
+    assert!(violations.iter().any(|v| matches!(v, Violation::Id { .. })), "{violations:?}");
+}
+
+#[test]
+fn another_shading_is_found_and_nothing_else() {
+    let violations = found(|view| view.settings.integrator = Integrator::Primary(Shading::Flat));
+    assert!(violations.iter().all(|v| matches!(v, Violation::Color { .. })), "{violations:?}");
+    let view = scene();
+    let hits = picture(&view).pixels.iter().filter(|p| p.id != NO_ID).count();
+    assert!(violations.len() > hits * 9 / 10, "{} of {hits}", violations.len());
+}
+
+#[test]
+fn a_radius_off_by_one_part_in_ten_thousand_is_found() {
+    let violations = found(|view| {
+        view.scene = with_spheres(view, |spheres| {
+            spheres.iter_mut().for_each(|sphere| sphere.radius *= 1.000_1);
+        });
+    });
+    assert!(violations.iter().any(|v| matches!(v, Violation::Depth { .. })), "{violations:?}");
+}
+
+#[test]
+fn swapped_ids_are_found() {
+    let violations = found(|view| view.scene = with_spheres(view, |spheres| spheres.swap(0, 2)));
+    let swapped = |v: &Violation| matches!(v, Violation::Id { reference: 0, result: 2, .. });
+    assert!(violations.iter().any(swapped), "{violations:?}");
 }

@@ -1,9 +1,41 @@
-//! What a scene accepts, and in which frame it keeps it.
+//! Scenes: what they accept, in which frame they keep it, what spheres look like, and updates.
 
-use glam::DVec3;
-use pinhole::scene::SceneError;
+use fastrand::Rng;
+use pinhole::camera::{PinholeCamera, Pose};
+use pinhole::glam::DVec3;
+use pinhole::light::emitters::Emitters;
+use pinhole::render::SettingsError;
 use pinhole::scene::sphere::SphereError;
-use pinhole::{Colors, LinearRgb, Scene, Sphere, glam};
+use pinhole::scene::{Centers, NewColors, SceneError, SceneUpdate};
+use pinhole::verify::run_file;
+use pinhole::{
+    Appearance, ColorMap, Colors, Film, Image, LayerSet, LinearRgb, Material, Radii,
+    RenderSettings, Scene, Sphere, SphereArray, SurfaceProperties, View, cpu,
+};
+
+use crate::run_file::made;
+use crate::support::appearances::{kinds, settings};
+
+/// A scene of spheres with colours by their numbers.
+pub(crate) fn colored(spheres: &[[f32; 4]], color: impl Fn(usize) -> [f32; 3]) -> Scene {
+    let one = |(i, s): (usize, &[f32; 4])| {
+        let [x, y, z, radius] = s.map(f64::from);
+        Sphere::new([x, y, z], radius, LinearRgb::new(color(i)).unwrap())
+    };
+    Scene::new(&spheres.iter().enumerate().map(one).collect::<Vec<_>>()).unwrap()
+}
+
+/// The spheres of a scene one by one, to be changed.
+pub(crate) fn spheres_of(scene: &Scene) -> Vec<Sphere> {
+    let one = |(id, s): (u32, &[f32; 4])| {
+        let [x, y, z, radius] = s.map(f64::from);
+        let center = scene.origin() + DVec3::new(x, y, z);
+        let mut sphere = Sphere::new(center.to_array(), radius, scene.color(id));
+        sphere.surface = scene.surface(id);
+        sphere
+    };
+    (0..).zip(scene.spheres()).map(one).collect()
+}
 
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {
     Sphere::new(center, radius, LinearRgb::WHITE)
@@ -113,15 +145,6 @@ fn arrays_make_the_scene_that_spheres_make() {
     }
 }
 
-#[test]
-fn arrays_near_the_origin_are_not_copied() {
-    let spheres = vec![[0.5, 0.25, 0.0, 0.5]; 1000];
-    let place = spheres.as_ptr();
-    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-    assert_eq!(scene.spheres().as_ptr(), place);
-    assert!(Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap().bounds().is_none());
-}
-
 /// f64 data ten million units away has the shape that it has at the origin, to the last bit of what f64
 /// keeps there.
 #[test]
@@ -159,5 +182,281 @@ fn the_first_bad_sphere_of_an_array_is_named_however_many_threads_look() {
         ] {
             assert!(error.to_string().starts_with(&expected), "{error}");
         }
+    }
+}
+
+fn camera() -> PinholeCamera {
+    let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
+}
+
+fn film() -> Film {
+    Film::new(24, 24).unwrap()
+}
+
+/// By one ray a pixel, in a studio, and along paths.
+fn pictures(scene: &Scene) -> [Image; 3] {
+    let camera = camera();
+    let view = View::new(&camera, film());
+    settings().map(|settings| cpu::render(scene, &view, &settings, LayerSet::ALL).unwrap())
+}
+
+#[test]
+fn every_kind_shows_what_spheres_one_by_one_show() {
+    for kind in kinds() {
+        assert_eq!(Emitters::of(&kind.scene), Emitters::of(&kind.expected), "{}", kind.name);
+        for id in 0..kind.scene.len() as u32 {
+            assert_eq!(kind.scene.color(id), kind.expected.color(id), "{}", kind.name);
+            assert_eq!(kind.scene.surface(id), kind.expected.surface(id), "{}", kind.name);
+        }
+        assert!(pictures(&kind.scene) == pictures(&kind.expected), "{}", kind.name);
+    }
+}
+
+#[test]
+fn run_files_keep_every_kind() {
+    for kind in kinds() {
+        let recording = made(&kind.scene, &camera(), film());
+        let written = |scene: &Scene| {
+            let mut bytes = Vec::new();
+            run_file::write(scene, &recording, &run_file::Provenance::default(), &mut bytes)
+                .unwrap();
+            bytes
+        };
+        let bytes = written(&kind.scene);
+        let run = run_file::read(&bytes).unwrap();
+        for id in 0..kind.scene.len() as u32 {
+            assert_eq!(run.scene.color(id), kind.scene.color(id), "{}", kind.name);
+        }
+        assert_eq!(written(&run.scene), bytes, "{}", kind.name);
+    }
+}
+
+/// Whatever the allocator gave for the spheres and colours, the scene has.
+#[test]
+fn nothing_is_copied() {
+    let spheres = vec![[0.5, 0.25, 0.0, 0.5]; 1000];
+    let colors = vec![[1, 2, 3, 4]; 1000];
+    let places = (spheres.as_ptr(), colors.as_ptr());
+    let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors)).unwrap();
+    let Colors::Rgba8(colors) = scene.appearance().colors() else { unreachable!("it is RGBA8") };
+    assert_eq!((scene.spheres().as_ptr(), colors.as_ptr()), places);
+    assert_eq!(size_of_val(&colors[..]), 4 * scene.len());
+    assert!(Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap().bounds().is_none());
+}
+
+#[test]
+fn centers_and_radii_may_stand_apart() {
+    let centers = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+    let narrow = SphereArray::from_f32(&centers.map(|c| c.map(|x| x as f32)), Radii::All(0.5));
+    assert_eq!(narrow, Ok(SphereArray::F32(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.5]])));
+    let wide = SphereArray::from_f64(&centers, Radii::Each(&[0.5, 0.75]));
+    assert_eq!(wide, Ok(SphereArray::F64(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.75]])));
+    for (radii, words) in [
+        (&[0.5][..], "position 1 has no radius: there are 1 radii for 2 positions"),
+        (&[0.5; 3], "radius 2 has no position: there are 3 radii for 2 positions"),
+    ] {
+        let refused = SphereArray::from_f64(&centers, Radii::Each(radii)).unwrap_err();
+        assert_eq!(refused.to_string(), words);
+    }
+}
+
+fn refused(appearance: Appearance) -> SceneError {
+    let spheres = (0..3).map(|i| [i as f32, 0.0, 0.0, 0.4]).collect();
+    Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap_err()
+}
+
+#[test]
+fn what_does_not_fit_is_named_by_index() {
+    let gray = |level| LinearRgb::new([level; 3]).unwrap();
+    let palette =
+        |indices| Appearance::new(Colors::Palette { palette: vec![gray(0.1); 2], indices });
+    let map = ColorMap::new(vec![gray(0.1), gray(0.2)], [0.0, 1.0]).unwrap();
+    let scalars = |values| Appearance::new(Colors::Scalars { values, map: map.clone() });
+    let rgba = |count| Appearance::from(vec![[0; 4]; count]);
+    let surfaces = |indices| rgba(3).with_surfaces(vec![SurfaceProperties::default(); 2], indices);
+    for (appearance, words) in [
+        (
+            palette(vec![0, 2, 1]),
+            "sphere 1 has no color: its index is out of range; the palette has 2 colors",
+        ),
+        (palette(vec![0, 1]), "sphere 2 has no color: there are 2 for 3 spheres"),
+        (rgba(1), "sphere 1 has no color: there are 1 for 3 spheres"),
+        (rgba(4), "color 3 has no sphere: there are 4 for 3 spheres"),
+        (scalars(vec![0.0, 0.0, f32::NAN]), "sphere 2 has the number NaN, which has no color"),
+        (scalars(vec![0.0]), "sphere 1 has no color: there are 1 for 3 spheres"),
+        (
+            surfaces(vec![0, 1, 2]),
+            "the surface index of sphere 2 is out of range; there are 2 surfaces",
+        ),
+        (surfaces(vec![0; 4]), "surface index 3 has no sphere: there are 4 for 3 spheres"),
+        (
+            rgba(3).with_surfaces(vec![], vec![0; 3]),
+            "the surface index of sphere 0 is out of range; there are 0 surfaces",
+        ),
+    ] {
+        assert_eq!(refused(appearance).to_string(), words);
+    }
+}
+
+/// A color that only a lamp may have is refused of the sphere that is none, and not where no sphere has it.
+#[test]
+fn what_creates_light_is_named_by_index() {
+    let palette = [0.5, 7.0].map(|level| LinearRgb::new([level; 3]).unwrap());
+    let lamp = SurfaceProperties { material: Material::Emissive { strength: 2.0 }, opacity: 1.0 };
+    let check = |colors: [u32; 3], surfaces: [u32; 3]| {
+        let colors = Colors::Palette { palette: palette.to_vec(), indices: colors.to_vec() };
+        let appearance = Appearance::new(colors)
+            .with_surfaces(vec![SurfaceProperties::default(), lamp], surfaces.to_vec());
+        let spheres = (0..3).map(|i| [i as f32, 0.0, 0.0, 0.4]).collect();
+        RenderSettings::studio()
+            .check(&Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap())
+    };
+    assert_eq!(check([0, 1, 0], [0, 1, 0]), Ok(()));
+    assert_eq!(check([0, 0, 0], [0, 0, 1]), Ok(()));
+    let refused = check([0, 1, 1], [0, 1, 0]);
+    let named = matches!(&refused, Err(SettingsError::Albedo { what, .. }) if what == "sphere 2");
+    assert!(named, "{refused:?}");
+}
+
+/// All that a scene consists of.
+fn parts(scene: &Scene) -> (Vec<[f32; 4]>, Appearance, String) {
+    let bounds = format!("{:?} {:?}", scene.bounds(), scene.origin());
+    (scene.spheres().to_vec(), scene.appearance().clone(), bounds)
+}
+
+/// The same scene, made of its numbers.
+fn fresh(scene: &Scene) -> Scene {
+    let spheres = SphereArray::F32(scene.spheres().to_vec());
+    Scene::from_parts(spheres, scene.appearance().clone()).unwrap()
+}
+
+#[test]
+fn updates_are_as_a_scene_that_was_made_so() {
+    let mut random = Rng::with_seed(41);
+    for kind in kinds() {
+        let mut scene = kind.scene;
+        for _ in 0..50 {
+            let first = random.usize(..scene.len());
+            let count = random.usize(..=scene.len() - first);
+            let centers: Vec<[f32; 3]> =
+                (0..count).map(|_| [0; 3].map(|_| random.f32() * 4.0 - 2.0)).collect();
+            let radii: Vec<f32> = (0..count).map(|_| 0.05 + random.f32() * 0.3).collect();
+            let places: Vec<u32> = (0..count).map(|_| random.u32(..40)).collect();
+            let rgba: Vec<[u8; 4]> = (0..count).map(|_| [0; 4].map(|_| random.u8(..))).collect();
+            let colors = match scene.appearance().colors() {
+                Colors::One(_) => None,
+                Colors::Palette { .. } => Some(NewColors::Palette(&places)),
+                Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
+                _ => Some(NewColors::Scalars(&radii)),
+            };
+            let update = SceneUpdate {
+                first: first as u32,
+                centers: random.bool().then_some(Centers::F32(&centers)),
+                radii: random.bool().then_some(&radii[..]),
+                colors: colors.filter(|_| random.bool()),
+            };
+            let before = scene.clone();
+            scene.apply(&update).unwrap();
+            for id in 0..scene.len() {
+                let is_in = update.range().contains(&(id as u32));
+                let place = id.wrapping_sub(first);
+                let [x, y, z, r] = before.spheres()[id];
+                let [x, y, z] =
+                    if is_in && update.centers.is_some() { centers[place] } else { [x, y, z] };
+                let r = if is_in && update.radii.is_some() { radii[place] } else { r };
+                assert_eq!(scene.spheres()[id], [x, y, z, r]);
+                if !is_in || update.colors.is_none() {
+                    assert_eq!(scene.color(id as u32), before.color(id as u32));
+                }
+            }
+            if let (Some(NewColors::Rgba8(colors)), true) = (update.colors, count > 0) {
+                let [r, g, b, _] = colors[0];
+                assert_eq!(scene.color(first as u32), LinearRgb::from_srgb8([r, g, b]));
+            }
+            assert_eq!(parts(&scene), parts(&fresh(&scene)), "{}", kind.name);
+        }
+    }
+}
+
+/// Far from the world's origin, centres are moved into the frame in f64.
+#[test]
+fn centers_are_in_the_world() {
+    let spheres = [[1e7, 0.0, 0.0, 0.5], [1e7 + 3.0, 1.0, 0.0, 0.5]];
+    let mut scene = Scene::from_f64(&spheres, LinearRgb::WHITE).unwrap();
+    let origin = scene.origin();
+    let moved = [[1e7 + 0.125, 0.25, 0.0]];
+    let update =
+        SceneUpdate { first: 1, centers: Some(Centers::F64(&moved)), ..SceneUpdate::default() };
+    scene.apply(&update).unwrap();
+    assert_eq!(scene.origin(), origin);
+    let [x, y, z, radius] = scene.spheres()[1].map(f64::from);
+    assert_eq!([x + origin.x, y + origin.y, z + origin.z, radius], [1e7 + 0.125, 0.25, 0.0, 0.5]);
+}
+
+#[test]
+fn what_is_refused_is_named_and_changes_nothing() {
+    let palette = vec![LinearRgb::WHITE; 3];
+    let colors = Colors::Palette { palette, indices: vec![0; 10] };
+    let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 0.5]; 10]);
+    let mut scene = Scene::from_parts(spheres, Appearance::new(colors)).unwrap();
+    let before = parts(&scene);
+    let centers = [[1.0_f32; 3]; 4];
+    let mut bad_centers = centers;
+    bad_centers[2][1] = f32::NAN;
+    let update = SceneUpdate { first: 4, ..SceneUpdate::default() };
+    let moved = |centers| Some(Centers::F32(centers));
+    let radii = Some(&[0.25, -1.0][..]);
+    for (update, words) in [
+        (SceneUpdate { first: 7, centers: moved(&centers), ..update }, "there is no sphere 10: "),
+        (SceneUpdate { first: u32::MAX, centers: moved(&centers), ..update }, "there is no sphere"),
+        (
+            SceneUpdate { centers: moved(&bad_centers), ..update },
+            "sphere 6: its center is [1.0, NaN",
+        ),
+        (SceneUpdate { radii, ..update }, "sphere 5: its radius is -1.0; "),
+        (
+            SceneUpdate { centers: moved(&centers), radii, ..update },
+            "sphere 6 is not in every list: the update has a radius for 2 spheres, but 4",
+        ),
+        (
+            SceneUpdate { colors: Some(NewColors::Palette(&[2, 3])), ..update },
+            "sphere 5 has no color: its index is out of range; the palette has 3 colors",
+        ),
+        (
+            SceneUpdate {
+                radii: Some(&[1.0; 2]),
+                colors: Some(NewColors::Palette(&[2])),
+                ..update
+            },
+            "sphere 5 is not in every list: the update has a color for 1 spheres, but 2",
+        ),
+        (
+            SceneUpdate { colors: Some(NewColors::Rgba8(&[[0; 4]])), ..update },
+            "sphere 4 cannot be given individual colors: the scene's spheres have palette colors",
+        ),
+        // What comes before it is right, and is not kept.
+        (
+            SceneUpdate { radii: Some(&[0.25]), colors: Some(NewColors::Palette(&[9])), ..update },
+            "sphere 4 has no color: its index is out of range; the palette has 3 colors",
+        ),
+    ] {
+        let error = scene.apply(&update).unwrap_err();
+        assert!(error.to_string().starts_with(words), "{error}");
+        assert_eq!(parts(&scene), before, "{error}");
+    }
+    let scalars = [0.5, f32::NAN];
+    let update = SceneUpdate { colors: Some(NewColors::Scalars(&scalars)), ..update };
+    for mut kind in kinds() {
+        let before = parts(&kind.scene);
+        let refused = kind.scene.apply(&update).unwrap_err();
+        let is_named = match kind.scene.appearance().colors() {
+            Colors::Scalars { .. } => {
+                refused.to_string().starts_with("sphere 5 has the number NaN")
+            }
+            _ => refused.to_string().starts_with("sphere 4 cannot be given"),
+        };
+        assert!(is_named, "{}: {refused}", kind.name);
+        assert_eq!(format!("{:?}", parts(&kind.scene)), format!("{before:?}"));
     }
 }

@@ -10,6 +10,7 @@ use pinhole::{
     Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View,
 };
 
+use crate::scene::spheres_of;
 use crate::support::random_light;
 
 /// Compares all layers, of which an image compares every number.
@@ -31,15 +32,7 @@ fn point(random: &mut Rng) -> DVec3 {
 
 /// The scene with so many more spheres that there is a structure.
 fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
-    let mut spheres: Vec<Sphere> = (0..scene.len() as u32)
-        .map(|id| {
-            let [x, y, z, radius] = scene.spheres()[id as usize].map(f64::from);
-            let center = scene.origin() + DVec3::new(x, y, z);
-            let mut sphere = Sphere::new(center.to_array(), radius, scene.color(id));
-            sphere.surface = scene.surface(id);
-            sphere
-        })
-        .collect();
+    let mut spheres = spheres_of(scene);
     // A grid is for many opaque spheres.
     let is_opaque = random.bool();
     let more = if is_opaque { 300 } else { 20 };

@@ -1,9 +1,9 @@
 //! Every structure, in one brick and in several: each sphere is in one brick, and none takes more memory than was planned.
 
-use pinhole::accel::{Accel, AccelPlan, Brick, Index, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use pinhole::glam::Vec3;
 
-use crate::support::spheres::{self, Spheres};
+use crate::support::spheres::{self, Spheres, crowd_and_outliers};
 
 /// What a large device binds.
 const ROOMY: u64 = 1 << 30;
@@ -125,53 +125,35 @@ fn check(scene: &str, spheres: &Spheres) {
     }
 }
 
+/// Few, random, all alike, in order, of uneven size and density, far away, and very long and very short.
 #[test]
-fn few_spheres() {
-    check("none", &Vec::new());
-    for count in [1, 2, 3, 31, 33] {
-        check(&format!("{count}"), &spheres::random(count, 1, |_| 0.2));
-    }
-}
-
-#[test]
-fn random_spheres() {
-    check("random", &spheres::random(3_000, 2, |_| 0.02));
-    check("sparse", &spheres::random(3_000, 3, |_| 0.002));
-    check("four decades", &spheres::four_decades(2_000));
-}
-
-#[test]
-fn spheres_that_nothing_tells_apart() {
-    check("1,000 equal", &vec![[1.0, 2.0, 3.0, 0.5]; 1_000]);
-    check("twice", &spheres::twice(1_000));
-    check("concentric", &spheres::concentric(500));
-}
-
-#[test]
-fn spheres_in_order() {
-    check("line", &spheres::line(1_000));
-    check("nested", &spheres::nested(300));
-    check("geometric", &spheres::geometric(1_000));
-    check("lattice", &spheres::lattice(14));
-}
-
-#[test]
-fn spheres_of_uneven_size_and_density() {
-    check("one around all", &spheres::one_around_all(2_000));
-    check("clusters", &spheres::clusters(10, 300));
-    check("outlier", &spheres::outlier(2_000));
-    check("flat", &spheres::flat(2_000));
-    check("distant sheet", &spheres::distant_sheet(2_000));
-    check("needle", &spheres::needle(2_000));
-}
-
-#[test]
-fn far_and_very_long_and_very_short() {
-    check("far", &spheres::far(1_500));
+fn every_scene_in_every_structure() {
     let decades = spheres::four_decades(1_000);
-    for power in [50, -50] {
-        let scaled = spheres::scaled(&decades, 2_f32.powi(power));
-        check(&format!("times 2^{power}"), &scaled);
+    let few = [1, 2, 3, 31, 33].map(|count| spheres::random(count, 1, |_| 0.2));
+    few.iter().for_each(|few| check(&few.len().to_string(), few));
+    for (name, spheres) in [
+        ("none", Vec::new()),
+        ("random", spheres::random(3_000, 2, |_| 0.02)),
+        ("sparse", spheres::random(3_000, 3, |_| 0.002)),
+        ("four decades", spheres::four_decades(2_000)),
+        ("1,000 equal", vec![[1.0, 2.0, 3.0, 0.5]; 1_000]),
+        ("twice", spheres::twice(1_000)),
+        ("concentric", spheres::concentric(500)),
+        ("line", spheres::line(1_000)),
+        ("nested", spheres::nested(300)),
+        ("geometric", spheres::geometric(1_000)),
+        ("lattice", spheres::lattice(14)),
+        ("one around all", spheres::one_around_all(2_000)),
+        ("clusters", spheres::clusters(10, 300)),
+        ("outlier", spheres::outlier(2_000)),
+        ("flat", spheres::flat(2_000)),
+        ("distant sheet", spheres::distant_sheet(2_000)),
+        ("needle", spheres::needle(2_000)),
+        ("far", spheres::far(1_500)),
+        ("times 2^50", spheres::scaled(&decades, 2_f32.powi(50))),
+        ("times 2^-50", spheres::scaled(&decades, 2_f32.powi(-50))),
+    ] {
+        check(name, &spheres);
     }
 }
 
@@ -200,22 +182,93 @@ fn every_structure_is_met() {
 }
 
 /// All in one place: lists keep the one that counts, and building ends.
-fn coincident(count: usize) {
-    let spheres = spheres::coincident(count);
-    for structure in [Structure::Grid, Structure::WideTree] {
-        let plan = AccelPlan::of(&spheres, structure, ROOMY);
-        let accel = plan.build(&spheres);
-        let name = format!("{count} coincident, {}", accel.structure().name());
-        check_memory(&name, &plan, &accel);
+#[test]
+fn a_million_coincident_centres() {
+    for count in [100_000, 1_000_000] {
+        let spheres = spheres::coincident(count);
+        for structure in [Structure::Grid, Structure::WideTree] {
+            let plan = AccelPlan::of(&spheres, structure, ROOMY);
+            let accel = plan.build(&spheres);
+            let name = format!("{count} coincident, {}", accel.structure().name());
+            check_memory(&name, &plan, &accel);
+        }
+    }
+}
+
+/// Bindings for about a thousand spheres.
+const FOR_A_THOUSAND: u64 = 1 << 14;
+
+fn check_crowd(name: &str, spheres: &Spheres) {
+    let build = |choice, bytes| {
+        let plan = AccelPlan::new(spheres, choice, bytes);
+        let accel = plan.build(spheres);
+        (format!("{name}, {choice} of {bytes} bytes"), plan, accel)
+    };
+    let built = [
+        build(AccelChoice::Auto, ROOMY),
+        build(AccelChoice::Tree, ROOMY),
+        build(AccelChoice::Tree, FOR_A_THOUSAND),
+        build(AccelChoice::Grid, ROOMY),
+    ];
+    assert!(built[2].2.bricks().len() > 1, "{name}");
+    for (name, plan, accel) in &built {
+        let held: u64 = accel.bricks().iter().map(|brick| 16 * brick.spheres.len() as u64).sum();
+        let nodes = accel.bricks().iter().map(|brick| match &brick.index {
+            Index::WideTree(tree) => {
+                let own: Spheres = brick.ids.iter().map(|id| spheres[*id as usize]).collect();
+                // The brick's spheres are those of the tree, in another order.
+                assert_eq!(own, brick.spheres, "{name}");
+                size_of_val(tree.nodes()) as u64
+            }
+            _ => 0,
+        });
+        assert!(held + nodes.sum::<u64>() <= plan.device_bytes(), "{name}");
     }
 }
 
 #[test]
-fn a_hundred_thousand_coincident_centres() {
-    coincident(100_000);
+fn outliers_at_all_distances() {
+    for (outliers, far) in [(1, 1e2), (1, 1e4), (4, 1e6), (3, 1e3), (4, 1e9)] {
+        for is_in_line in [false, true] {
+            let spheres = crowd_and_outliers(4_000, outliers, far, is_in_line);
+            check_crowd(&format!("{outliers} at {far}, {is_in_line}"), &spheres);
+        }
+    }
+    check_crowd("none", &crowd_and_outliers(4_000, 0, 1.0, false));
 }
 
+/// Beside a crowd of equal spheres, and beside one that is far from the origin of the frame.
 #[test]
-fn a_million_coincident_centres() {
-    coincident(1_000_000);
+fn crowds_of_equal_spheres_and_crowds_elsewhere() {
+    let mut equal: Spheres = vec![[0.25, 0.5, 0.75, 0.02]; 3_000];
+    equal.push([1e4, 0.0, 0.0, 0.02]);
+    check_crowd("equal", &equal);
+    let moved = |[x, y, z, radius]: [f32; 4]| [x + 1e4, y, z - 3e3, radius];
+    let elsewhere: Spheres =
+        crowd_and_outliers(4_000, 4, 1e4, false).into_iter().map(moved).collect();
+    check_crowd("elsewhere", &elsewhere);
+    let outliers = vec![[-1e4, 1e4, 1e4, 0.5]; 4];
+    let mut same = spheres::random(4_000, 31, |_| 0.01);
+    same.extend(outliers);
+    check_crowd("equal outliers", &same);
+}
+
+/// The plan says what it knows, and takes a tree where a grid's margin would be too large.
+#[test]
+fn plans_know_outliers() {
+    let plan = |spheres: &Spheres, choice| AccelPlan::new(spheres, choice, ROOMY);
+    let none = plan(&crowd_and_outliers(20_000, 0, 1.0, false), AccelChoice::Auto);
+    assert_eq!(none.crowd, None);
+    assert!(none.structure == Structure::Grid, "{}", none.reason);
+    for outliers in [1, 20] {
+        let spheres = crowd_and_outliers(20_000, outliers, 1e4, false);
+        let auto = plan(&spheres, AccelChoice::Auto);
+        assert_eq!(auto.crowd.map(|crowd| crowd.outliers), Some(outliers));
+        assert_eq!(auto.structure, Structure::WideTree);
+        let says = format!("{outliers} of {} spheres lie far away", spheres.len());
+        assert!(auto.reason.contains(&says), "{}", auto.reason);
+        assert_eq!(plan(&spheres, AccelChoice::Grid).structure, Structure::Grid);
+        // One brick, as for any tree of so many.
+        assert_eq!(auto.build(&spheres).bricks().len(), 1);
+    }
 }

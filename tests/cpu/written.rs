@@ -1,17 +1,21 @@
-//! Pictures as they stand in files: those of a conforming device are never accused, and what is planted is found.
+//! Pictures as they stand in files, and denoised ones: those of a conforming device are never accused, and what is planted
+//! is found.
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Bits;
 use pinhole::image::tone::ToneCurve;
-use pinhole::render::PrimarySettings;
+use pinhole::render::{PathTracing, PrimarySettings, Sampling};
+use pinhole::verify::denoised::certify;
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenError, WrittenPicture};
 use pinhole::verify::{Checker, Outcome, Verdict};
 use pinhole::write::png;
 use pinhole::{
-    Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere,
-    View, cpu,
+    Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, View,
+    cpu,
 };
 
+use crate::scene::{colored, spheres_of};
 use crate::support::spheres;
 
 /// Every kind of encoding.
@@ -61,13 +65,8 @@ pub(crate) fn assert_is_not_accused(name: &str, scene: &Scene, view: &View<'_>, 
 }
 
 fn scene() -> Scene {
-    let colored = |(i, [x, y, z, r]): (usize, &[f32; 4])| {
-        let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
-        let color = LinearRgb::new([level(3), level(5), level(7)]).unwrap();
-        Sphere::new([*x, *y, *z].map(f64::from), f64::from(*r), color)
-    };
     let spheres = spheres::random(60, 1, |rng| 0.02 + 0.1 * rng.f32());
-    Scene::new(&spheres.iter().enumerate().map(colored).collect::<Vec<_>>()).unwrap()
+    colored(&spheres, |i| [3, 5, 7].map(|k| ((i * k) % 17 + 1) as f32 / 18.0))
 }
 
 fn camera(scene: &Scene) -> PinholeCamera {
@@ -193,18 +192,9 @@ fn pictures_that_are_changed_are_found() {
 #[test]
 fn pictures_of_something_else_are_found() {
     let made = Made::plain();
-    let mut spheres = made.scene.spheres().to_vec();
-    let seen = 17;
-    spheres[seen][3] *= 1.02;
-    let array: Vec<Sphere> = (0..)
-        .zip(&spheres)
-        .map(|(id, [x, y, z, r])| {
-            let center =
-                made.scene.origin() + pinhole::glam::DVec3::from([*x, *y, *z].map(f64::from));
-            Sphere::new(center.to_array(), f64::from(*r), made.scene.color(id))
-        })
-        .collect();
-    let larger = Scene::new(&array).unwrap();
+    let mut larger = spheres_of(&made.scene);
+    larger[17].radius *= 1.02;
+    let larger = Scene::new(&larger).unwrap();
     assert_eq!(made.judge_by(&larger, &made.camera, &made.bytes).outcome(), Outcome::Violated);
 
     let bounds = made.scene.bounds_to_frame();
@@ -260,4 +250,49 @@ fn linear_light_is_judged_more_narrowly_than_bytes() {
     assert_eq!(judged(1.0).outcome(), Outcome::Proved);
     let found = judged(1.0 + 3e-5);
     assert!(found.count(Verdict::Violation) > 3000, "{}", found.count(Verdict::Violation));
+}
+
+fn noisy(samples: u32, seed: u32) -> Image {
+    let spheres = spheres::random(30, 1, |rng| 0.1 + 0.2 * rng.f32());
+    let scene = colored(&spheres, |i| [3, 5, 2].map(|k| ((i * k) % 7) as f32 / 7.0));
+    let camera = PinholeCamera::framing_from_the_front(scene.subject(), 64.0 / 48.0).unwrap();
+    let settings = RenderSettings {
+        integrator: Integrator::Path(PathTracing::default()),
+        sampling: Sampling { samples, seed, ..Sampling::default() },
+        ..RenderSettings::default()
+    };
+    let film = Film::new(64, 48).unwrap();
+    cpu::render(&scene, &View::new(&camera, film), &settings, GUIDES).unwrap()
+}
+
+#[test]
+fn the_references_filter_is_proved() {
+    for (samples, seed) in [(1, 0), (4, 1), (16, 2)] {
+        let noisy = noisy(samples, seed);
+        let found = certify(&noisy, &cpu::denoise(&noisy).unwrap()).unwrap();
+        assert_eq!(found.outcome(), Outcome::Proved, "{samples}: {found:?}");
+        assert_eq!(found.pixels, 64 * 48);
+    }
+}
+
+#[test]
+fn what_is_off_by_a_thousandth_is_found() {
+    let noisy = noisy(4, 3);
+    let denoised = cpu::denoise(&noisy).unwrap();
+    let changed = |change: &dyn Fn(usize, f32) -> f32| {
+        let colors = denoised.color().iter().enumerate();
+        let color = colors.map(|(index, rgb)| rgb.map(|c| change(index, c))).collect();
+        let count = denoised.color().len();
+        let (depth, normal, id) = (vec![0.0; count], vec![[0.0; 3]; count], vec![0; count]);
+        certify(&noisy, &Image::from_layers([64, 48], color, depth, normal, id).unwrap()).unwrap()
+    };
+    assert_eq!(changed(&|_, c| c).outcome(), Outcome::Proved);
+    let found = changed(&|_, c| c * 1.001);
+    assert!(found.violation_count > 2000, "{}", found.violation_count);
+    let found = changed(&|index, c| if index == 64 * 24 + 30 { c + 0.01 } else { c });
+    assert_eq!((found.violation_count, found.outcome()), (1, Outcome::Violated));
+    assert!(found.violations[0].to_string().starts_with("pixel (30, 24): red is "));
+    assert_eq!(changed(&|_, _| f32::NAN).outcome(), Outcome::Violated);
+    // The noisy picture itself is none that was denoised.
+    assert_eq!(certify(&noisy, &noisy).unwrap().outcome(), Outcome::Violated);
 }

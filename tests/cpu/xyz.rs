@@ -1,7 +1,12 @@
-//! Tests of the XYZ reader: good files, bad files and noise.
+//! XYZ files, and trajectories of any format, of which one frame at a time is in memory.
 
-use pinhole::load::{self, ColumnValues, LoadError, Loaded, Options, xyz};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use fastrand::Rng;
+use pinhole::load::{self, ColumnValues, LoadError, Loaded, Options, Trajectory, xyz};
 use pinhole::{LinearRgb, Sphere};
+use tempfile::TempDir;
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 
@@ -97,30 +102,6 @@ fn many_unknown_species() {
     assert!(frame.notes[0].contains("and 49995 more"), "{:?}", frame.notes);
 }
 
-#[test]
-fn noise_never_panics() {
-    let extended = "1\nProperties=species:S:1:pos:R:3:radius:R:1 a='b c' d=\"e\"\nO 1 2 3 4\n";
-    let mut random = fastrand::Rng::with_seed(12);
-    for seed in [WATER, extended] {
-        for _ in 0..20_000 {
-            let mut bytes = seed.as_bytes().to_vec();
-            for _ in 0..random.usize(1..6) {
-                let at = random.usize(..bytes.len());
-                match random.u8(..4) {
-                    0 => bytes[at] = random.u8(..),
-                    1 => drop(bytes.remove(at)),
-                    2 => bytes.insert(at, *random.choice(b"\n\t \"'=:-.e09").unwrap()),
-                    _ => bytes.truncate(at.max(1)),
-                }
-                if bytes.is_empty() {
-                    break;
-                }
-            }
-            let _ = read(&bytes, random.usize(..3));
-        }
-    }
-}
-
 fn loaded(text: &str) -> load::Loaded {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
 }
@@ -184,4 +165,117 @@ fn columns_are_used_or_noted() {
              Properties=species:S:1:pos:R:3:NAME:R:1"
         ]
     );
+}
+
+fn written(folder: &TempDir, name: &str, text: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn xyz_text(frames: usize, random: &mut Rng) -> String {
+    (0..frames).fold(String::new(), |mut text, frame| {
+        let atoms = random.usize(0..5);
+        let blank = if random.bool() { "\n  \r\n" } else { "" };
+        write!(text, "{blank}{atoms}\r\nframe {frame} {}\n", "x".repeat(random.usize(0..3000)))
+            .unwrap();
+        for _ in 0..atoms {
+            let [x, y, z] = [(); 3].map(|()| random.f64());
+            writeln!(text, "{} {x} {y} {z}", if random.bool() { "H" } else { "C" }).unwrap();
+        }
+        text
+    })
+}
+
+fn pdb_text(frames: usize, random: &mut Rng) -> String {
+    let mut text = "CRYST1   63.150   83.590   53.800  90.00  99.34  90.00 P 1\n".to_owned();
+    for frame in 0..frames {
+        writeln!(text, "MODEL     {:4}", frame + 1).unwrap();
+        for atom in 0..random.usize(1..5) {
+            let [x, y, z] = [(); 3].map(|()| random.f64() * 9.0);
+            writeln!(
+                text,
+                "ATOM  {atom:5}  CA  ALA A{atom:4}    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00           C"
+            )
+            .unwrap();
+        }
+        text += "ENDMDL\n";
+    }
+    text + "END\n"
+}
+
+/// Every frame, in any order, is what reading the text as a whole gives; so is a frame that is opened by itself.
+#[test]
+fn frames_are_those_of_the_whole_text() {
+    let folder = TempDir::new().unwrap();
+    for seed in 0..20 {
+        let mut random = Rng::with_seed(seed);
+        let count = random.usize(1..8);
+        for (name, text) in
+            [("a.xyz", xyz_text(count, &mut random)), ("a.pdb", pdb_text(count, &mut random))]
+        {
+            let text = if random.bool() { format!("\u{feff}{text}") } else { text };
+            let path = written(&folder, name, &text);
+            let mut trajectory = Trajectory::open(&path, &Options::default()).unwrap();
+            assert_eq!((trajectory.len(), trajectory.problem().is_none()), (count, true));
+            let mut order: Vec<usize> = (0..count).collect();
+            random.shuffle(&mut order);
+            for frame in order {
+                let options = Options::default().with_frame(frame);
+                let whole = load::from_bytes(text.as_bytes(), name, &options).unwrap();
+                let mut found = trajectory.frame(frame).unwrap();
+                assert_eq!(found.frames, Some(count));
+                let mut opened = load::open(&path, &options).unwrap();
+                (found.frames, opened.frames) = (whole.frames, whole.frames);
+                assert_eq!((&found, &opened), (&whole, &whole), "{name}, frame {frame}");
+                assert!(trajectory.frame_bytes(frame).unwrap() > 0);
+            }
+            let none = trajectory.frame(count).unwrap_err().to_string();
+            assert!(
+                none.starts_with(&format!("there is no frame {count}; the file has {count} frame")),
+                "{none}"
+            );
+            assert_eq!(trajectory.frame_bytes(count), None);
+            let none = load::open(&path, &Options::default().with_frame(count)).unwrap_err();
+            assert!(none.to_string().starts_with(&format!("there is no frame {count};")), "{none}");
+        }
+    }
+}
+
+/// A program may still be writing: frames that are complete can be read.
+#[test]
+fn a_file_that_ends_within_a_frame_has_those_before_it() {
+    let folder = TempDir::new().unwrap();
+    let path = written(&folder, "a.xyz", "1\n\nH 0 0 0\n2\n\nH 1 0 0\n");
+    let mut trajectory = Trajectory::open(&path, &Options::default()).unwrap();
+    assert_eq!(trajectory.len(), 1);
+    let problem = trajectory.problem().unwrap().to_string();
+    assert_eq!(problem, "line 4: frame 1 declares 2 atoms, but the file ends after 1");
+    assert_eq!(trajectory.frame(0).unwrap().spheres.len(), 1);
+}
+
+#[test]
+fn errors_count_lines_from_the_start_of_the_file() {
+    let folder = TempDir::new().unwrap();
+    let path = written(&folder, "a.xyz", "1\n\nH 0 0 0\n1\n\nH 0 x 0\n");
+    let error = Trajectory::open(&path, &Options::default()).unwrap().frame(1).unwrap_err();
+    assert_eq!(error.to_string(), "line 6, column 3: y is `x`, which is not a number");
+    let mut text = pdb_text(3, &mut Rng::with_seed(1));
+    let at = text.rfind("ATOM").unwrap();
+    text.replace_range(at + 30..at + 38, "   x.123");
+    let line = text[..at].matches('\n').count() + 1;
+    let path = written(&folder, "a.pdb", &text);
+    let error = Trajectory::open(&path, &Options::default()).unwrap().frame(2).unwrap_err();
+    assert!(error.to_string().starts_with(&format!("line {line}")), "{error}");
+}
+
+/// What is refused of files of spheres is refused of files that are opened: `files` sees to that.
+#[test]
+fn files_without_frames_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let path = written(&folder, "a.npy", "");
+    let error = Trajectory::open(&path, &Options::default()).unwrap_err().to_string();
+    assert_eq!(error, "a file of the format npy has no frames; read it as a whole");
+    let error = Trajectory::open(folder.path().join("none.xyz"), &Options::default()).unwrap_err();
+    assert!(error.to_string().contains("none.xyz: cannot be read: "), "{error}");
 }

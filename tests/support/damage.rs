@@ -29,23 +29,9 @@ const NUMBERS: [u64; 14] = [
     u64::MAX,
 ];
 
-/// The same as text, and what else a number can be.
-const WORDS: [&str; 14] = [
-    "0",
-    "-1",
-    "1e308",
-    "-1e-320",
-    "nan",
-    "inf",
-    "1e999",
-    "16777216",
-    "4294967296",
-    "999999999999",
-    "18446744073709551615",
-    "99999999999999999999999",
-    "",
-    "\u{e9}",
-];
+/// The same as text, and what else a number can be, with blanks between them; nothing at all, too.
+const WORDS: &str = "0 -1 1e308 -1e-320 nan inf 1e999 16777216 4294967296 999999999999 18446744073709551615 \
+                     99999999999999999999999  \u{e9}";
 
 /// A damaged copy of a file. `other` is another good file, of which pieces may be taken.
 pub(crate) fn damaged(good: &[u8], other: &[u8], random: &mut Rng) -> Vec<u8> {
@@ -111,7 +97,8 @@ fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Rng) {
     };
     let end = bytes[start..].iter().position(|byte| !is_part(byte));
     let end = end.map_or(bytes.len(), |length| start + length);
-    bytes.splice(start..end, WORDS[random.usize(0..WORDS.len())].bytes());
+    let words: Vec<&str> = WORDS.split(' ').collect();
+    bytes.splice(start..end, random.choice(words).unwrap().bytes());
 }
 
 /// Reads a file in every way that a program can, and returns how long the longest of them took.

@@ -89,7 +89,7 @@ fn errors() {
     );
 }
 
-/// Files that the readers refuse; `tests/cpu/refused.rs` reads them too.
+/// Files that the readers refuse; `tests/cpu/files.rs` reads them too.
 #[test]
 fn refused_files() {
     compare("../tests/files/refused", |_| true, |_, text| answered(text, refused));

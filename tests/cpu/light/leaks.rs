@@ -1,11 +1,11 @@
 //! No light gets where it should not, and none is lost, at any scale: rays start on surfaces, not near them.
 
 use pinhole::glam::DVec3;
-use pinhole::light::{Ground, Light, LightFrame, LightKind};
+use pinhole::light::LightKind;
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 
-use super::{Shot, by, furnace, gray, paths, white};
+use super::{Shot, by, emissive, furnace, gray, ground, paths, studio, white};
 
 const SCALES: [f64; 5] = [1e-4, 1e-2, 1.0, 1e3, 1e6];
 
@@ -60,8 +60,8 @@ fn all_scales_look_the_same() {
 /// An emissive sphere within an opaque one: black outside, exactly, however bright it is.
 #[test]
 fn a_closed_shell_is_dark() {
-    let lamp = white([0.1, 0.2, 0.0], 0.25).with_material(Material::Emissive { strength: 1e6 });
-    let touching = white([0.5, 0.0, 0.0], 0.5).with_material(Material::Emissive { strength: 1e6 });
+    let lamp = white([0.1, 0.2, 0.0], 0.25).with_material(emissive(1e6));
+    let touching = white([0.5, 0.0, 0.0], 0.5).with_material(emissive(1e6));
     let neighbours = [white([1.5, 0.0, 0.0], 0.5), white([0.0, -1e4 - 1.0, 0.0], 1e4)];
     for shell in [
         Material::default(),
@@ -95,13 +95,8 @@ fn a_lamp_in_a_shell_lights_nothing() {
             let spheres = [white([0.0; 3], 1.0), white([0.0, -1e4 - 1.0, 0.0], 1e4)];
             let shot = Shot::new(&placed(&spheres, scale, place), place, 2.2 * scale, 24);
             let radius = 0.25 * scale;
-            let kind = LightKind::Sphere { center: place.into(), radius, radiance: gray(1e6) };
-            let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
-            let lighting = RenderSettings {
-                lights: vec![Light { kind, frame: LightFrame::World }],
-                ..by(Integrator::Studio(studio), &paths(4, LightSampling::Multiple))
-            };
-            let image = shot.render(&lighting);
+            let lamp = LightKind::Sphere { center: place.into(), radius, radiance: gray(1e6) };
+            let image = shot.render(&studio(4, &[lamp]));
             let lit = image.color().iter().filter(|c| **c != [0.0; 3]).count();
             assert_eq!(lit, 0, "{scale:e} at {place:?}");
         }
@@ -115,8 +110,7 @@ fn inside_a_shell() {
     let albedo = 0.5;
     for scale in SCALES {
         let shell = Sphere::new([0.0; 3], scale, gray(albedo));
-        let lamp =
-            white([0.0; 3], 0.1 * scale).with_material(Material::Emissive { strength: 100.0 });
+        let lamp = white([0.0; 3], 0.1 * scale).with_material(emissive(100.0));
         let shot =
             Shot::from(0.5 * scale, &[shell, lamp], [0.4 * scale, 0.0, 0.0], 0.2 * scale, 16);
         for sampling in [LightSampling::Direct, LightSampling::Multiple] {
@@ -148,12 +142,8 @@ fn open_surfaces_hide_nothing_of_themselves() {
             let one = placed(&[white([0.0; 3], 1.0)], scale, place);
             let image = Shot::new(&one, place, 0.6 * scale, 24).render(&lighting);
             assert!(image.color().iter().all(|c| *c == [1.0; 3]), "{scale:e} at {place:?}");
-            let ground = Some(Ground {
-                point: place.into(),
-                normal: DVec3::new(0.1, 0.2, 1.0),
-                color: LinearRgb::WHITE,
-                is_shadow_catcher: false,
-            });
+            let normal = DVec3::new(0.1, 0.2, 1.0);
+            let ground = Some(ground(place.into(), normal, LinearRgb::WHITE));
             let far_above = placed(&[white([0.0, 0.0, -5.0], 1.0)], scale, place);
             let shot = Shot::new(&far_above, place, 0.6 * scale, 24);
             let image = shot.render(&RenderSettings { ground, ..lighting });

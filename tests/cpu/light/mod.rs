@@ -1,20 +1,20 @@
 //! Lit pictures of the CPU reference against answers known on paper.
 
 mod furnace;
-mod glass;
 mod lamps;
 mod leaks;
-mod occlusion;
 mod pixels;
-mod unbiased;
 
 use pinhole::camera::filter::PixelFilter;
 use pinhole::camera::{Camera, PinholeCamera, Pose};
 use pinhole::cpu::SampledPicture;
 use pinhole::geometry::ray::Ray;
-use pinhole::light::{Sky, SkyLight};
-use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
-use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
+use pinhole::glam::DVec3;
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling, Studio};
+use pinhole::{
+    Film, Image, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View, cpu,
+};
 
 /// A colour from three numbers.
 pub(crate) fn rgb(rgb: [f32; 3]) -> LinearRgb {
@@ -28,6 +28,34 @@ pub(crate) fn gray(value: f32) -> LinearRgb {
 /// A white sphere.
 pub(crate) fn white(center: [f64; 3], radius: f64) -> Sphere {
     Sphere::new(center, radius, LinearRgb::WHITE)
+}
+
+/// A sphere lamp's material.
+pub(crate) fn emissive(strength: f32) -> Material {
+    Material::Emissive { strength }
+}
+
+/// A light at its place in the world.
+pub(crate) fn light(kind: LightKind) -> Light {
+    Light { kind, frame: LightFrame::World }
+}
+
+pub(crate) fn sun(toward: DVec3, strength: LinearRgb, angular_radius: f64) -> LightKind {
+    LightKind::Directional { toward, strength, angular_radius }
+}
+
+/// A plane.
+pub(crate) fn ground(point: DVec3, normal: DVec3, color: LinearRgb) -> Ground {
+    Ground { point, normal, color, is_shadow_catcher: false }
+}
+
+/// Lights alone, with shadows.
+pub(crate) fn studio(samples: u32, lights: &[LightKind]) -> RenderSettings {
+    let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
+    RenderSettings {
+        lights: lights.iter().copied().map(light).collect(),
+        ..by(Integrator::Studio(studio), &paths(samples, LightSampling::Multiple))
+    }
 }
 
 /// Paths that are followed to the end, over black, without a light.
@@ -66,7 +94,7 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Seen along −z from a distance, as far to each side of the target as `reach`.
+    /// Seen along −z from far away, as far to each side of the target as `reach`.
     pub(crate) fn new(spheres: &[Sphere], target: [f64; 3], reach: f64, side: u32) -> Self {
         Self::from(8.0 * reach, spheres, target, reach, side)
     }

@@ -1,0 +1,100 @@
+//! Files of spheres and scene files that are refused, and damaged files of every format.
+
+use std::path::Path;
+
+use fastrand::Rng;
+use pinhole::load::{self, FORMATS, Options};
+use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
+use tempfile::TempDir;
+
+use crate::cases::{Case, answered};
+use crate::damage::{SLOW, damaged, read_all};
+use crate::seeds;
+use crate::support::effort::tries;
+
+#[test]
+fn refused_files() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/refused");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let file = entry.unwrap().path();
+        let text = std::fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+        let found = answered(&text, answer);
+        for (found, expected) in found.lines().zip(text.lines()) {
+            assert_eq!(found, expected, "{}", file.display());
+        }
+        assert_eq!(found.len(), text.len(), "{}", file.display());
+    }
+}
+
+/// The first error, whether it appears in parsing, in the scene, in its camera or in the settings.
+fn scene_file_error(text: &str) -> Option<SceneFileError> {
+    let settings = || {
+        let file = SceneFile::parse(text)?;
+        let scene = file.scene(&[])?;
+        let camera = file.camera(&file.film, &scene)?;
+        let kind = file.integrator().unwrap_or(IntegratorKind::Studio);
+        file.settings(kind, &scene, camera.as_ref(), None)
+    };
+    settings().err()
+}
+
+/// What the program says to a file that cannot be read.
+fn answer(Case { files, arguments }: &Case<'_>) -> String {
+    let [(name, bytes)] = &files[..] else { panic!("{arguments}: not one file") };
+    if name.ends_with(".toml") {
+        let error = scene_file_error(str::from_utf8(bytes).unwrap()).unwrap();
+        return format!("exit code 1\nerror: {name}: {error}\n");
+    }
+    let words = arguments.split(' ');
+    let flag = |name| words.clone().skip_while(|word| *word != name).nth(1);
+    let mut options = Options::default();
+    options.frame = flag("--frame").map(|frame| frame.parse().unwrap());
+    options.radius = flag("--radius").map(|radius| radius.parse().unwrap());
+    options.columns = flag("--columns")
+        .map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
+    let error = load::from_bytes(bytes, name, &options).unwrap_err();
+    // Of a file that is opened, frame by frame if it has any, the same is said.
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    assert_eq!(load::open(&path, &options).unwrap_err().to_string(), error.to_string(), "{name}");
+    // A radius that contradicts the file is wrong usage.
+    let code = if options.radius.is_some() { 2 } else { 1 };
+    format!("exit code {code}\nerror: {name}: {error}\n")
+}
+
+#[test]
+fn every_format_has_good_files() {
+    let folder = TempDir::new().unwrap();
+    for format in FORMATS {
+        let seeds = seeds::of(format, folder.path());
+        assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds.rs", format.name);
+        for (index, seed) in seeds.into_iter().enumerate() {
+            let options = seed.options.with_format(format);
+            let loaded = load::from_bytes(&seed.bytes, "", &options);
+            let loaded = loaded.unwrap_or_else(|e| panic!("{} {index}: {e}", format.name));
+            assert!(!loaded.spheres.is_empty(), "{} {index}", format.name);
+        }
+    }
+}
+
+#[test]
+fn damaged_files_end_with_spheres_or_one_line() {
+    let folder = TempDir::new().unwrap();
+    for format in FORMATS {
+        let seeds = seeds::of(format, folder.path());
+        // Frames are read in many ways, from files.
+        let each = tries(if format.has_frames() { 3_200 } else { 16_000 });
+        for number in 0..u64::from(each) {
+            let mut random = Rng::with_seed(number);
+            let seed = &seeds[number as usize % seeds.len()];
+            let other = &seeds[random.usize(0..seeds.len())].bytes;
+            let bytes = damaged(&seed.bytes, other, &mut random);
+            let file = folder.path().join("file");
+            let taken = read_all(format, &bytes, &seed.options, &file, &mut random);
+            let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
+            // A busy machine may be slow, but what hangs is slower. The long run in `benches` measures.
+            assert!(taken < 60 * SLOW, "{}, input {number}: {taken:?}", format.name);
+        }
+    }
+}
