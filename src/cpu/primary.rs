@@ -68,7 +68,7 @@ pub(super) fn for_rows(
     work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
 ) {
     let (width, start) = (image.width(), rows.start);
-    image.rows_mut(rows).into_par_iter().enumerate().for_each(|(j, mut row)| {
+    for_each(image.rows_mut(rows).into_iter().enumerate().collect(), |(j, mut row)| {
         for i in 0..width {
             work([i, (start + j) as u32], i as usize, &mut row);
         }

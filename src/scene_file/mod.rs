@@ -43,7 +43,7 @@ use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
 use mapping::MappingKeys;
 use materials::Materials;
-use span::{ColorValue, Lines, Span, WithSpan, scaled, unknown};
+use span::{Lines, Span, WithSpan, scaled, unknown};
 
 /// The contents of a scene file.
 #[derive(Debug)]
