@@ -62,41 +62,20 @@ impl Cells {
         }
     }
 
-    /// Like [`Self::for_each_near`] for all rows of cells that may cover only a part of the sphere: a sphere outside has
-    /// no cells.
-    pub(super) fn for_each_near_clipped(
-        &self,
-        sphere: &[f32; 4],
-        margin: f32,
-        f: impl FnMut(usize),
-    ) {
-        // The clamped range of cells may contain cells that the exact test rejects.
-        self.for_each_in_range(sphere, margin, false, &(0..self.rows()), f);
-    }
-
-    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface, in some rows.
+    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface, in some rows. If the cells
+    /// cover only a part of the sphere, it is not within them: the clamped range of cells may contain cells that the exact
+    /// test rejects.
     ///
     /// Cells that are completely inside are left out, because a ray cannot hit the sphere there. A large sphere is
     /// therefore listed only in the cells that its surface crosses, although all cells inside are examined.
     pub(super) fn for_each_near(
         &self,
-        sphere: &[f32; 4],
-        margin: f32,
-        rows: &Range<usize>,
-        f: impl FnMut(usize),
-    ) {
-        self.for_each_in_range(sphere, margin, true, rows, f);
-    }
-
-    fn for_each_in_range(
-        &self,
-        sphere: &[f32; 4],
+        &[x, y, z, radius]: &[f32; 4],
         margin: f32,
         is_within: bool,
         rows: &Range<usize>,
         mut f: impl FnMut(usize),
     ) {
-        let &[x, y, z, radius] = sphere;
         let center = [x, y, z];
         let outer = radius + margin;
         let inner = (radius - margin).max(0.0);
@@ -327,7 +306,7 @@ mod tests {
                 let (mut found, mut expected) = (Vec::new(), Vec::new());
                 octet.for_each(&Strides::of(&cells), |cell| found.push(cell));
                 let rows = 0..cells.rows();
-                cells.for_each_near(&sphere, margin, &rows, |cell| expected.push(cell));
+                cells.for_each_near(&sphere, margin, true, &rows, |cell| expected.push(cell));
                 assert_eq!(found, expected, "{sphere:?} {cells:?}");
                 known += 1;
                 several += usize::from(found.len() > 1);

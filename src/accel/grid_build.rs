@@ -142,18 +142,9 @@ fn assemble(
 ) -> Grid {
     let dense =
         DenseCells::of(cells, sorted, margin, (&lists.shape_indices, &lists.starts), budget);
-    let mut grid = Grid {
-        min: cells.min,
-        cell_size: cells.size,
-        cell_counts: cells.counts,
-        cells: Vec::new(),
-        references: Vec::new(),
-        balls: Vec::new(),
-    };
     let is_long = |list: &[u32]| (list[1] - list[0]) as usize > LONG;
     if dense.is_none() && !lists.starts.windows(2).any(is_long) {
-        let Flat { words, references, balls } = Flat::of(cells, lists, sorted, margin);
-        return Grid { cells: words, references, balls, ..grid };
+        return flat(cells, lists, sorted, margin);
     }
     let frame =
         |cells: &Cells, cell: usize| BallFrame::new(corner(cells, cell), cells.size, margin);
@@ -188,8 +179,13 @@ fn assemble(
         }
         part
     });
-    join(&mut grid, word::in_whole_units(cells.len()), &parts);
-    grid
+    joined(cells, &parts)
+}
+
+/// A grid with these words and lists.
+fn grid(cells: &Cells, words: Vec<u32>, references: Vec<u32>, balls: Vec<u32>) -> Grid {
+    let Cells { min, size: cell_size, counts: cell_counts } = *cells;
+    Grid { min, cell_size, cell_counts, cells: words, references, balls }
 }
 
 /// A longer list keeps only one of several equal spheres.
@@ -204,14 +200,14 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
 }
 
 /// Joins the words and the lists of all parts.
-fn join(grid: &mut Grid, first_level_len: usize, parts: &[BuiltCells]) {
+fn joined(cells: &Cells, parts: &[BuiltCells]) -> Grid {
+    let first_level_len = word::in_whole_units(cells.len());
     let listed = parts.iter().map(|part| part.lists.references.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
-    grid.cells = vec![word::EMPTY; first_level_len + inner_len];
-    grid.references = vec![0; listed];
-    grid.balls = vec![0; listed];
-    let (mut words, mut inner) = grid.cells.split_at_mut(first_level_len);
-    let (mut references, mut all_balls) = (&mut grid.references[..], &mut grid.balls[..]);
+    let mut all_words = vec![word::EMPTY; first_level_len + inner_len];
+    let (mut all_references, mut all_balls) = (vec![0; listed], vec![0; listed]);
+    let (mut words, mut inner) = all_words.split_at_mut(first_level_len);
+    let (mut references, mut balls) = (&mut all_references[..], &mut all_balls[..]);
     let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
     let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
@@ -219,7 +215,7 @@ fn join(grid: &mut Grid, first_level_len: usize, parts: &[BuiltCells]) {
             cut(&mut words, part.words.len()),
             cut(&mut inner, part.inner.len()),
             cut(&mut references, part.lists.references.len()),
-            cut(&mut all_balls, part.lists.balls.len()),
+            cut(&mut balls, part.lists.balls.len()),
         );
         tasks.push((part, target, list_start, inner_start));
         list_start += part.lists.references.len() as u32;
@@ -240,6 +236,7 @@ fn join(grid: &mut Grid, first_level_len: usize, parts: &[BuiltCells]) {
         references.copy_from_slice(&part.lists.references);
         balls.copy_from_slice(&part.lists.balls);
     });
+    grid(cells, all_words, all_references, all_balls)
 }
 
 /// Splits the first elements off a slice.
@@ -296,56 +293,46 @@ fn write_list(
     }
 }
 
-/// Words, references and balls of a grid with one level.
-struct Flat {
-    words: Vec<u32>,
-    references: Vec<u32>,
-    balls: Vec<u32>,
-}
-
-impl Flat {
-    /// Makes references and balls of lists.
-    fn of(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Self {
-        let Lists { shape_indices, starts } = lists;
-        let elements = |cell: usize| elements((starts[cell + 1] - starts[cell]) as usize);
-        let chunks = ranges(cells.len(), CHUNK);
-        let counts = map_parts(chunks.clone(), |cells| cells.map(elements).sum::<usize>());
-        let mut end = 0;
-        let ends: Vec<usize> = counts
-            .into_iter()
-            .map(|count| {
-                end += count;
-                end
-            })
-            .collect();
-        let (mut references, mut balls) = (vec![0; end], vec![0; end]);
-        let mut words = vec![word::EMPTY; word::in_whole_units(cells.len())];
-        let mut tasks = Vec::with_capacity(chunks.len());
-        let targets = split_mut(&mut references, ends.iter().copied());
-        let targets = targets.into_iter().zip(split_mut(&mut balls, ends.iter().copied()));
-        let mut start = 0;
-        for ((chunk, target), words) in chunks.into_iter().zip(targets).zip(words.chunks_mut(CHUNK))
-        {
-            tasks.push((chunk, start, target, words));
-            start += tasks.last().map_or(0, |task| task.2.0.len());
-        }
-        for_each(tasks, |(chunk, start, (references, balls), words)| {
-            let mut at = 0;
-            for (cell, word) in chunk.zip(words) {
-                let list = &shape_indices[starts[cell] as usize..starts[cell + 1] as usize];
-                if list.is_empty() {
-                    continue;
-                }
-                *word = word::LIST | (start + at) as u32;
-                let place = at..at + elements(cell);
-                at = place.end;
-                let frame = BallFrame::new(corner(cells, cell), cells.size, margin);
-                let balls = &mut balls[place.clone()];
-                write_list(list, spheres, frame, &mut references[place], balls);
-            }
-        });
-        Self { words, references, balls }
+/// A grid with one level, of which the lists are copied once, straight to their places.
+fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid {
+    let Lists { shape_indices, starts } = lists;
+    let elements = |cell: usize| elements((starts[cell + 1] - starts[cell]) as usize);
+    let chunks = ranges(cells.len(), CHUNK);
+    let counts = map_parts(chunks.clone(), |cells| cells.map(elements).sum::<usize>());
+    let mut end = 0;
+    let ends: Vec<usize> = counts
+        .into_iter()
+        .map(|count| {
+            end += count;
+            end
+        })
+        .collect();
+    let (mut references, mut balls) = (vec![0; end], vec![0; end]);
+    let mut words = vec![word::EMPTY; word::in_whole_units(cells.len())];
+    let mut tasks = Vec::with_capacity(chunks.len());
+    let targets = split_mut(&mut references, ends.iter().copied());
+    let targets = targets.into_iter().zip(split_mut(&mut balls, ends.iter().copied()));
+    let mut start = 0;
+    for ((chunk, target), words) in chunks.into_iter().zip(targets).zip(words.chunks_mut(CHUNK)) {
+        tasks.push((chunk, start, target, words));
+        start += tasks.last().map_or(0, |task| task.2.0.len());
     }
+    for_each(tasks, |(chunk, start, (references, balls), words)| {
+        let mut at = 0;
+        for (cell, word) in chunk.zip(words) {
+            let list = &shape_indices[starts[cell] as usize..starts[cell + 1] as usize];
+            if list.is_empty() {
+                continue;
+            }
+            *word = word::LIST | (start + at) as u32;
+            let place = at..at + elements(cell);
+            at = place.end;
+            let frame = BallFrame::new(corner(cells, cell), cells.size, margin);
+            let balls = &mut balls[place.clone()];
+            write_list(list, spheres, frame, &mut references[place], balls);
+        }
+    });
+    grid(cells, words, references, balls)
 }
 
 /// The largest number of cells beyond the first that a step may cross.

@@ -118,9 +118,9 @@ pub(super) fn inner_lists(
     let inner = inner_cells(cells, cell, level);
     let expected = expected_listed(cells.size, inner.size, list, spheres);
     let most = max_listed(expected, inner.len());
-    let mut lists = vec![Vec::new(); inner.len()];
+    let (rows, mut lists) = (0..inner.rows(), vec![Vec::new(); inner.len()]);
     for &shape_index in list {
-        inner.for_each_near_clipped(&spheres[shape_index as usize], margin, |cell| {
+        inner.for_each_near(&spheres[shape_index as usize], margin, false, &rows, |cell| {
             lists[cell].push(shape_index);
         });
     }

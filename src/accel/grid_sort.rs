@@ -251,7 +251,7 @@ impl<'a> Counted<'a> {
                     });
                 } else {
                     let sphere = &spheres[shape_index as usize];
-                    cells.for_each_near(sphere, *margin, &slab.rows, |cell| {
+                    cells.for_each_near(sphere, *margin, true, &slab.rows, |cell| {
                         f(shape_index, cell - start);
                     });
                 }

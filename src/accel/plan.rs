@@ -100,8 +100,7 @@ impl Structure {
 
     /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
     /// spheres; `None` for the list, which always terminates.
-    #[must_use]
-    pub const fn instead(self) -> Option<AccelChoice> {
+    pub(crate) const fn instead(self) -> Option<AccelChoice> {
         match self {
             Self::List => None,
             Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
@@ -144,7 +143,7 @@ pub struct BrickKind {
 
 impl BrickKind {
     /// All combinations of the given structures and primitives that are supported.
-    pub fn of<'a>(
+    pub(crate) fn of<'a>(
         structures: &'a [Structure],
         primitives: &'a [Primitive],
     ) -> impl Iterator<Item = Self> + 'a {
@@ -191,8 +190,7 @@ pub struct PlannedBuffer {
 
 impl PlannedBuffer {
     /// A buffer of `bytes` bytes in a single binding.
-    #[must_use]
-    pub const fn one(name: &'static str, bytes: u64) -> Self {
+    pub(crate) const fn one(name: &'static str, bytes: u64) -> Self {
         Self { name, bytes, bytes_per_binding: bytes }
     }
 }
@@ -223,11 +221,7 @@ impl AccelPlan {
     /// `binding_bytes`.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
-        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
-        let statistics = SceneStatistics::of(spheres);
-        let crowd = Crowd::find(spheres, &statistics);
-        let (structure, reason) = decide(&statistics, crowd.as_ref(), choice);
-        Self { crowd, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
+        Self::decided(spheres, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice))
     }
 
     /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels, and
@@ -239,20 +233,19 @@ impl AccelPlan {
             Structure::NestedGrid => Structure::Grid,
             structure => structure,
         };
-        let (statistics, reason) = (SceneStatistics::of(spheres), "asked for".to_owned());
-        let crowd = Crowd::find(spheres, &statistics);
-        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
-        Self { crowd, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
+        Self::decided(spheres, binding_bytes, |_, _| (structure, "asked for".to_owned()))
     }
 
-    /// The plan of a structure that has been decided on.
-    pub(super) fn of_structure(
-        statistics: SceneStatistics,
-        structure: Structure,
-        reason: String,
+    fn decided(
+        spheres: &[[f32; 4]],
         binding_bytes: u64,
+        decide: impl FnOnce(&SceneStatistics, Option<&Crowd>) -> (Structure, String),
     ) -> Self {
-        let (count, crowd) = (statistics.count, None);
+        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
+        let statistics = SceneStatistics::of(spheres);
+        let crowd = Crowd::find(spheres, &statistics);
+        let (structure, reason) = decide(&statistics, crowd.as_ref());
+        let count = statistics.count;
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
         // Where bricks are not all of the same size, this takes one more brick at most.

@@ -33,33 +33,24 @@ impl SceneStatistics {
     /// Computes the statistics of spheres (centre in the scene's frame, radius).
     #[must_use]
     pub fn of(spheres: &[[f32; 4]]) -> Self {
-        let parts = map_chunks(spheres, |_, spheres| {
-            let nothing = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
-            spheres.iter().fold(nothing, |(min, max, least, most, sum), &[x, y, z, r]| {
-                let center = Vec3::new(x, y, z);
-                (
-                    min.min(center - r),
-                    max.max(center + r),
-                    least.min(r),
-                    most.max(r),
-                    sum + f64::from(r),
-                )
-            })
-        });
-        if parts.is_empty() {
+        type Part = (Vec3, Vec3, f32, f32, f64);
+        let nothing: Part = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0, 0.0);
+        let of_sphere = |&[x, y, z, r]: &[f32; 4]| -> Part {
+            let center = Vec3::new(x, y, z);
+            (center - r, center + r, r, r, f64::from(r))
+        };
+        let joined = |a: Part, b: Part| -> Part {
+            (a.0.min(b.0), a.1.max(b.1), a.2.min(b.2), a.3.max(b.3), a.4 + b.4)
+        };
+        let parts =
+            map_chunks(spheres, |_, spheres| spheres.iter().map(of_sphere).fold(nothing, joined));
+        let all = parts.into_iter().fold(nothing, joined);
+        let (min, max, radius_min, radius_max, sum) = all;
+        if spheres.is_empty() {
             let (min, max) = (Vec3::ZERO, Vec3::ZERO);
             let (radius_min, radius_max, radius_mean) = (0.0, 0.0, 0.0);
             return Self { count: 0, min, max, radius_min, radius_max, radius_mean, densest: 0.0 };
         }
-        let mut all = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
-        for part in parts {
-            all.0 = all.0.min(part.0);
-            all.1 = all.1.max(part.1);
-            all.2 = all.2.min(part.2);
-            all.3 = all.3.max(part.3);
-            all.4 += part.4;
-        }
-        let (min, max, radius_min, radius_max, sum) = all;
         let radius_mean = (sum / spheres.len() as f64) as f32;
         let densest = densest(spheres, min, max);
         Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, densest }
@@ -73,8 +64,7 @@ impl SceneStatistics {
     }
 
     /// The box to which rays are moved before they are traced.
-    #[must_use]
-    pub fn inflated_bounds(&self) -> (Vec3, Vec3) {
+    pub(crate) fn inflated_bounds(&self) -> (Vec3, Vec3) {
         let margin = 2.0 * self.margin();
         (self.min - margin, self.max + margin)
     }

@@ -154,7 +154,7 @@ impl CameraPath {
         let up = up.try_normalize().unwrap_or(DVec3::Y);
         let track = |value: &dyn Fn(&CameraKey) -> Option<f64>| {
             let given = self.keys.iter().filter_map(|key| Some((key.time, value(key)?)));
-            let given: Vec<_> = given.collect();
+            let given = given.collect::<Vec<_>>();
             (!given.is_empty()).then(|| Track::new(given, self.eases))
         };
         let places = if self.keys.iter().any(is_view) {
@@ -169,13 +169,11 @@ impl CameraPath {
                 self.keys.iter().map(|key| (key.time, points(key, up))).collect();
             for (key, pair) in points.windows(2).enumerate() {
                 if pair[0].1[2].dot(pair[1].1[2]) < -0.999_999 {
-                    return Err(CameraPathError::of(
-                        key + 1,
-                        format_args!(
-                            "its direction that is up is opposite to that of key {key}; add a key between them that says \
-                             to which side the camera rolls"
-                        ),
-                    ));
+                    let message = format!(
+                        "its direction that is up is opposite to that of key {key}; add a key between them that says to \
+                         which side the camera rolls"
+                    );
+                    return Err(CameraPathError::of(key + 1, message));
                 }
             }
             let curve = |i: usize| {
@@ -220,13 +218,10 @@ fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
             }
         }
         KeyPlace::Point { eye, look_at, up } => {
-            let made = Pose::looking_at(eye, look_at, up.unwrap_or(DVec3::Y));
-            match made {
+            match Pose::looking_at(eye, look_at, up.unwrap_or(DVec3::Y)) {
                 // Without an `up` of its own, such a key gets another one.
                 Err(CameraError::UpParallelToView { .. }) if up.is_none() => {}
-                made => {
-                    made.map_err(|error| CameraPathError::of(key, error))?;
-                }
+                made => made.map(drop).map_err(|error| CameraPathError::of(key, error))?,
             }
         }
     }
@@ -258,8 +253,7 @@ fn angles(key: &CameraKey, up: DVec3) -> [f64; 2] {
 /// Eye, target and the unit vector that is up of a key.
 fn points(key: &CameraKey, of_path: DVec3) -> [DVec3; 3] {
     let KeyPlace::Point { eye, look_at, up } = key.place else { return [DVec3::ZERO; 3] };
-    let given = up.and_then(DVec3::try_normalize);
-    let up = given.unwrap_or_else(|| {
+    let up = up.and_then(DVec3::try_normalize).unwrap_or_else(|| {
         // Seen from straight above or below, the direction away from azimuth 0, as `Viewpoint::axes` has it.
         let toward = (look_at - eye).normalize_or_zero();
         let is_vertical = toward.cross(of_path).length() < 1e-6;
@@ -354,12 +348,8 @@ impl CameraMotion {
 /// keys, any perpendicular direction.
 fn upright(view: DVec3, up: DVec3) -> DVec3 {
     let Some(view) = view.try_normalize() else { return up.normalize_or(DVec3::Y) };
-    let beside = up - up.dot(view) * view;
-    if beside.length() > 1e-9 * up.length() {
-        beside.normalize_or(view.any_orthonormal_vector())
-    } else {
-        view.any_orthonormal_vector()
-    }
+    let (beside, any) = (up - up.dot(view) * view, view.any_orthonormal_vector());
+    if beside.length() > 1e-9 * up.length() { beside.normalize_or(any) } else { any }
 }
 
 /// A function of time that takes given values at given times. It is monotone wherever the values are, so it never goes
@@ -473,25 +463,17 @@ impl Curve {
         let (mut points, mut knots): (Vec<DVec3>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut along = Vec::new();
         for &(time, point) in all {
-            match (points.last(), knots.last()) {
-                (Some(before), _) if *before == point => {}
-                (Some(before), Some(knot)) => {
-                    let next = knot + before.distance(point).sqrt();
-                    points.push(point);
-                    knots.push(next);
-                }
-                _ => {
-                    points.push(point);
-                    knots.push(0.0);
-                }
+            if points.last() != Some(&point) {
+                let before = points.last().zip(knots.last());
+                let next =
+                    before.map_or(0.0, |(before, knot)| knot + before.distance(point).sqrt());
+                points.push(point);
+                knots.push(next);
             }
             along.push((time, knots[knots.len() - 1]));
         }
-        let chords: Vec<DVec3> = points
-            .windows(2)
-            .zip(knots.windows(2))
-            .map(|(points, knots)| (points[1] - points[0]) / (knots[1] - knots[0]))
-            .collect();
+        let chord = |i: usize| (points[i] - points[i - 1]) / (knots[i] - knots[i - 1]);
+        let chords: Vec<DVec3> = (1..points.len()).map(chord).collect();
         // In the middle, the derivative of a parabola through three points; at the ends as well.
         let inner: Vec<DVec3> = (1..chords.len())
             .map(|i| {
@@ -562,13 +544,15 @@ mod tests {
     }
 
     #[test]
-    fn nothing_moves_between_equal_points() {
+    fn nothing_moves_between_equal_points_or_at_one() {
         let curve = Curve::new(&points(), true);
         for time in [1.0, 1.1, 1.3, 1.5] {
             assert_eq!(curve.at(time), DVec3::new(1.0, 2.0, 0.0));
         }
         let still = Curve::new(&[(0.0, DVec3::Y), (1.0, DVec3::Y)], false);
         assert_eq!([-1.0, 0.0, 0.3, 1.0, 2.0].map(|time| still.at(time)), [DVec3::Y; 5]);
+        assert_eq!(Track::new([(3.0, 7.0)], false).at(1.0).to_bits(), 7_f64.to_bits());
+        assert_eq!(Curve::new(&[(3.0, DVec3::X)], true).at(4.0), DVec3::X);
     }
 
     #[test]
@@ -611,11 +595,5 @@ mod tests {
             }
             assert_smooth(|time| DVec3::splat(track.at(time)), &TIMES[1..5]);
         }
-    }
-
-    #[test]
-    fn one_value_is_constant() {
-        assert_eq!(Track::new([(3.0, 7.0)], false).at(1.0).to_bits(), 7_f64.to_bits());
-        assert_eq!(Curve::new(&[(3.0, DVec3::X)], true).at(4.0), DVec3::X);
     }
 }

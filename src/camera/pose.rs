@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::basis::{BasisError, OrthonormalBasis};
+use crate::geometry::basis::OrthonormalBasis;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 
@@ -110,12 +110,11 @@ impl Pose {
         checked_point("the eye", eye)?;
         checked_point("the look-at point", look_at)?;
         checked_direction("up", up)?;
-        let basis =
-            OrthonormalBasis::looking_at(eye, look_at, up).map_err(|error| match error {
-                BasisError::Parallel { .. } => CameraError::UpParallelToView { up },
-                // All vectors are finite, and `up` is not zero.
-                _ => CameraError::EyeAtTarget { eye },
-            })?;
+        if eye == look_at {
+            return Err(CameraError::EyeAtTarget { eye });
+        }
+        let basis = OrthonormalBasis::from_vectors(eye - look_at, up)
+            .ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -134,7 +133,7 @@ impl Pose {
         checked_direction("up", up)?;
         // Two finite vectors that are not zero can only be parallel.
         let basis = OrthonormalBasis::from_vectors(-direction, up)
-            .map_err(|_| CameraError::UpParallelToView { up })?;
+            .ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 

@@ -23,7 +23,7 @@ mod sphere;
 use primary::primary_watched;
 
 pub use denoise::denoise;
-pub use light::{Sample, SampledPicture, finish, radiance};
+pub use light::{Sample, SampledPicture, finish};
 pub use pace::RenderError;
 pub use primary::{shade, trace};
 pub use search::{Search, SearchPlan, SearchStructure};

@@ -1,6 +1,8 @@
-//! Small vector helpers, and the range of lengths that the kernels can square without overflow.
+//! Small vector helpers, a map from square to disk, and the range of lengths that the kernels can square without overflow.
 
-use glam::DVec3;
+use std::f64::consts::FRAC_PI_4;
+
+use glam::{DVec2, DVec3};
 
 /// The largest magnitude, in scene units, of any coordinate, radius or camera parameter: 2⁵⁶.
 ///
@@ -35,6 +37,25 @@ pub(crate) fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
+/// Maps a point of the unit square [0, 1)² to a point of the unit disk by the concentric map, which preserves relative
+/// areas and keeps neighbours together; (½, ½) is mapped to the centre. The WGSL twin is `shaders/math/disk.wgsl`.
+///
+/// P. Shirley and K. Chiu, *A low distortion map between disk and square*, Journal of Graphics Tools 2 (1997), with D.
+/// Cline's signed radius, which needs two cases instead of four.
+pub(crate) fn concentric_disk(square: DVec2) -> DVec2 {
+    let spot = 2.0 * square - 1.0;
+    if spot == DVec2::ZERO {
+        return DVec2::ZERO;
+    }
+    if spot.x.abs() > spot.y.abs() {
+        let (sin, cos) = (FRAC_PI_4 * (spot.y / spot.x)).sin_cos();
+        spot.x * DVec2::new(cos, sin)
+    } else {
+        let (sin, cos) = (FRAC_PI_4 * (spot.x / spot.y)).sin_cos();
+        spot.y * DVec2::new(sin, cos)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +73,38 @@ mod tests {
         assert_eq!(unit(DVec3::ZERO), None);
         assert_eq!(unit(DVec3::new(f64::NAN, 0.0, 1.0)), None);
         assert_eq!(unit(DVec3::new(0.0, f64::INFINITY, 1.0)), None);
+    }
+
+    fn near(square: [f64; 2], disk: [f64; 2]) {
+        let found = concentric_disk(DVec2::from(square));
+        assert!((found - DVec2::from(disk)).length() < 1e-15, "{square:?}: {found}");
+    }
+
+    #[test]
+    fn on_paper() {
+        let half = 0.5_f64.sqrt();
+        assert_eq!(concentric_disk(DVec2::splat(0.5)), DVec2::ZERO);
+        near([0.0, 0.5], [-1.0, 0.0]);
+        near([0.5, 1.0], [0.0, 1.0]);
+        near([1.0, 1.0], [half, half]);
+        near([0.0, 1.0], [-half, half]);
+        near([0.75, 0.25], [0.5 * half, -0.5 * half]);
+    }
+
+    /// Equal areas of the square are mapped to equal areas of the disk: a grid of points has the moments of a uniform
+    /// disk.
+    #[test]
+    fn areas_keep_their_proportions() {
+        let side = 1000;
+        let at = |i: i32| (f64::from(i) + 0.5) / f64::from(side);
+        let points: Vec<DVec2> = (0..side * side)
+            .map(|k| concentric_disk(DVec2::new(at(k % side), at(k / side))))
+            .collect();
+        let mean = |f: fn(&DVec2) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
+        assert!(points.iter().all(|p| p.length() < 1.0));
+        assert!((mean(|p| p.length_squared()) - 0.5).abs() < 1e-5);
+        assert!((mean(|p| p.x * p.x) - 0.25).abs() < 1e-5);
+        assert!((mean(|p| p.x.powi(4)) - 0.125).abs() < 1e-5);
+        assert!(mean(|p| p.x).abs() < 1e-12 && mean(|p| p.x * p.y).abs() < 1e-12);
     }
 }

@@ -2,7 +2,6 @@
 
 pub mod basis;
 pub mod bounds;
-pub(crate) mod disk;
 pub mod math;
 pub mod ray;
 pub mod subject;

@@ -29,14 +29,7 @@ pub(crate) struct WholeSubject {
 
 impl From<Bounds> for Subject<'_> {
     fn from(bounds: Bounds) -> Self {
-        Self {
-            origin: DVec3::ZERO,
-            spheres: &[],
-            added: 0,
-            bounds,
-            free_sides: [0.0; 4],
-            whole: None,
-        }
+        Self::spheres(DVec3::ZERO, &[], bounds)
     }
 }
 
@@ -132,24 +125,14 @@ impl<'a> Subject<'a> {
     /// The axis (0, 1 or 2) along which all centres of the spheres of the data lie in one plane, if there is exactly one.
     #[must_use]
     pub fn flat_axis(&self) -> Option<usize> {
-        let of_chunk = |_, chunk: &[[f32; 4]]| {
-            chunk.iter().fold([[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]], |[low, high], c| {
-                [
-                    std::array::from_fn(|i| low[i].min(c[i])),
-                    std::array::from_fn(|i| high[i].max(c[i])),
-                ]
-            })
+        let joined = |[low, high]: [[f32; 3]; 2], [l, h]: [[f32; 3]; 2]| {
+            let lower = std::array::from_fn(|i| low[i].min(l[i]));
+            [lower, std::array::from_fn(|i| high[i].max(h[i]))]
         };
-        let extents = || {
-            parallel::map_chunks(self.of_data(), of_chunk).into_iter().reduce(
-                |[low, high], [l, h]| {
-                    [
-                        std::array::from_fn(|i| low[i].min(l[i])),
-                        std::array::from_fn(|i| high[i].max(h[i])),
-                    ]
-                },
-            )
-        };
+        let of_chunk =
+            |_, chunk: &[[f32; 4]]| chunk.iter().map(|&[x, y, z, _]| [[x, y, z]; 2]).reduce(joined);
+        let extents =
+            || parallel::map_chunks(self.of_data(), of_chunk).into_iter().flatten().reduce(joined);
         let [low, high] = self.whole.map(|whole| whole.centers).or_else(extents)?;
         let sizes: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
         let widest = sizes.into_iter().fold(0.0, f32::max);

@@ -60,8 +60,7 @@ impl Layer {
     }
 
     /// Whether its values belong to the ray through the centre of each pixel, also where other layers are means over samples.
-    #[must_use]
-    pub const fn is_of_one_ray(self) -> bool {
+    pub(crate) const fn is_of_one_ray(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Id | Self::Position)
     }
 
@@ -151,12 +150,6 @@ impl Default for LayerSet {
     /// Colour alone.
     fn default() -> Self {
         Self::COLOR
-    }
-}
-
-impl Extend<Layer> for LayerSet {
-    fn extend<I: IntoIterator<Item = Layer>>(&mut self, layers: I) {
-        *self = layers.into_iter().fold(*self, Self::with);
     }
 }
 

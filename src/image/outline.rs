@@ -261,11 +261,16 @@ mod tests {
     use super::*;
     use crate::image::color::LinearRgb;
 
-    /// A white picture of one row: one sphere on the left, and another on the right that may lie farther away.
-    fn row(depths: [f32; 8]) -> Image {
-        let ids = (0..8).map(|i| u32::from(i >= 4)).collect();
-        let white = vec![[1.0; 3]; 8];
-        Image::from_layers([8, 1], white, depths.to_vec(), vec![[0.0, 0.0, 1.0]; 8], ids).unwrap()
+    /// A white picture of two spheres at these depths, of which `is_second` tells the second by index.
+    fn two(
+        [width, height]: [usize; 2],
+        depths: [f32; 2],
+        is_second: impl Fn(usize) -> bool,
+    ) -> Image {
+        let ids: Vec<u32> = (0..width * height).map(|at| u32::from(is_second(at))).collect();
+        let depths = ids.iter().map(|id| depths[*id as usize]).collect();
+        let [colors, normals] = [[1.0; 3], [0.0, 0.0, 1.0]].map(|v| vec![v; width * height]);
+        Image::from_layers([width as u32, height as u32], colors, depths, normals, ids).unwrap()
     }
 
     #[test]
@@ -274,7 +279,7 @@ mod tests {
             (2.0, [1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
             (3.0, [1.0, 1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 1.0]),
         ] {
-            let mut image = row([1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
+            let mut image = two([8, 1], [1.0, 2.0], |i| i >= 4);
             draw(&mut image, &Outline { width, ..Outline::default() });
             let found: Vec<f32> = image.color().iter().map(|c| c[0]).collect();
             assert_eq!(found, wanted, "{width}");
@@ -283,7 +288,7 @@ mod tests {
 
     #[test]
     fn where_nothing_is_hidden_there_is_no_line() {
-        let mut image = row([1.0; 8]);
+        let mut image = two([8, 1], [1.0; 2], |i| i >= 4);
         draw(&mut image, &Outline::default());
         assert_eq!(image.color(), [[1.0; 3]; 8]);
         let red = LinearRgb::new([1.0, 0.0, 0.0]).unwrap();
@@ -298,14 +303,8 @@ mod tests {
         const SIZE: usize = 60;
         for slope in [0.13_f32, 0.47, 0.88] {
             let edge = |i: usize| 5.21 + slope * i as f32;
-            let id = |index: usize| u32::from((index / SIZE) as f32 > edge(index % SIZE));
-            let ids: Vec<u32> = (0..SIZE * SIZE).map(id).collect();
-            let depths = ids.iter().map(|id| 1.0 + *id as f32).collect();
-            let size = [SIZE as u32; 2];
-            let normals = vec![[0.0, 0.0, 1.0]; SIZE * SIZE];
-            let mut image =
-                Image::from_layers(size, vec![[1.0; 3]; SIZE * SIZE], depths, normals, ids)
-                    .unwrap();
+            let is_below = |index: usize| (index / SIZE) as f32 > edge(index % SIZE);
+            let mut image = two([SIZE; 2], [1.0, 2.0], is_below);
             draw(&mut image, &Outline { width: 1.2, ..Outline::default() });
             let dark = |i: usize, j: usize| 1.0 - image.color()[j * SIZE + i][0];
             for i in 15..45 {
@@ -323,14 +322,9 @@ mod tests {
     #[test]
     fn bands_do_not_show() {
         let (width, height) = (40, 3 * BAND + 7);
-        let id =
-            |index: usize| u32::from((index % width) as f32 > 10.0 + 0.05 * (index / width) as f32);
-        let ids: Vec<u32> = (0..width * height).map(id).collect();
-        let depths = ids.iter().map(|id| 1.0 + *id as f32).collect();
-        let normals = vec![[0.0, 0.0, 1.0]; width * height];
-        let colors = vec![[1.0; 3]; width * height];
-        let image = Image::from_layers([width as u32, height as u32], colors, depths, normals, ids)
-            .unwrap();
+        let image = two([width, height], [1.0, 2.0], |index| {
+            (index % width) as f32 > 10.0 + 0.05 * (index / width) as f32
+        });
         let outline = Outline::default();
         let layers = Layers {
             ids: image.id().unwrap(),

@@ -59,14 +59,12 @@ impl Emitters {
 
     /// For each entry of [`Emitters::ids`], the largest u32 that picks it: 2³² times the cumulative probability, less
     /// one. Ascending; the last entry is 2³² − 1.
-    #[must_use]
-    pub fn last_picks(&self) -> &[u32] {
+    pub(crate) fn last_picks(&self) -> &[u32] {
         &self.last
     }
 
     /// Whether no sphere emits light.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
 

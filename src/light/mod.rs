@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::camera::{Camera, CameraVectors};
+use crate::camera::CameraVectors;
 use crate::geometry::math::{unit, wide};
 use crate::image::color::LinearRgb;
 use environment::Environment;
@@ -82,6 +82,17 @@ pub enum LightFrame {
     Camera,
 }
 
+impl LightKind {
+    /// Its strength, intensity or radiance.
+    pub(crate) const fn color(&self) -> LinearRgb {
+        match *self {
+            Self::Head { strength } | Self::Directional { strength, .. } => strength,
+            Self::Point { intensity, .. } => intensity,
+            Self::Sphere { radiance, .. } => radiance,
+        }
+    }
+}
+
 impl Light {
     /// A key light above the viewer's left shoulder, and a weaker fill light from the right.
     #[must_use]
@@ -97,14 +108,8 @@ impl Light {
         [at_camera(DVec3::new(-0.6, 1.0, 0.9), 0.65), at_camera(DVec3::new(1.0, 0.2, 0.8), 0.15)]
     }
 
-    /// The light in world space, for a camera; directions have unit length. `None` if a direction is zero or not
-    /// finite, which [`RenderSettings::check`](crate::render::RenderSettings::check) reports as an error.
-    #[must_use]
-    pub fn in_world(&self, camera: &dyn Camera) -> Option<LightKind> {
-        self.in_view(&camera.vectors())
-    }
-
-    /// The light in world space, for the vectors of a camera.
+    /// The light in world space, for the vectors of a camera; directions have unit length. `None` if a direction is zero or
+    /// not finite, which [`RenderSettings::check`](crate::render::RenderSettings::check) reports as an error.
     pub(crate) fn in_view(&self, vectors: &CameraVectors) -> Option<LightKind> {
         let axes = [vectors.right, vectors.up, -vectors.forward].map(DVec3::normalize_or_zero);
         let turned = |v: DVec3| match self.frame {

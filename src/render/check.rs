@@ -153,12 +153,7 @@ impl RenderSettings {
     /// Checks the strength of all light sources except spheres.
     fn check_brightness(&self) -> Result<(), SettingsError> {
         for (index, light) in self.lights.iter().enumerate() {
-            let color = match &light.kind {
-                LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
-                LightKind::Point { intensity, .. } => intensity,
-                LightKind::Sphere { radiance, .. } => radiance,
-            };
-            check_brightness(color.to_array(), 1.0, || format!("light {index}"))?;
+            check_brightness(light.kind.color().to_array(), 1.0, || format!("light {index}"))?;
         }
         let ambient = self.studio_parameters().map(|studio| studio.ambient);
         let others = ambient.into_iter().chain([self.background]);

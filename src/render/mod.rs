@@ -18,22 +18,22 @@ use crate::image::outline;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky};
 
 mod check;
-mod deep;
 mod integrator;
 mod nearest;
 mod notes;
 mod progress;
-mod studio;
 
 #[cfg(feature = "scene-file")]
 pub(crate) use check::BRIGHTEST;
 pub use check::SettingsError;
-pub use integrator::{Integrator, LightSampling, PathTracing, PrimarySettings, Shading};
+pub use integrator::{
+    DepthCue, Integrator, LightSampling, Occlusion, Outline, PathTracing, PrimarySettings, Shading,
+    Studio,
+};
 pub use nearest::{Nearest, NotOfOneScene};
 pub use notes::SettingsNote;
 pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
-pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
 /// All settings of a picture apart from the scene and the view.
 #[derive(Clone, Debug, PartialEq)]

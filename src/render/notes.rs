@@ -1,11 +1,11 @@
 //! Notes about settings that are valid but may not give the intended picture.
 
+use std::f64::consts::PI;
 use std::fmt;
 
-use super::deep::may_exceed;
 use super::{Integrator, RenderSettings};
 use crate::image::color::LinearRgb;
-use crate::light::{LightKind, SkyLight};
+use crate::light::SkyLight;
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
@@ -81,13 +81,7 @@ impl RenderSettings {
     /// Whether the picture has lighting but nothing emits light.
     fn is_dark(&self, scene: &Scene) -> bool {
         let is_black = |color: &LinearRgb| *color == LinearRgb::BLACK;
-        let is_lit = self.lights.iter().any(|light| {
-            !is_black(match &light.kind {
-                LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
-                LightKind::Point { intensity, .. } => intensity,
-                LightKind::Sphere { radiance, .. } => radiance,
-            })
-        });
+        let is_lit = self.lights.iter().any(|light| !is_black(&light.kind.color()));
         let has_ambient = match (&self.integrator, &self.sky.light) {
             // The headlight at the eye always shines.
             (Integrator::Primary(_), _) => true,
@@ -111,4 +105,27 @@ impl RenderSettings {
         };
         !is_lit && !has_ambient && !has_emitter()
     }
+}
+
+/// Whether it is likely that some ray meets more than `most` translucent surfaces, and that what lies behind them could
+/// be seen. That is an estimate from the sizes of the spheres and of the whole scene, because to know it, one has to
+/// trace the picture.
+fn may_exceed(scene: &Scene, most: u32) -> bool {
+    let bounds = scene.bounds_to_frame();
+    let [x, y, z] = (bounds.max() - bounds.min()).to_array();
+    // The mean of a box's shadows over all directions, and what of it is the shadow of an ellipsoid in the box.
+    let shadow = 0.5 * (x * y + y * z + z * x) * PI / 6.0;
+    let (mut area, mut clearness) = (0.0, 0.0);
+    for (id, [.., radius]) in (0_u32..).zip(scene.spheres()) {
+        let opacity = f64::from(scene.surface(id).opacity);
+        if opacity < 1.0 {
+            let own = PI * f64::from(*radius).powi(2);
+            area += own;
+            clearness += own * (1.0 - opacity).ln();
+        }
+    }
+    // A ray enters each sphere and leaves it, and in the middle of a ball it meets 1.5 times as many as on average.
+    let met = 1.5 * 2.0 * area / shadow;
+    let left = (clearness / area * f64::from(most)).exp();
+    met > f64::from(most) && left > 1.0 / 256.0
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-use super::SceneError;
+use super::error::SceneError;
 use crate::image::color::LinearRgb;
 use crate::scene::material::{Material, SurfaceProperties};
 

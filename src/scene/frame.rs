@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::SceneError;
+use super::error::SceneError;
 use crate::geometry::bounds::Bounds;
 use crate::parallel;
 use crate::scene::sphere::{self, Sphere};

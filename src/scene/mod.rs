@@ -11,12 +11,13 @@ use crate::geometry::subject::{Subject, WholeSubject};
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::material::SurfaceProperties;
-use crate::scene::sphere::{Sphere, SphereError};
+use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 
 mod appearance;
 mod duplicates;
+mod error;
 mod frame;
 pub mod material;
 pub mod sphere;
@@ -28,6 +29,7 @@ pub(crate) use appearance::SceneAppearance;
 pub(crate) use appearance::alpha_of;
 pub use appearance::{Appearance, ColorMap, ColorMapError, Colors};
 pub(crate) use duplicates::Duplicates;
+pub use error::SceneError;
 pub use frame::Whole;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
@@ -289,43 +291,6 @@ impl Scene {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
-    }
-}
-
-/// Why spheres and an appearance do not make a scene.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SceneError {
-    /// A sphere is out of range.
-    #[error("sphere {index}: {error}")]
-    Sphere {
-        /// Index in input order.
-        index: usize,
-        /// What is wrong with it.
-        error: SphereError,
-    },
-    /// There is not enough memory for all spheres.
-    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * 16)]
-    Memory {
-        /// The number of spheres given.
-        count: usize,
-    },
-    /// The origin of the frame, the appearance or the number of spheres is not valid.
-    #[error("{0}")]
-    Invalid(String),
-}
-
-impl SceneError {
-    /// The palette index of a sphere is out of range.
-    fn color(index: usize, colors: usize) -> Self {
-        Self::Invalid(format!(
-            "sphere {index} has no color: its index is out of range; the palette has {colors} colors"
-        ))
-    }
-
-    /// A sphere has the number NaN, for which a colour map has no colour.
-    fn scalar(index: usize) -> Self {
-        Self::Invalid(format!("sphere {index} has the number NaN, which has no color"))
     }
 }
 

@@ -3,8 +3,6 @@
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use glam::DVec3;
-
 use super::appearance::{Colors, SceneAppearance};
 use super::{Scene, SceneError, frame};
 use crate::scene::sphere::{self, SphereError};
@@ -141,8 +139,7 @@ impl SceneUpdate<'_> {
     }
 
     /// Whether centres or radii change, so that acceleration structures must be updated.
-    #[must_use]
-    pub fn changes_shape(&self) -> bool {
+    pub(crate) fn changes_shape(&self) -> bool {
         self.centers.is_some() || self.radii.is_some()
     }
 
@@ -167,21 +164,33 @@ impl SceneUpdate<'_> {
         Ok(first..end)
     }
 
-    /// A sphere after the update.
-    fn sphere(&self, scene: &Scene, range: &Range<usize>, offset: usize) -> Updated {
-        let index = range.start + offset;
+    /// The centre in world space of a sphere after the update, and the sphere in the scene's frame.
+    fn sphere(&self, scene: &Scene, index: usize) -> ([f64; 3], [f32; 4]) {
+        let offset = index - self.first as usize;
         let [x, y, z, radius] = scene.spheres[index];
         let radius = self.radii.map_or(radius, |radii| radii[offset]);
         match self.centers {
             None => {
                 let center = scene.origin + glam::Vec3::new(x, y, z).as_dvec3();
-                Updated { index, center: center.to_array(), in_frame: [x, y, z, radius] }
+                (center.to_array(), [x, y, z, radius])
             }
             Some(centers) => {
                 let center @ [x, y, z] = centers.get(offset);
-                let in_frame = frame::moved([x, y, z, f64::from(radius)], scene.origin);
-                Updated { index, center, in_frame }
+                (center, frame::moved([x, y, z, f64::from(radius)], scene.origin))
             }
+        }
+    }
+
+    fn check_sphere(&self, scene: &Scene, index: usize) -> Result<(), UpdateError> {
+        let ([x, y, z], in_frame) = self.sphere(scene, index);
+        let radius = f64::from(in_frame[3]);
+        sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
+        match sphere::check(frame::slackened(&in_frame)) {
+            Err(SphereError::Center { .. }) => Err(UpdateError(format!(
+                "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
+                scene.origin.to_array()
+            ))),
+            _ => Ok(()),
         }
     }
 
@@ -191,16 +200,13 @@ impl SceneUpdate<'_> {
         let wanted = match (new, scene.appearance().colors()) {
             (NewColors::Palette(indices), Colors::Palette { palette, .. }) => {
                 let colors = palette.len();
-                return match at(indices.iter().position(|index| *index as usize >= colors)) {
-                    Some(index) => Err(SceneError::color(index, colors).into()),
-                    None => Ok(()),
-                };
+                let outside = at(indices.iter().position(|index| *index as usize >= colors));
+                return outside
+                    .map_or(Ok(()), |index| Err(SceneError::color(index, colors).into()));
             }
             (NewColors::Scalars(values), Colors::Scalars { .. }) => {
-                return match at(values.iter().position(|value| value.is_nan())) {
-                    Some(index) => Err(SceneError::scalar(index).into()),
-                    None => Ok(()),
-                };
+                let nan = at(values.iter().position(|value| value.is_nan()));
+                return nan.map_or(Ok(()), |index| Err(SceneError::scalar(index).into()));
             }
             (NewColors::Rgba8(_), Colors::Rgba8(_)) => return Ok(()),
             (_, Colors::One(_)) => "one common color",
@@ -212,30 +218,6 @@ impl SceneUpdate<'_> {
         let message =
             format!("sphere {first} cannot be given {found}: the scene's spheres have {wanted}");
         Err(UpdateError(message))
-    }
-}
-
-/// A sphere after an update.
-struct Updated {
-    index: usize,
-    /// Centre in world space.
-    center: [f64; 3],
-    in_frame: [f32; 4],
-}
-
-impl Updated {
-    fn check(&self, origin: DVec3) -> Result<(), UpdateError> {
-        let [x, y, z] = self.center;
-        let radius = f64::from(self.in_frame[3]);
-        let index = self.index;
-        sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
-        match sphere::check(frame::slackened(&self.in_frame)) {
-            Err(SphereError::Center { .. }) => Err(UpdateError(format!(
-                "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
-                origin.to_array()
-            ))),
-            _ => Ok(()),
-        }
     }
 }
 
@@ -252,15 +234,12 @@ impl Scene {
     pub fn apply(&mut self, update: &SceneUpdate<'_>) -> Result<(), UpdateError> {
         let range = update.check_range(self)?;
         if update.changes_shape() {
-            for offset in 0..range.len() {
-                update.sphere(self, &range, offset).check(self.origin)?;
-            }
+            range.clone().try_for_each(|index| update.check_sphere(self, index))?;
         }
         update.check_colors(self, range.start)?;
         if update.changes_shape() {
-            for offset in 0..range.len() {
-                let Updated { index, in_frame, .. } = update.sphere(self, &range, offset);
-                self.spheres[index] = in_frame;
+            for index in range.clone() {
+                (_, self.spheres[index]) = update.sphere(self, index);
             }
             self.bounds = frame::bounds_in_frame(self.origin, &self.spheres);
         }

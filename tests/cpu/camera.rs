@@ -2,7 +2,7 @@
 
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, CameraError, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::geometry::basis::{BasisError, OrthonormalBasis};
+use pinhole::geometry::basis::OrthonormalBasis;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec2, DVec3};
 use pinhole::image::NO_ID;
@@ -317,7 +317,7 @@ fn any_two_vectors_make_a_right_handed_basis() {
 }
 
 #[test]
-fn nearly_parallel_vectors_make_a_basis_or_an_error() {
+fn nearly_parallel_vectors_make_a_basis_or_none() {
     let mut random = fastrand::Rng::with_seed(2);
     for _ in 0..10_000 {
         let (a, c) = (random_vector(&mut random), random_vector(&mut random));
@@ -325,11 +325,8 @@ fn nearly_parallel_vectors_make_a_basis_or_an_error() {
         let tilt = 10_f64.powf(-random.f64() * 20.0);
         let b = a + across * a.length() * tilt;
         match OrthonormalBasis::from_vectors(a, b) {
-            Ok(basis) => assert_orthonormal(&basis, &format!("tilt {tilt:e}")),
-            Err(error) => {
-                assert!(tilt < 1e-8, "tilt {tilt:e}: {error}");
-                assert!(matches!(error, BasisError::Parallel { .. }));
-            }
+            Some(basis) => assert_orthonormal(&basis, &format!("tilt {tilt:e}")),
+            None => assert!(tilt < 1e-8, "tilt {tilt:e}"),
         }
     }
 }
@@ -341,27 +338,20 @@ fn a_known_basis() {
 }
 
 #[test]
-fn degenerate_vectors_are_errors_that_say_which() {
+fn degenerate_vectors_make_no_basis() {
     let good = DVec3::new(1.0, 2.0, 3.0);
-    let error = |a: DVec3, b: DVec3| OrthonormalBasis::from_vectors(a, b).unwrap_err();
-    assert_eq!(error(DVec3::ZERO, good), BasisError::Zero { name: "a" });
-    assert_eq!(error(good, DVec3::ZERO), BasisError::Zero { name: "b" });
+    let none = |a: DVec3, b: DVec3| assert_eq!(OrthonormalBasis::from_vectors(a, b), None);
+    none(DVec3::ZERO, good);
+    none(good, DVec3::ZERO);
     for factor in [1.0, -1.0, 1e-300, -1e300] {
-        assert_eq!(error(good, good * factor), BasisError::Parallel { a: "a", b: "b" });
+        none(good, good * factor);
     }
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for axis in 0..3 {
             let mut vector = good;
             vector[axis] = bad;
-            assert!(matches!(error(vector, good), BasisError::NotFinite { name: "a", .. }));
-            assert!(matches!(error(good, vector), BasisError::NotFinite { name: "b", .. }));
+            none(vector, good);
+            none(good, vector);
         }
     }
-}
-
-#[test]
-fn points_at_the_end_of_f64_have_a_direction() {
-    let far = DVec3::new(f64::MAX, 0.0, 0.0);
-    let basis = OrthonormalBasis::looking_at(far, -far, DVec3::Y).unwrap();
-    assert_eq!(basis.w(), DVec3::X);
 }

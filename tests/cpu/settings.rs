@@ -190,7 +190,7 @@ fn samples_of_primary_rays_are_the_picture() {
     for (index, color) in image.color().iter().enumerate() {
         let pixel = [index as u32 % 5, index as u32 / 5];
         let sample = picture.sample(pixel, 0);
-        assert_eq!(sample.color.map(|c| c as f32), *color);
+        assert_eq!(sample.color.as_vec3().to_array(), *color);
         assert_eq!(sample.alpha as f32, image.alpha().unwrap()[index]);
         assert_eq!(sample, picture.sample(pixel, 7));
     }

@@ -66,7 +66,8 @@ impl<'a> LightingContext<'a> {
     ) -> Self {
         let scene = search.scene();
         let origin = scene.origin();
-        let lights = settings.lights.iter().filter_map(|light| light.in_world(camera));
+        let vectors = camera.vectors();
+        let lights = settings.lights.iter().filter_map(|light| light.in_view(&vectors));
         let lights = lights.map(|light| match light {
             LightKind::Point { position, intensity } => {
                 LightKind::Point { position: position - origin, intensity }

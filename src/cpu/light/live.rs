@@ -29,7 +29,7 @@ const MOST_MOVING: u32 = 4;
 /// The frames of a live picture, one after another.
 #[derive(Debug, Default)]
 pub struct LiveReference {
-    known: Vec<Known>,
+    known: Vec<History>,
     before: Option<Before>,
     count: u32,
 }
@@ -56,7 +56,7 @@ struct Before {
 
 /// What is known of the light at a pixel.
 #[derive(Clone, Copy, Debug)]
-struct Known {
+struct History {
     shares: DVec2,
     counts: [u32; 2],
     depth: f64,
@@ -98,9 +98,9 @@ impl LiveReference {
             let old = known.map_or(DVec2::ONE, |old| old.shares);
             let part = DVec2::new(1.0 / f64::from(counts[0]), 1.0 / f64::from(counts[1]));
             let shares = old + part * (DVec2::from(seen.shares) - old);
-            Known { shares, counts, depth: seen.depth, id: seen.id }
+            History { shares, counts, depth: seen.depth, id: seen.id }
         };
-        let known: Vec<Known> = pixels.clone().zip(&found).map(with_history).collect();
+        let known: Vec<History> = pixels.clone().zip(&found).map(with_history).collect();
         let mut frame = LiveFrame::default();
         for (pixel, seen) in pixels.zip(&found) {
             let shares = smoothed(view, pixel, &known, &found);
@@ -129,7 +129,7 @@ impl LiveReference {
         pixel: [u32; 2],
         point: DVec3,
         seen: &LivePixel,
-    ) -> Option<Known> {
+    ) -> Option<History> {
         let before = self.before.as_ref()?;
         let now = view.camera.vectors();
         let is_parallel = view.camera.kind() == CameraKind::Orthographic;
@@ -186,7 +186,7 @@ fn footprint(view: &View<'_>, distance: f64) -> f64 {
 }
 
 /// The mean of the shares of a pixel and of neighbours that show the same surface.
-fn smoothed(view: &View<'_>, [x, y]: [u32; 2], known: &[Known], found: &[LivePixel]) -> DVec2 {
+fn smoothed(view: &View<'_>, [x, y]: [u32; 2], known: &[History], found: &[LivePixel]) -> DVec2 {
     let index = (y * view.film.width() + x) as usize;
     let own = known[index];
     let part =

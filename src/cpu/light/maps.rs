@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::camera::sampling::unit;
-use crate::geometry::disk::concentric_disk;
+use crate::geometry::math::concentric_disk;
 use crate::geometry::math::wide;
 use crate::image::color::{LUMINANCE, LinearRgb};
 

@@ -5,18 +5,20 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use self::context::LightingContext;
 use self::path::follow as follow_path;
-use self::sample::{Address, FilmSums, Found, Lens, PixelSums, STRIP};
+use self::sample::{Address, FilmSums, PixelSums, STRIP};
 use self::studio::follow as follow_in_studio;
-use crate::camera::View;
+use self::surface_ray::{Start, SurfaceRay};
+use crate::camera::{View, filter, sampling};
 use crate::cpu::denoise::denoise;
 use crate::cpu::pace::{Pace, RenderError};
 use crate::cpu::primary::{for_rows, primary_pixel};
 use crate::cpu::search::Search;
 use crate::geometry::math::wide;
+use crate::geometry::ray::Ray;
 use crate::image::outline;
 use crate::image::{Image, LayerSet, NO_ID, Pixel};
 use crate::render::{
@@ -41,7 +43,8 @@ pub use sample::Sample;
 pub struct SampledPicture<'a> {
     context: LightingContext<'a>,
     view: View<'a>,
-    lens: Lens<'a>,
+    /// See [`PixelFilter::offset_table`](crate::PixelFilter::offset_table).
+    offsets: [f32; 257],
 }
 
 impl<'a> SampledPicture<'a> {
@@ -60,11 +63,10 @@ impl<'a> SampledPicture<'a> {
     ) -> Result<Self, SettingsError> {
         let search = search.into();
         settings.check(search.scene())?;
-        let offsets = settings.sampling.filter.offset_table();
         Ok(Self {
             context: LightingContext::new(search, view.camera, settings),
             view: *view,
-            lens: Lens::new(view, offsets, search.scene().origin()),
+            offsets: settings.sampling.filter.offset_table(),
         })
     }
 
@@ -74,7 +76,7 @@ impl<'a> SampledPicture<'a> {
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
         let address = Address::new(self.view.film.in_whole(pixel), sample, sampling.seed);
-        let surface_ray = || self.lens.surface_ray(pixel, address);
+        let surface_ray = || self.surface_ray(pixel, address);
         let found = match integrator {
             Integrator::Primary(_) => Some(self.primary(pixel)),
             Integrator::Studio(studio) => surface_ray()
@@ -84,17 +86,38 @@ impl<'a> SampledPicture<'a> {
         };
         let nothing = || {
             let color = if *is_transparent { DVec3::ZERO } else { self.context.background() };
-            Found { color, ..Found::default() }
+            Sample { color, ..Sample::default() }
         };
-        found.unwrap_or_else(nothing).into()
+        found.unwrap_or_else(nothing)
     }
 
-    fn primary(&self, pixel: [u32; 2]) -> Found {
+    /// The ray of a sample in the scene's frame; `None` where the camera has no ray.
+    fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
+        let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
+        let View { camera, film } = self.view;
+        // In the whole film, so that a part rounds as the whole does.
+        let place = film.in_whole(pixel);
+        let [column, row] = [0, 1].map(|axis| f64::from(place[axis]) + 0.5 + offset[axis]);
+        let location = film.whole().relative_location(column, row);
+        if !camera.sees(location) {
+            return None;
+        }
+        let ray = if camera.has_lens() {
+            let lens = DVec2::from(address.pair(1).map(sampling::unit));
+            camera.ray_through_lens(location, lens)
+        } else {
+            camera.ray_in_world(location)
+        };
+        let ray = Ray { origin: ray.origin - self.context.scene.origin(), ..ray };
+        Some(SurfaceRay { ray, start: Start::Free })
+    }
+
+    fn primary(&self, pixel: [u32; 2]) -> Sample {
         let primary = self.context.settings.primary().unwrap_or_default();
         let Pixel { color, albedo, id, .. } =
             primary_pixel(self.context.search, &self.view, &primary, pixel);
         let alpha = if id == NO_ID { 0.0 } else { 1.0 };
-        Found { color: wide(color), alpha, albedo: wide(albedo) }
+        Sample { color: wide(color), alpha, albedo: wide(albedo) }
     }
 
     /// Renders all pixels batch by batch of samples, and asks after parts of each batch how to continue; see
@@ -209,18 +232,4 @@ pub fn finish(mut image: Image, settings: &RenderSettings, layers: LayerSet) -> 
     }
     image.keep(layers);
     image
-}
-
-/// One sample of a pixel. For many samples, create a [`SampledPicture`] once.
-///
-/// # Errors
-/// Returns an error if [`RenderSettings::check`] fails.
-pub fn radiance<'a>(
-    search: impl Into<Search<'a>>,
-    view: &View<'_>,
-    settings: &RenderSettings,
-    pixel: [u32; 2],
-    sample: u32,
-) -> Result<Sample, SettingsError> {
-    Ok(SampledPicture::new(search.into(), view, settings)?.sample(pixel, sample))
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::bsdf::Bsdf;
 use super::context::{LightSample, LightingContext, SampledLight, Surface};
 use super::maps::{TangentFrame, rgb};
-use super::sample::{Address, Found};
+use super::sample::{Address, Sample};
 use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
 use crate::camera::sampling::unit;
 use crate::geometry::ray::Ray;
@@ -40,13 +40,13 @@ pub(super) fn follow(
     tracing: &PathTracing,
     surface_ray: SurfaceRay,
     address: Address,
-) -> Found {
+) -> Sample {
     let mut path = Path {
         context,
         tracing,
         address,
         surface_ray,
-        found: Found::default(),
+        found: Sample::default(),
         throughput: DVec3::ONE,
         absorption: DVec3::ZERO,
         origin: Origin::Only,
@@ -65,7 +65,7 @@ struct Path<'a> {
     tracing: &'a PathTracing,
     address: Address,
     surface_ray: SurfaceRay,
-    found: Found,
+    found: Sample,
     throughput: DVec3,
     /// Absorption coefficient of the medium that the ray passes through, per unit length.
     absorption: DVec3,

@@ -1,16 +1,12 @@
-//! One sample of a pixel: its random numbers, its ray, and its result; and the sums over samples of all pixels, with the
+//! One sample of a pixel: its random numbers and its result; and the sums over samples of all pixels, with the
 //! means that follow from them.
 
 use std::ops::Range;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::maps::luminance;
-use super::surface_ray::{Start, SurfaceRay};
-use crate::camera::View;
-use crate::camera::filter;
 use crate::camera::sampling::{self, pixel_seed};
-use crate::geometry::ray::Ray;
 use crate::image::{Averages, Image, ImageTooLarge};
 use crate::parallel;
 use crate::render::Totals;
@@ -19,26 +15,12 @@ use crate::render::Totals;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Radiance, in linear light.
-    pub color: [f64; 3],
+    pub color: DVec3,
     /// How much the sample hides the background: 0 to 1.
     pub alpha: f64,
     /// Colour of the first surface, each component at most 1. With the path integrator, this is the first surface that
     /// the path does not pass through. Zero for a miss, and for a shadow catcher.
-    pub albedo: [f64; 3],
-}
-
-/// The result of a sample while it is accumulated.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Found {
-    pub(super) color: DVec3,
-    pub(super) alpha: f64,
-    pub(super) albedo: DVec3,
-}
-
-impl From<Found> for Sample {
-    fn from(Found { color, alpha, albedo }: Found) -> Self {
-        Self { color: color.to_array(), alpha, albedo: albedo.to_array() }
-    }
+    pub albedo: DVec3,
 }
 
 /// The address of a sample's random numbers.
@@ -64,42 +46,6 @@ impl Address {
     }
 }
 
-/// The generator of camera rays for samples.
-#[derive(Debug)]
-pub(super) struct Lens<'a> {
-    view: View<'a>,
-    offsets: [f32; 257],
-    /// Origin of the scene's frame.
-    origin: DVec3,
-}
-
-impl<'a> Lens<'a> {
-    pub(super) fn new(view: &View<'a>, offsets: [f32; 257], origin: DVec3) -> Self {
-        Self { view: *view, offsets, origin }
-    }
-
-    /// The ray of a sample in the scene's frame; `None` where the camera has no ray.
-    pub(super) fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
-        let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
-        let View { camera, film } = self.view;
-        // In the whole film, so that a part rounds as the whole does.
-        let place = film.in_whole(pixel);
-        let [column, row] = [0, 1].map(|axis| f64::from(place[axis]) + 0.5 + offset[axis]);
-        let location = film.whole().relative_location(column, row);
-        if !camera.sees(location) {
-            return None;
-        }
-        let ray = if camera.has_lens() {
-            let lens = DVec2::from(address.pair(1).map(sampling::unit));
-            camera.ray_through_lens(location, lens)
-        } else {
-            camera.ray_in_world(location)
-        };
-        let ray = Ray { origin: ray.origin - self.origin, ..ray };
-        Some(SurfaceRay { ray, start: Start::Free })
-    }
-}
-
 /// The rows of a strip, and the width of a tile: rays of near pixels meet the same spheres, which stay in the caches.
 pub(super) const STRIP: usize = 8;
 
@@ -121,9 +67,9 @@ struct Means {
 
 impl PixelSums {
     fn add(&mut self, found: &Sample) {
-        let luminance = luminance(found.color.into());
-        self.color += DVec3::from(found.color);
-        self.albedo += DVec3::from(found.albedo);
+        let luminance = luminance(found.color);
+        self.color += found.color;
+        self.albedo += found.albedo;
         self.alpha += found.alpha;
         self.light += luminance;
         self.square += luminance * luminance;
@@ -261,7 +207,7 @@ mod tests {
         for [width, height] in [[1, 1], [8, 8], [7, 9], [17, 16], [30, 25]] {
             let mut film = FilmSums::new(width, height).unwrap();
             let sample = |[i, j]: [u32; 2], number| Sample {
-                color: [i, j, number].map(f64::from),
+                color: DVec3::from([i, j, number].map(f64::from)),
                 alpha: 1.0,
                 ..Sample::default()
             };

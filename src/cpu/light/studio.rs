@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::bsdf::Bsdf;
 use super::context::{LightingContext, Plane, Surface};
 use super::maps::{self, TangentFrame, luminance, rgb};
-use super::sample::{Address, Found};
+use super::sample::{Address, Sample};
 use super::sources::{Arrival, arrival, arrival_of_middle};
 use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
 use crate::geometry::ray::Ray;
@@ -20,8 +20,8 @@ pub(super) fn follow(
     studio: &Studio,
     mut surface_ray: SurfaceRay,
     address: Address,
-) -> Found {
-    let mut found = Found::default();
+) -> Sample {
+    let mut found = Sample::default();
     let mut clear = 1.0;
     let mut depth = 0.0;
     for m in 0..studio.max_surfaces {

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::trigonometry::EIGHTH_ERROR;
 use super::{CameraModel, CameraRay, Computed, Location, Unit};
-use crate::geometry::disk::concentric_disk;
+use crate::geometry::math::concentric_disk;
 use crate::verify::line::Line;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, gamma};
 

@@ -54,9 +54,9 @@ impl LightingData {
         scene: &SceneSummary,
         camera: &dyn Camera,
     ) -> Self {
-        let mut tables = Vec::new();
+        let (mut tables, vectors) = (Vec::new(), camera.vectors());
         let lights: Vec<LightKind> =
-            settings.lights.iter().filter_map(|light| light.in_world(camera)).collect();
+            settings.lights.iter().filter_map(|light| light.in_view(&vectors)).collect();
         let emitters = &scene.emitters;
         let sources = SourceList::of(settings, &lights, emitters);
         for (index, light) in lights.iter().enumerate() {

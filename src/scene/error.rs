@@ -1,0 +1,40 @@
+//! Why spheres and an appearance do not make a scene.
+
+use super::sphere::SphereError;
+
+/// Why spheres and an appearance do not make a scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A sphere is out of range.
+    #[error("sphere {index}: {error}")]
+    Sphere {
+        /// Index in input order.
+        index: usize,
+        /// What is wrong with it.
+        error: SphereError,
+    },
+    /// There is not enough memory for all spheres.
+    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * 16)]
+    Memory {
+        /// The number of spheres given.
+        count: usize,
+    },
+    /// The origin of the frame, the appearance or the number of spheres is not valid.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+impl SceneError {
+    /// The palette index of a sphere is out of range.
+    pub(super) fn color(index: usize, colors: usize) -> Self {
+        Self::Invalid(format!(
+            "sphere {index} has no color: its index is out of range; the palette has {colors} colors"
+        ))
+    }
+
+    /// A sphere has the number NaN, for which a colour map has no colour.
+    pub(super) fn scalar(index: usize) -> Self {
+        Self::Invalid(format!("sphere {index} has the number NaN, which has no color"))
+    }
+}
