@@ -10,7 +10,6 @@ mod harness;
 mod job;
 mod light;
 mod plan;
-mod profile;
 mod program;
 mod render;
 mod verify;
@@ -42,7 +41,6 @@ fn main() {
             job::trials(),
             light::trials(),
             plan::trials(),
-            profile::trials(),
             render::trials(),
             verify::trials(),
         ];

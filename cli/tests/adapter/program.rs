@@ -23,7 +23,6 @@ pub(crate) fn command_on(
     command
 }
 
-/// Runs a command that must succeed.
 #[track_caller]
 pub(crate) fn succeed(command: &mut Command) -> Output {
     let output = command.output().unwrap();

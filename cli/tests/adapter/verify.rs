@@ -53,7 +53,6 @@ fn table(folder: &TempDir, arguments: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The data in a page.
 fn page_of(folder: &TempDir, page: &str) -> serde_json::Value {
     let page = std::fs::read_to_string(folder.path().join(page).join("report.html")).unwrap();
     let (_, data) = page.split_once("type=\"application/json\">").unwrap();

@@ -186,18 +186,3 @@ fn what_was_changed_is_refused() {
     assert_eq!(run.code, 3, "{}", run.stderr);
     assert!(run.stderr.contains("the picture is not legal: "), "{}", run.stderr);
 }
-
-#[test]
-fn what_cannot_be_certified_is_refused() {
-    let folder = folder();
-    for (flags, error) in [
-        ("data.csv --label a", "error: --certify: annotations are drawn over the picture"),
-        ("data.csv --turntable 4", "error: --certify: only single pictures are certified"),
-    ] {
-        let output = if flags.contains("turntable") { "a-%d.png" } else { "a.png" };
-        let run = folder.run(&format!("render {flags} -o {output} --certify --backend cpu"));
-        assert_eq!(run.code, 2, "{flags}: {}", run.stderr);
-        assert!(run.stderr.starts_with(error), "{flags}: {}", run.stderr);
-        assert!(!folder.path("a.png").exists());
-    }
-}
