@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::adapter::{AdapterReport, DEVICE_CLOCK};
-use super::bench_scene::BenchScene;
+use super::bench::BenchScene;
+use super::device::{AdapterReport, DEVICE_CLOCK};
 use super::memory::readable;
 use super::table::table;
 

@@ -1,8 +1,9 @@
 //! The light flags of the command line. They take precedence over the keys of a scene file.
 
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 
+use super::args::one_of;
 use super::failure::Failure;
 use pinhole::LinearRgb;
 use pinhole::camera::filter::PixelFilter;
@@ -15,6 +16,28 @@ use pinhole::style::Style;
 /// is set once.
 pub(super) const HEADING: &str = "Light and style";
 
+/// The values of `--integrator`.
+const INTEGRATORS: &[(&str, &str, IntegratorKind)] = &[
+    (
+        "primary",
+        "No light: the color of the first sphere that the ray through the center of a pixel hits",
+        IntegratorKind::Primary,
+    ),
+    (
+        "studio",
+        "Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines",
+        IntegratorKind::Studio,
+    ),
+    ("path", "Path tracing: light is followed as surfaces scatter it", IntegratorKind::Path),
+];
+
+/// The values of `--filter`.
+const FILTERS: &[(&str, &str, PixelFilter)] = &[
+    ("box", "", PixelFilter::Box),
+    ("gaussian", "", PixelFilter::Gaussian),
+    ("blackman-harris", "", PixelFilter::BlackmanHarris),
+];
+
 #[derive(Debug, Args)]
 pub(super) struct LightArgs {
     /// Look of the picture: light, lines and background. It takes the place of the scene's [default: the scene's; for
@@ -25,8 +48,8 @@ pub(super) struct LightArgs {
     #[arg(long, help_heading = HEADING, value_name = "CSS")]
     background: Option<String>,
     /// How the light is computed [default: the scene's, or the style's]
-    #[arg(long, help_heading = HEADING, value_enum)]
-    integrator: Option<IntegratorArg>,
+    #[arg(long, help_heading = HEADING, value_parser = one_of(INTEGRATORS))]
+    integrator: Option<IntegratorKind>,
     /// Samples per pixel, from 1 to 16777216: how smooth the picture is [default: the scene's, or the style's]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     samples: Option<u32>,
@@ -34,8 +57,8 @@ pub(super) struct LightArgs {
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     seed: Option<u32>,
     /// Pixel filter, which weights the samples around the center of a pixel [default: the scene's, or blackman-harris]
-    #[arg(long, help_heading = HEADING, value_enum)]
-    filter: Option<FilterArg>,
+    #[arg(long, help_heading = HEADING, value_parser = one_of(FILTERS))]
+    filter: Option<PixelFilter>,
     /// Ambient occlusion with this number of rays per sample, from 1 to 1024 (studio) [without a number: 4]
     #[arg(
         long,
@@ -61,34 +84,6 @@ pub(super) struct LightArgs {
     denoise: Option<bool>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum IntegratorArg {
-    /// No light: the color of the first sphere that the ray through the center of a pixel hits
-    Primary,
-    /// Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines
-    Studio,
-    /// Path tracing: light is followed as surfaces scatter it
-    Path,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum FilterArg {
-    Box,
-    Gaussian,
-    BlackmanHarris,
-}
-
-impl From<FilterArg> for PixelFilter {
-    fn from(filter: FilterArg) -> Self {
-        match filter {
-            FilterArg::Box => Self::Box,
-            FilterArg::Gaussian => Self::Gaussian,
-            FilterArg::BlackmanHarris => Self::BlackmanHarris,
-        }
-    }
-}
-
-/// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LightFlags {
     style: Option<Style>,
@@ -106,7 +101,8 @@ pub(super) struct LightFlags {
 
 impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
-        let LightArgs { style, samples, seed, ao, outline, denoise, .. } = *args;
+        let LightArgs { style, integrator, samples, seed, filter, ao, outline, denoise, .. } =
+            *args;
         let refused = |flag: &str, given: String, error: &RangeError| {
             Failure::usage(format!("--{flag} {given}: it must be {}", error.range))
         };
@@ -126,12 +122,6 @@ impl LightFlags {
             add_to_studio(&mut studio, None, outline);
             studio.check().map_err(|error| refused("outline", width.to_string(), &error))?;
         }
-        let integrator = args.integrator.map(|integrator| match integrator {
-            IntegratorArg::Primary => IntegratorKind::Primary,
-            IntegratorArg::Studio => IntegratorKind::Studio,
-            IntegratorArg::Path => IntegratorKind::Path,
-        });
-        let filter = args.filter.map(Into::into);
         let open_ended_by = None;
         Ok(Self {
             style,

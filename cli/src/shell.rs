@@ -5,6 +5,7 @@ pub(super) fn in_quotes(text: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-=+,%:@".contains(c);
     match !text.is_empty() && text.chars().all(is_plain) {
         true => text.to_owned(),
+        false if cfg!(windows) => format!("\"{text}\""),
         false => format!("'{}'", text.replace('\'', r"'\''")),
     }
 }
@@ -14,6 +15,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[cfg(not(windows))]
     fn words_are_quoted_where_a_shell_needs_it() {
         assert_eq!(in_quotes("/a/b-1_2.png"), "/a/b-1_2.png");
         assert_eq!(in_quotes("/a b/f%04d.png"), "'/a b/f%04d.png'");

@@ -1,10 +1,6 @@
 //! Whether a device rendered as it should.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
-use pinhole::Scene;
-use pinhole::accel::AccelChoice;
-use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
-use pinhole::verify::{Certificate, Checker, Verdict};
 use pyo3::prelude::*;
 
 use crate::device::{self, Backend};
@@ -12,6 +8,10 @@ use crate::fault::{Fault, Outcome};
 use crate::look::Look;
 use crate::memory;
 use crate::worker::Stop;
+use pinhole::Scene;
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
+use pinhole::verify::{Certificate, Checker, Verdict};
 
 /// The result of the checker.
 #[pyclass(frozen, module = "pinhole._pinhole")]

@@ -1,8 +1,10 @@
-//! What colours mean, as Python sees it.
+//! Colours as Python sees them: their names, and what they mean.
 
-use pinhole::color_by::{ColorKey, KeyKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+use pinhole::LinearRgb;
+use pinhole::color_by::{ColorKey, KeyKind};
 
 /// A dict: `title`, the name of the column; and either `range`, `log` and the table `colors`, three bytes of sRGB for
 /// each colour from the low end on, or `categories`, names with their colours.
@@ -24,4 +26,11 @@ pub(crate) fn in_python(py: Python<'_>, key: &ColorKey) -> PyResult<Py<PyAny>> {
         _ => {}
     }
     Ok(found.into_any().unbind())
+}
+
+/// The colours of CSS with these names, three bytes of sRGB for each; None if any of the names is not that of a colour.
+#[pyfunction]
+pub(crate) fn srgb_of_names(names: Vec<String>) -> Option<Vec<u8>> {
+    let colors = names.iter().map(|name| LinearRgb::from_css(name).ok().map(LinearRgb::to_srgb8));
+    colors.collect::<Option<Vec<_>>>().map(|colors| colors.into_flattened())
 }

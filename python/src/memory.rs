@@ -1,10 +1,9 @@
 //! How much memory is free, so that a picture that does not fit is refused before work on it begins.
 
-use pinhole::LayerSet;
-use pinhole::cpu::{SampledPicture, SearchPlan};
-
 use crate::fault::{Fault, Outcome};
 use crate::look::Look;
+use pinhole::LayerSet;
+use pinhole::cpu::{SampledPicture, SearchPlan};
 
 /// The most bytes per pixel that encoding needs in addition to the picture: 8 for the encoded pixels and 8 for the PNG made
 /// of them; or 8 for one and 12 for an array.

@@ -4,18 +4,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::Duration;
 
+use crate::device::{self, Backend, Opened};
+use crate::fault::{Fault, Outcome};
+use crate::look::Look;
+use crate::memory;
+use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
 use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
 use pinhole::render::{Integrator, Progress};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
-
-use crate::device::{self, Backend, Opened};
-use crate::fault::{Fault, Outcome};
-use crate::look::Look;
-use crate::memory;
-use crate::worker::Stop;
 
 /// How long a thread sleeps before it looks again whether another has rendered its picture.
 const WAIT: Duration = Duration::from_millis(2);

@@ -4,13 +4,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use pinhole::camera::Viewpoint;
-use pinhole::color_by::ColorKey;
-use pinhole::glam::DVec3;
-use pinhole::image::Layer;
-use pinhole::load::{Column, ColumnValues, Labels, Loaded};
-use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
-use pinhole::{LayerSet, Scene};
 use pyo3::prelude::*;
 
 use crate::arrays::{Centers, ColorArray, Radii};
@@ -18,12 +11,17 @@ use crate::certificate::{self, Judged};
 use crate::device::Backend;
 use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
-use crate::keys;
-use crate::look::{self, Look};
+use crate::look::{self, Look, SceneText};
 use crate::render::OnDevice;
 use crate::scene::{Given, Made, scene_of};
-use crate::scene_text::SceneText;
-use crate::worker;
+use crate::{keys, worker};
+use pinhole::camera::Viewpoint;
+use pinhole::color_by::ColorKey;
+use pinhole::glam::DVec3;
+use pinhole::image::Layer;
+use pinhole::load::{Column, ColumnValues, Labels, Loaded};
+use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
+use pinhole::{LayerSet, Scene};
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, anyhow};
-use pinhole::color_by::JoinedKeys;
 use rayon::prelude::*;
 
 use super::files;
-use super::manifest::{Manifest, NAME, StoredOverview};
 use super::part_file::{self, Header, Problem};
 use crate::failure::Failure;
 use crate::frames::Overview;
+use crate::job::manifest::{Manifest, NAME, StoredOverview};
+use pinhole::color_by::JoinedKeys;
 
 /// A job and where it is.
 pub(super) struct Folder {
@@ -44,7 +44,6 @@ impl Folder {
         &self.path
     }
 
-    /// The path of a part.
     pub(super) fn part(&self, unit: usize) -> PathBuf {
         self.path.join(PARTS).join(format!("{unit:06}.part"))
     }

@@ -6,20 +6,18 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 
-use super::args::{MergeArgs, SplitArgs};
 use super::files;
 use super::folder::{Folder, PARTS};
-use super::manifest::layer_set;
 use super::part::described;
 use super::part_file::{self, Header, Pictures, Problem};
-use super::recipe::{Recipe, check_same, split_args};
-use super::units::ranges;
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, is_movie, ready};
+use crate::job::args::{MergeArgs, Recipe, SplitArgs, check_same, split_args};
+use crate::job::manifest::{layer_set, ranges};
 use crate::picture::PictureFormat;
+use crate::progress::tell;
 use crate::render::finish_joined;
-use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
 use pinhole::image::{Image, LayerSet};

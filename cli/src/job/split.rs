@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 
-use super::args::SplitArgs;
 use super::files::{self, InputFile};
 use super::folder::{Folder, OVERVIEW, PARTS, packed};
-use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
-use super::recipe::Recipe;
-use super::units::parse_tiles;
 use crate::args::Stereo;
 use crate::failure::Failure;
 use crate::frames::{Known, Overview, Ready, ready};
 use crate::input::Input;
+use crate::job::args::{Recipe, SplitArgs};
+use crate::job::manifest::{
+    MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, parse_tiles, units_of_tiles,
+};
 use crate::output::{name_all, unnamed};
-use crate::speak::tell;
-use crate::{bricks, progress, threads};
+use crate::progress::{self, tell};
+use crate::{bricks, threads};
 use pinhole::image::{Layer, LayerSet};
 
 /// What is known of the pictures when the first was read.

@@ -14,8 +14,8 @@ use crate::commands::Arguments;
 use crate::explain::{explain, one_message};
 use crate::render::Job;
 use crate::render_args::{RenderArgs, RenderCommand, RenderLine};
-use crate::render_command;
-use crate::{annotation, camera, light};
+use crate::shell::in_quotes;
+use crate::{annotation, camera, light, render_command};
 
 /// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
 ///
@@ -183,7 +183,8 @@ impl RenderFlags {
     #[must_use]
     pub fn command_line(&self, output: &str) -> String {
         let end = ["-o".to_owned(), output.to_owned()];
-        let words: Vec<String> = self.words().iter().chain(&end).map(|word| quoted(word)).collect();
+        let words: Vec<String> =
+            self.words().iter().chain(&end).map(|word| in_quotes(word)).collect();
         format!("pinhole render {}", words.join(" "))
     }
 
@@ -268,15 +269,6 @@ fn decides(name: &str) -> Decides {
 /// Flags without a heading that leave the spheres as they are.
 const PICTURE: [&str; 9] =
     ["size", "bits", "transparent", "exposure", "tone", "backend", "adapter", "limits", "accel"];
-
-/// Quotes a word for a shell, if it needs that.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    if cfg!(windows) { format!("\"{word}\"") } else { format!("'{}'", word.replace('\'', r"'\''")) }
-}
 
 #[cfg(test)]
 mod tests {

@@ -4,21 +4,20 @@
 //! camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
 //! `pinhole render` itself.
 
-mod camera;
-mod camera_flags;
-mod flags;
-mod shown;
-mod still;
-
 use std::fmt;
 use std::process::ExitCode;
 
-use crate::failure::{FAILED, Failure, USAGE};
-
-pub use camera::ViewCamera;
 pub use flags::RenderFlags;
 pub use shown::{Shown, TimeLine};
 pub use still::{StillPicture, StillRenderer};
+
+use crate::failure::{FAILED, Failure, USAGE};
+pub use crate::viewing::camera::ViewCamera;
+
+mod camera;
+mod flags;
+mod shown;
+mod still;
 
 /// Why something cannot be shown: one line for the user, and the exit code of `pinhole`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,16 +73,16 @@ pub fn prepare() -> Result<(), ViewError> {
 
 /// Prints an error as `pinhole` does, on standard error.
 pub fn print_error(error: &dyn fmt::Display) {
-    crate::speak::tell(format_args!("error: {error}"));
+    crate::progress::tell(format_args!("error: {error}"));
 }
 
 /// Prints a line on standard error, with control characters escaped.
 pub fn print_note(line: &str) {
-    crate::speak::tell(line);
+    crate::progress::tell(line);
 }
 
 /// Prints a line on standard output.
 pub fn print_line(line: &str) {
     // Nobody may be listening, which is no error of a window.
-    let _ = crate::speak::answer(format!("{line}\n").as_bytes());
+    let _ = crate::progress::answer(format!("{line}\n").as_bytes());
 }

@@ -3,6 +3,13 @@
 use std::sync::Arc;
 
 use anyhow::Context;
+
+use super::{RenderFlags, Shown, ViewError};
+use crate::device::{Opened, explained};
+use crate::failure::Failure;
+use crate::render;
+use crate::views::Views;
+use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
@@ -11,13 +18,6 @@ use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::write::png;
-
-use super::{RenderFlags, Shown, ViewError};
-use crate::device::{Opened, explained};
-use crate::failure::Failure;
-use crate::render;
-use crate::views::Views;
-use crate::with_scene::{upload, with_structures};
 
 /// Renders what is shown, on a device of its own.
 pub struct StillRenderer {

@@ -6,17 +6,17 @@ use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use serde::Serialize;
 
-use super::args::VerifyArgs;
-use super::certified::{self, Judged, Written};
-use super::failure::Failure;
-use super::input::read;
-use super::output::{check_not_inputs, check_writable, name_all, unnamed};
-use super::picture::{Outputs, PictureFormat};
-use super::render::Job;
-use super::render_args::{RenderCommand, RenderLine};
-use super::speak::{answer, tell};
-use super::verify_report::command_line;
-use super::{progress, threads};
+use crate::args::VerifyArgs;
+use crate::certified::{self, Judged, Written};
+use crate::failure::Failure;
+use crate::input::read;
+use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
+use crate::picture::{Outputs, PictureFormat};
+use crate::progress::{self, answer, tell};
+use crate::render::Job;
+use crate::render_args::{RenderCommand, RenderLine};
+use crate::threads;
+use crate::verify::report::command_line;
 use pinhole::image::encoding::Encoding;
 use pinhole::load::picture::{self, FileSamples, PictureFile};
 use pinhole::verify::picture_certificate::PictureCertificate;
@@ -39,7 +39,7 @@ struct Report<'a> {
     command: String,
 }
 
-pub(super) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Failure> {
+pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Failure> {
     args.json.as_deref().map_or(Ok(()), check_writable)?;
     threads::start()?;
     let file = picture::read(&read(path)?).with_context(|| path.display().to_string())?;
@@ -72,7 +72,6 @@ pub(super) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     judged.verdict()
 }
 
-/// Reads the certificate of a picture.
 fn certificate_of(path: &Path, file: &PictureFile) -> Result<PictureCertificate> {
     let text = file.certificate.as_deref().ok_or_else(|| {
         anyhow!("{}: the picture has no certificate; render it with --certify", path.display())

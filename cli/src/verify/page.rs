@@ -1,13 +1,107 @@
-//! Draws the pictures of a report: colours, depths and verdicts of a recording.
+//! Makes the page of `pinhole verify --report`: one file that needs no other files. Its script shows the JSON document and
+//! the pictures, which are in it.
 
-use anyhow::Result;
+use std::collections::BTreeMap;
+use std::fmt::Display;
 
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::verify::report::Report;
+use pinhole::LinearRgb;
 use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;
-use pinhole::verify::run_file::Run;
+use pinhole::verify::run_file::{Run, ShownPicture};
 use pinhole::verify::{Certificate, Verdict};
 use pinhole::write::png;
-use rayon::prelude::*;
+
+const TEMPLATE: &str = include_str!("page.html");
+
+/// What the script of the page reads.
+#[derive(Serialize)]
+struct Page<'a> {
+    report: &'a Report,
+    verdict: String,
+    /// Version of the program that checks.
+    checked_by: &'static str,
+    /// The run file that holds the checked recording, if there is one.
+    run_file: Option<String>,
+    pictures: Drawn,
+    /// The colours of the verdicts in their picture.
+    colors: BTreeMap<&'static str, String>,
+    /// The nearest and the farthest depth, if a sphere is hit.
+    depths: Option<[f32; 2]>,
+    /// The number of samples of the lit picture.
+    shown_samples: Option<u32>,
+    /// One pixel of the pictures stands for `step` × `step` pixels.
+    step: u32,
+}
+
+/// The pictures as data URIs.
+#[derive(Serialize)]
+struct Drawn {
+    color: String,
+    depth: String,
+    /// `None` if no pixel was judged.
+    verdicts: Option<String>,
+    light: Option<String>,
+}
+
+/// Makes the page. `lit` is the picture with light, if there is one. `run_file` is the file that holds the checked recording, if there is one.
+pub(crate) fn page(
+    run: &Run,
+    certificate: &Certificate,
+    report: &Report,
+    lit: Option<&ShownPicture>,
+    run_file: Option<impl Display>,
+) -> Result<String> {
+    let pictures = Pictures::new(run, certificate);
+    let whole = Window::whole(certificate.size);
+    let is_judged = !certificate.verdicts.is_empty();
+    let color = |verdict: &Verdict| (verdict.name(), css(verdict_color(*verdict)));
+    let page = Page {
+        report,
+        verdict: report.verdict(),
+        checked_by: env!("CARGO_PKG_VERSION"),
+        run_file: run_file.map(|path| path.to_string()),
+        pictures: Drawn {
+            color: pictures.color(whole)?,
+            depth: pictures.depth_colors(whole)?,
+            verdicts: is_judged.then(|| pictures.mask(whole)).transpose()?,
+            light: lit.map(|lit| drawn(lit, whole)).transpose()?,
+        },
+        colors: Verdict::ALL.iter().map(color).collect(),
+        depths: pictures.depths,
+        shown_samples: lit.map(|lit| lit.samples),
+        step: whole.step,
+    };
+    let json = serde_json::to_string(&page).context("the page of the report cannot be made")?;
+    Ok(TEMPLATE.replacen("{{data}}", &in_a_script(&json), 1))
+}
+
+/// The same JSON without any `<`, so that no text in it can end the element `script`.
+fn in_a_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+/// Draws the mean colour of each block of pixels.
+pub(crate) fn drawn(
+    ShownPicture { size, srgb, .. }: &ShownPicture,
+    window: Window,
+) -> Result<String> {
+    let width = size[0] as usize;
+    encoded(window, |pixels| {
+        let mut sum = [0.0; 3];
+        let mut count = 0.0;
+        for i in pixels.indices(width) {
+            let color = LinearRgb::from_srgb8(srgb[i]).to_array();
+            (0..3).for_each(|channel| sum[channel] += f64::from(color[channel]));
+            count += 1.0;
+        }
+        to_srgb8(sum.map(|sum| (sum / count) as f32))
+    })
+}
 
 /// Longest side of a picture in the report, in pixels.
 const LONGEST: u32 = 2048;
@@ -20,7 +114,7 @@ const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
 /// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in
 /// greyscale and for people with red-green colour blindness (after Okabe and Ito).
-pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
+pub(crate) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     match verdict {
         Verdict::Decided => [0xe4, 0xeb, 0xef],
         Verdict::Silhouette => [0x00, 0x72, 0xb2],
@@ -30,42 +124,42 @@ pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
 }
 
 /// Formats a colour as `#rrggbb`.
-pub(super) fn css([r, g, b]: [u8; 3]) -> String {
+pub(crate) fn css([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// A part of the film, drawn at a reduced size: `step` × `step` pixels of the film become one pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Window {
-    pub(super) first: [u32; 2],
-    pub(super) size: [u32; 2],
-    pub(super) step: u32,
+pub(crate) struct Window {
+    pub(crate) first: [u32; 2],
+    pub(crate) size: [u32; 2],
+    pub(crate) step: u32,
 }
 
 impl Window {
     /// Makes a window of the whole film, reduced in size if it is large.
-    pub(super) fn whole(size: [u32; 2]) -> Self {
+    pub(crate) fn whole(size: [u32; 2]) -> Self {
         let step = size[0].max(size[1]).div_ceil(LONGEST);
         Self { first: [0, 0], size, step }
     }
 
     /// Returns the width and height of the drawn picture.
-    pub(super) fn shown(&self) -> [u32; 2] {
+    pub(crate) fn shown(&self) -> [u32; 2] {
         self.size.map(|side| side.div_ceil(self.step))
     }
 }
 
 /// Draws parts of a picture.
-pub(super) struct Pictures<'a> {
+pub(crate) struct Pictures<'a> {
     run: &'a Run,
     verdicts: &'a [Verdict],
     width: usize,
     /// The smallest and the largest depth, if any sphere is hit.
-    pub(super) depths: Option<[f32; 2]>,
+    pub(crate) depths: Option<[f32; 2]>,
 }
 
 impl<'a> Pictures<'a> {
-    pub(super) fn new(run: &'a Run, certificate: &'a Certificate) -> Self {
+    pub(crate) fn new(run: &'a Run, certificate: &'a Certificate) -> Self {
         let verdicts = &certificate.verdicts[..];
         let width = run.recording.film.width() as usize;
         let mut pictures = Self { run, verdicts, width, depths: None };
@@ -85,7 +179,7 @@ impl<'a> Pictures<'a> {
     }
 
     /// Draws the mean colour of each block of pixels.
-    pub(super) fn color(&self, window: Window) -> Result<String> {
+    pub(crate) fn color(&self, window: Window) -> Result<String> {
         let color = self.run.recording.image.color();
         encoded(window, |pixels| {
             let mut sum = [0.0; 3];
@@ -99,7 +193,7 @@ impl<'a> Pictures<'a> {
     }
 
     /// Draws the smallest depth of each block of pixels.
-    pub(super) fn depth_colors(&self, window: Window) -> Result<String> {
+    pub(crate) fn depth_colors(&self, window: Window) -> Result<String> {
         let depth = self.depth();
         let [least, greatest] = self.depths.unwrap_or([0.0; 2]);
         encoded(window, |pixels| {
@@ -116,7 +210,7 @@ impl<'a> Pictures<'a> {
     }
 
     /// Draws the worst verdict of each block of pixels, so that no violation is lost where the size is reduced.
-    pub(super) fn mask(&self, window: Window) -> Result<String> {
+    pub(crate) fn mask(&self, window: Window) -> Result<String> {
         let pixels = &self.run.recording.pixels;
         encoded(window, |block| {
             let judged = block.indices(self.width).filter_map(|i| {
@@ -140,13 +234,13 @@ fn depth_color(part: f64) -> [u8; 3] {
 }
 
 /// The pixels of the film that become one pixel.
-pub(super) struct Block {
+pub(crate) struct Block {
     columns: std::ops::Range<u32>,
     rows: std::ops::Range<u32>,
 }
 
 impl Block {
-    pub(super) fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
         let columns = self.columns.clone();
         let in_row = move |row| columns.clone().map(move |i| row as usize * width + i as usize);
         self.rows.clone().flat_map(in_row)
@@ -154,7 +248,7 @@ impl Block {
 }
 
 /// Draws a window with a colour for each block, as the data URI of a PNG.
-pub(super) fn encoded(
+pub(crate) fn encoded(
     window: Window,
     color: impl Fn(Block) -> [u8; 3] + Sync + Send,
 ) -> Result<String> {
@@ -177,6 +271,15 @@ pub(super) fn encoded(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_text_leaves_its_script() {
+        let text = "</script><!--<script>&\u{2028}{{data}}";
+        let found = in_a_script(&serde_json::to_string(text).unwrap());
+        assert!(!found.contains('<'), "{found}");
+        assert_eq!(serde_json::from_str::<String>(&found).unwrap(), text);
+        assert_eq!(TEMPLATE.matches("{{data}}").count(), 1);
+    }
 
     #[test]
     fn large_pictures_are_made_smaller() {

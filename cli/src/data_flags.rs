@@ -1,17 +1,20 @@
-//! The flags that color spheres by a column of the data. They take precedence over the keys of a scene file.
+//! The flags that say what is done with data: which spheres are drawn, what is added to them, and what gives them colors,
+//! radii and opacities.
 
 use clap::Args;
 
-use super::annotation::AnnotationArgs;
-use super::failure::Failure;
+use crate::annotation::AnnotationArgs;
+use crate::failure::Failure;
 use pinhole::LinearRgb;
+use pinhole::added::{Additions, BondLength, Bonds, CellEdges};
 use pinhole::color_by::{ColorBy, EmissionBy, JoinedKeys, Limits, MapName, Mapping, RadiusBy};
 use pinhole::scene_file::IntegratorKind;
+use pinhole::select::Selection;
 
-pub(super) const HEADING: &str = "Colors, radii and opacities from data";
+pub(crate) const HEADING: &str = "Colors, radii and opacities from data";
 
 #[derive(Debug, Args)]
-pub(super) struct ColorArgs {
+pub(crate) struct ColorArgs {
     /// Color the spheres by a column of the data: its name, or index, radius, x, y or z, or "|v|" for the length of a
     /// vector with the columns v.x, v.y and v.z
     #[arg(long, help_heading = HEADING, value_name = "COLUMN")]
@@ -43,12 +46,11 @@ pub(super) struct ColorArgs {
     #[arg(long, help_heading = HEADING, value_name = "COLUMN[*F]")]
     emission_by: Option<String>,
     #[command(flatten)]
-    pub(super) annotation: AnnotationArgs,
+    pub(crate) annotation: AnnotationArgs,
 }
 
-/// The flags that were given, checked.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ColorFlags {
+pub(crate) struct ColorFlags {
     mapping: Mapping,
     map: Option<MapName>,
     is_reversed: bool,
@@ -60,7 +62,7 @@ pub(super) struct ColorFlags {
 }
 
 impl ColorFlags {
-    pub(super) fn new(args: &ColorArgs) -> Result<Self, Failure> {
+    pub(crate) fn new(args: &ColorArgs) -> Result<Self, Failure> {
         let refused = |flag: &str, error: &dyn std::fmt::Display| {
             Failure::usage(format!("--{flag}: {error}"))
         };
@@ -92,17 +94,17 @@ impl ColorFlags {
     }
 
     /// Returns these flags with the meaning of colors in all frames of a movie.
-    pub(super) fn with_joined(&self, joined: JoinedKeys) -> Self {
+    pub(crate) fn with_joined(&self, joined: JoinedKeys) -> Self {
         Self { joined, ..self.clone() }
     }
 
     /// Gives the colors of a column the range or the categories of all frames of a movie.
-    pub(super) fn join(&self, color: &mut ColorBy) {
+    pub(crate) fn join(&self, color: &mut ColorBy) {
         self.joined.apply_to(color);
     }
 
     /// Whether any flag that needs data was given.
-    pub(super) fn given(&self) -> Option<&'static str> {
+    pub(crate) fn given(&self) -> Option<&'static str> {
         let given = [
             ("--color-by", self.mapping.color.is_some()),
             ("--radius-by", self.mapping.radius.is_some()),
@@ -113,7 +115,7 @@ impl ColorFlags {
     }
 
     /// Whether a flag names the column that colors the spheres.
-    pub(super) fn names_column(&self) -> bool {
+    pub(crate) fn names_column(&self) -> bool {
         self.mapping.color.is_some()
     }
 
@@ -129,13 +131,13 @@ impl ColorFlags {
     }
 
     /// The integrator that shows what the flags ask for.
-    pub(super) fn integrator(&self) -> Option<IntegratorKind> {
+    pub(crate) fn integrator(&self) -> Option<IntegratorKind> {
         let needs_light = self.mapping.opacity.is_some() || self.mapping.emission.is_some();
         needs_light.then_some(IntegratorKind::Studio)
     }
 
     /// Applies the flags to the keys of a scene file. Flags take precedence.
-    pub(super) fn apply_to(&self, file: &Mapping) -> Result<Mapping, Failure> {
+    pub(crate) fn apply_to(&self, file: &Mapping) -> Result<Mapping, Failure> {
         let mut mapping = self.mapping.clone().or(file.clone());
         let Some(color) = &mut mapping.color else {
             return match self.for_map().into_iter().find(|(_, is_given)| *is_given) {
@@ -161,4 +163,102 @@ fn with_factor(text: &str) -> (String, f64) {
         .rsplit_once('*')
         .and_then(|(column, factor)| Some((column.trim().to_owned(), factor.trim().parse().ok()?)));
     factor.unwrap_or_else(|| (text.to_owned(), 1.0))
+}
+
+const STRUCTURE_HEADING: &str = "Selection, box and bonds";
+
+#[derive(Debug, Args)]
+pub(crate) struct StructureArgs {
+    /// Render only the spheres for which an expression is true, such as 'species == O and z > 3 and |v| < 2': columns as
+    /// for --color-by, == != < <= > >=, and, or, not, parentheses, and text with or without quotation marks
+    #[arg(long, help_heading = STRUCTURE_HEADING, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    select: Option<String>,
+    /// Draw the edges of the file's periodic cell, with this width [without a width: 1/300 of the cell's diagonal]
+    #[arg(
+        long = "box",
+        help_heading = STRUCTURE_HEADING,
+        value_name = "WIDTH",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = ""
+    )]
+    cell: Option<String>,
+    /// Draw balls and sticks: bonds between atoms that are closer than FACTOR times the sum of their covalent radii,
+    /// except between hydrogens; atoms become smaller unless their radii are given [without a factor: 1.2]
+    #[arg(
+        long,
+        help_heading = STRUCTURE_HEADING,
+        value_name = "FACTOR",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = ""
+    )]
+    bonds: Option<String>,
+    /// Draw bonds between all spheres that are closer than this length, whatever they are
+    #[arg(long, help_heading = STRUCTURE_HEADING, value_name = "LENGTH", allow_hyphen_values = true, conflicts_with = "bonds")]
+    bond_length: Option<f64>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StructureFlags {
+    pub(crate) select: Option<Selection>,
+    additions: Additions,
+}
+
+impl StructureFlags {
+    pub(crate) fn new(args: &StructureArgs) -> Result<Self, Failure> {
+        let select = args.select.as_deref().map(str::parse::<Selection>).transpose();
+        let select = select.map_err(|error| Failure::usage(format!("--select: {error}")))?;
+        let cell = args.cell.as_deref().map(|text| match text {
+            "" => Ok(CellEdges::default()),
+            text => positive("--box", text).map(CellEdges::of_width),
+        });
+        let bonds = args.bonds.as_deref().map(|text| match text {
+            "" => Ok(Bonds::default()),
+            text => {
+                positive("--bonds", text).map(|factor| Bonds::new(BondLength::Covalent(factor)))
+            }
+        });
+        let below = args.bond_length.map(|length| {
+            positive("--bond-length", &length.to_string())
+                .map(|length| Bonds::new(BondLength::Below(length)))
+        });
+        let additions = Additions {
+            cell: cell.transpose()?,
+            bonds: below.or(bonds).transpose()?,
+            ..Additions::default()
+        };
+        Ok(Self { select, additions })
+    }
+
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let bonds = match self.additions.bonds.as_ref().map(|bonds| bonds.length) {
+            Some(BondLength::Below(_)) => "--bond-length",
+            _ => "--bonds",
+        };
+        let given = [
+            ("--select", self.select.is_some()),
+            ("--box", self.additions.cell.is_some()),
+            (bonds, self.additions.bonds.is_some()),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
+    /// What is added to data whose scene file asks for `file`. Flags take precedence.
+    pub(crate) fn additions(&self, file: &Additions, keeps_radii: bool) -> Additions {
+        Additions {
+            cell: self.additions.cell.clone().or_else(|| file.cell.clone()),
+            bonds: self.additions.bonds.clone().or_else(|| file.bonds.clone()),
+            keeps_radii,
+        }
+    }
+}
+
+fn positive(flag: &str, text: &str) -> Result<f64, Failure> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| {
+        Failure::usage(format!(
+            "{flag}: `{text}` is not a number that is finite and greater than 0"
+        ))
+    })
 }

@@ -4,32 +4,37 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 
-use super::args::VerifyArgs;
-use super::failure::Failure;
-use super::speak::answer;
-use super::verify_kept::Replayed;
-use super::verify_open::open_pixels;
-use super::verify_output::VerifyOutputs;
-use super::verify_report::Report;
-use super::{progress, threads, verify_kept, verify_picture};
+use crate::args::VerifyArgs;
+use crate::failure::Failure;
+use crate::progress::{self, answer};
+use crate::threads;
+use crate::verify::output::{Recorded, VerifyOutputs};
+use crate::verify::report::{Report, open_pixels};
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
-use recorded::Recorded;
 
-#[cfg(not(feature = "gpu"))]
-#[path = "verify/no_record.rs"]
-mod record;
+mod output;
+mod page;
+mod picture;
 #[cfg(feature = "gpu")]
 mod record;
-mod recorded;
+pub(crate) mod report;
 
-pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
-        return verify_picture::run(args, picture, scene);
+        return picture::run(args, picture, scene);
     }
     let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
         (Some(path), _) => replayed(path, args)?,
+        #[cfg(feature = "gpu")]
         (None, Some(path)) => record::recorded(path, args)?,
+        #[cfg(not(feature = "gpu"))]
+        (None, Some(_)) => {
+            return Err(Failure::usage(
+                "this program was built without the feature `gpu`, so it can only check recordings: \
+                 `pinhole verify --replay RUN`",
+            ));
+        }
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
     };
     progress::stage("checking");
@@ -59,8 +64,7 @@ fn replayed(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
-    let Replayed { run, light, denoiser, kept } = verify_kept::replay(path)?;
-    Ok(Recorded { run, outputs, light, denoiser, kept })
+    Ok(output::replay(path, outputs)?)
 }
 
 fn verdict(certificate: &Certificate) -> Result<(), Failure> {
