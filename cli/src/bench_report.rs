@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::bench::BenchScene;
 use super::device::{AdapterReport, DEVICE_CLOCK};
 use super::memory::readable;
-use super::table::table;
+use crate::text::table;
 
 /// The JSON document.
 #[derive(Serialize)]

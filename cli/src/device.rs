@@ -58,17 +58,12 @@ impl Device {
             ))),
             (backend, given) => Ok(Self::Adapter {
                 wanted: WantedAdapter::new(&args.adapter).for_structures(accel),
-                choice: choice(accel),
+                choice: accel.unwrap_or_default(),
                 // A flag that only adapters have means that the user wants an adapter.
                 or_cpu: backend == Backend::Auto && given.is_none(),
             }),
         }
     }
-}
-
-/// Returns the structure that the flag asks for, or the automatic choice.
-pub(crate) fn choice(accel: Option<AccelChoice>) -> AccelChoice {
-    accel.unwrap_or_default()
 }
 
 /// What renders, opened and ready.

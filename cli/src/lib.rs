@@ -73,14 +73,13 @@ mod render_command;
 mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
-mod shell;
 mod stop_rule;
-#[cfg(feature = "gpu")]
-mod table;
+mod text;
 mod threads;
 mod verify;
 mod view;
 #[cfg(feature = "gpu")]
+#[allow(clippy::missing_errors_doc, clippy::must_use_candidate, reason = "for the viewer alone")]
 pub mod viewing;
 mod views;
 #[cfg(feature = "gpu")]

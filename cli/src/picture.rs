@@ -27,16 +27,16 @@ pub(super) enum PictureFormat {
 /// The outputs of a render, checked before any work is done.
 #[derive(Clone, Debug)]
 pub(super) struct Outputs {
-    format: PictureFormat,
+    pub(super) format: PictureFormat,
     /// Path of the picture; `None` is standard output.
-    picture: Option<PathBuf>,
+    pub(super) picture: Option<PathBuf>,
     /// Layers in the file of the picture.
-    inside: LayerSet,
-    layers: Vec<(Layer, PathBuf)>,
+    pub(super) inside: LayerSet,
+    pub(super) layers: Vec<(Layer, PathBuf)>,
     /// What is drawn over a PNG.
-    annotations: Annotations,
-    /// The certificate that the picture carries.
-    certificate: Option<String>,
+    pub(super) annotations: Annotations,
+    /// The certificate that the picture carries; a PNG then has no annotations.
+    pub(super) certificate: Option<String>,
 }
 
 impl Outputs {
@@ -74,25 +74,6 @@ impl Outputs {
             annotations: Annotations::default(),
             certificate: None,
         }
-    }
-
-    pub(super) fn format(&self) -> PictureFormat {
-        self.format
-    }
-
-    /// What is drawn over a PNG.
-    pub(super) fn annotations(&self) -> &Annotations {
-        &self.annotations
-    }
-
-    /// Returns these outputs with annotations that are drawn over a PNG.
-    pub(super) fn with_annotations(self, annotations: Annotations) -> Self {
-        Self { annotations, ..self }
-    }
-
-    /// Returns these outputs with a certificate that the picture carries; a PNG then has no annotations.
-    pub(super) fn with_certificate(self, certificate: String) -> Self {
-        Self { certificate: Some(certificate), ..self }
     }
 
     /// Encodes the picture as PNG, with its annotations or its certificate.

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::table::table;
 use crate::progress::{self, tell_all};
+use crate::text::table;
 use pinhole::gpu::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 
 static PROFILE: OnceLock<Profile> = OnceLock::new();

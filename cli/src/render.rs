@@ -59,15 +59,13 @@ impl Job {
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         let color = ColorFlags::new(&args.color)?;
         let annotation =
-            AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
+            AnnotationFlags::new(&args.color.annotation, outputs.format, color.names_column())?;
+        let structure = StructureFlags::new(&args.structure)?;
+        let source = Source::new(&args.input)?.with_light(light);
         Ok(Self {
-            source: Source::new(&args.input)?
-                .with_light(light)
-                .with_color(color)
-                .with_structure(StructureFlags::new(&args.structure)?)
-                .with_annotation(annotation.clone()),
+            source: Source { color, structure, annotation: annotation.clone(), ..source },
             stop_rule,
-            encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            encoding: EncodingFlags::new(&args.encoding, outputs.format)?,
             annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,

@@ -68,7 +68,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
     let (encoding, annotations) = job.finish(&mut input, note)?;
-    let outputs = job.outputs.with_annotations(annotations);
+    let outputs = Outputs { annotations, ..job.outputs };
     let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {

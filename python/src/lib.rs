@@ -14,9 +14,7 @@ mod device;
 mod fault;
 mod files;
 mod image;
-mod keys;
 mod look;
-mod memory;
 mod render;
 mod scene;
 mod spheres;
@@ -41,7 +39,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<spheres::SphereData>()?;
     module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;
-    module.add_function(wrap_pyfunction!(keys::srgb_of_names, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::srgb_of_names, module)?)?;
     module.add_function(wrap_pyfunction!(image::png_of, module)?)?;
     module.add_function(wrap_pyfunction!(worker::wait_for_threads, module)?)?;
     module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;

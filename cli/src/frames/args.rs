@@ -48,10 +48,6 @@ impl FramesArgs {
         self.frames.is_some() || self.turntable.is_some() || self.camera_path.is_some()
     }
 
-    pub(crate) fn camera_path(&self) -> Option<&Path> {
-        self.camera_path.as_deref()
-    }
-
     /// A flag that says how pictures are written, and not which.
     pub(crate) fn of_writing(&self) -> Option<&'static str> {
         let given = [("--resume", self.resume), ("--raw", self.raw.is_some())];

@@ -53,7 +53,7 @@ pub(crate) fn wanted_path(
         notes.tell(replaced(&source.name(), by));
         return Ok(None);
     }
-    Ok(Some(WantedPath { path, file: source.path().to_path_buf() }))
+    Ok(Some(WantedPath { path, file: source.path.clone() }))
 }
 
 fn replaced(scene: &str, by: &str) -> String {
@@ -163,7 +163,7 @@ impl Overview {
             progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
             let contents = frame(source, number)?;
             contents.color_key().into_iter().for_each(|key| overview.colors.add(key));
-            if let (None, Some(kinds)) = (&overview.kinds, contents.kinds()) {
+            if let (None, Some(kinds)) = (&overview.kinds, &contents.found.kinds) {
                 (overview.kinds, overview.kinds_from) = (Some(kinds.clone()), Some(number));
             }
             union.add(&contents.scene);
@@ -175,7 +175,7 @@ impl Overview {
     /// The colors by kind that no flag asked for.
     pub(crate) fn kinds(&self, source: &mut Source) -> Result<Option<ColorBy>, Failure> {
         match (&self.kinds, self.kinds_from) {
-            (None, Some(number)) => Ok(frame(source, number)?.kinds().cloned()),
+            (None, Some(number)) => Ok(frame(source, number)?.found.kinds),
             (kinds, _) => Ok(kinds.clone()),
         }
     }
@@ -206,6 +206,6 @@ impl Notes {
 }
 
 pub(crate) fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
-    source.set_frame(number);
+    source.options.frame = Some(number);
     source.contents().map_err(|failure| in_frame(failure, number))
 }

@@ -106,7 +106,7 @@ pub(crate) fn ready(
     let annotations =
         annotation.for_input(&input, |text| found.borrow_mut().push(text.to_string()))?;
     found.into_inner().into_iter().for_each(|note| notes.tell(note));
-    let outputs = outputs.with_annotations(annotations.clone());
+    let outputs = Outputs { annotations: annotations.clone(), ..outputs };
     let layers = outputs.layers(&encoding);
     let eyes = if input.eyes.is_some() { 2 } else { 1 };
     if stereo.is_some() && eyes == 1 {
@@ -182,7 +182,7 @@ impl Written<'_> {
     pub(crate) fn send(&mut self, number: usize, image: Image) -> bool {
         let is_sent = self.sender.send(Message::Picture { number, image: Box::new(image) }).is_ok();
         if is_sent {
-            self.status.count();
+            self.status.done += 1;
         }
         is_sent
     }
@@ -226,10 +226,10 @@ impl Writing {
         });
         progress::clear();
         match made {
-            Err(Failure::Stopped) if status.done() > 0 && wanted.target.is_files() => {
+            Err(Failure::Stopped) if status.done > 0 && wanted.target.is_files() => {
                 Err(Failure::StoppedBetween(STOPPED_BETWEEN))
             }
-            Ok(()) => Ok(status.done()),
+            Ok(()) => Ok(status.done),
             Err(failure) => Err(failure),
         }
     }
@@ -260,15 +260,6 @@ impl Status {
             self.said = Instant::now();
             tell(text);
         }
-    }
-
-    /// Counts a frame as done.
-    pub(crate) fn count(&mut self) {
-        self.done += 1;
-    }
-
-    pub(crate) fn done(&self) -> usize {
-        self.done
     }
 
     fn text(&self) -> String {

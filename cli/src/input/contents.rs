@@ -73,39 +73,9 @@ pub(crate) struct DataPlace {
 }
 
 impl Contents {
-    pub(crate) fn add_note(&mut self, note: String) {
-        self.found.notes.push(note);
-    }
-
-    /// Returns the notes for the user, which are then empty.
-    pub(crate) fn take_notes(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.found.notes)
-    }
-
-    /// Whether the data names chemical elements.
-    pub(crate) fn has_atoms(&self) -> bool {
-        self.found.has_atoms
-    }
-
     /// What colors mean, if a column gives them.
     pub(crate) fn color_key(&self) -> Option<&ColorKey> {
         self.found.color_key.as_ref()
-    }
-
-    /// What colors mean, which may be changed.
-    pub(crate) fn color_key_mut(&mut self) -> Option<&mut ColorKey> {
-        self.found.color_key.as_mut()
-    }
-
-    /// Takes the columns of the data, if they were asked for; then they are empty.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn take_columns(&mut self) -> Vec<Column> {
-        std::mem::take(&mut self.found.columns)
-    }
-
-    /// The colors by kind that no flag asked for.
-    pub(crate) fn kinds(&self) -> Option<&ColorBy> {
-        self.found.kinds.as_ref()
     }
 }
 

@@ -1,7 +1,6 @@
 //! What an input has to say before it is read, such as its frames, its camera path and its name, and the input of one
 //! picture.
 
-use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use super::Input;
@@ -12,7 +11,6 @@ use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::read_file::Format;
 use pinhole::camera::CameraPath;
-use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::glam::DVec3;
 use pinhole::load;
 
@@ -30,7 +28,7 @@ impl Source {
 
     fn input(&self, mut contents: Contents) -> Result<Input, Failure> {
         if contents.file.camera_path().is_some() {
-            contents.add_note(format!(
+            contents.found.notes.push(format!(
                 "{}: `camera_path` is not used, because this is one picture; for all, write a movie such as -o movie.apng, \
                  or --frames : with -o f%04d.png",
                 self.path.display()
@@ -73,40 +71,6 @@ impl Source {
         Ok(Ok(FoundFrames { count, note }))
     }
 
-    /// The open file, to be used again for other frames.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn frames(&self) -> Option<Arc<OpenFrames>> {
-        self.frames.clone()
-    }
-
-    /// Returns this source with a file that was opened before with the same options.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn with_frames(self, frames: Option<Arc<OpenFrames>>) -> Self {
-        Self { frames, ..self }
-    }
-
-    /// Returns this source, which keeps the columns of its data.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn keeping_columns(self) -> Self {
-        Self { keeps_columns: true, ..self }
-    }
-
-    #[cfg(feature = "gpu")]
-    pub(crate) fn is_scene_file(&self) -> bool {
-        matches!(self.format, Format::Scene)
-    }
-
-    /// Chooses the frame that is read next.
-    pub(crate) fn set_frame(&mut self, frame: usize) {
-        self.options.frame = Some(frame);
-    }
-
-    /// Lets all frames have the same colors. `kinds` are colors by kind that no flag asked for.
-    pub(crate) fn set_colors(&mut self, joined: JoinedKeys, kinds: Option<ColorBy>) {
-        self.color = self.color.with_joined(joined);
-        self.kinds = kinds;
-    }
-
     /// Whether a flag chooses one frame of the data.
     pub(crate) fn has_frame(&self) -> bool {
         self.options.frame.is_some()
@@ -124,10 +88,6 @@ impl Source {
     /// The path, for messages.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
     }
 
     /// The direction that is up for the flags; `None` if the camera is that of a scene file.

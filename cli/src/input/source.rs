@@ -105,21 +105,6 @@ impl Source {
         Self { light, style, ..self }
     }
 
-    /// Returns this source with flags for colors from data.
-    pub(crate) fn with_color(self, color: ColorFlags) -> Self {
-        Self { color, ..self }
-    }
-
-    /// Returns this source with flags that select spheres and add others.
-    pub(crate) fn with_structure(self, structure: StructureFlags) -> Self {
-        Self { structure, ..self }
-    }
-
-    /// Returns this source with flags for annotations, for which the camera leaves room.
-    pub(crate) fn with_annotation(self, annotation: AnnotationFlags) -> Self {
-        Self { annotation, ..self }
-    }
-
     /// Makes a source from a scene file without flags.
     pub(crate) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();

@@ -15,7 +15,8 @@ use pinhole::color_by::JoinedKeys;
 
 /// A job and where it is.
 pub(super) struct Folder {
-    path: PathBuf,
+    /// Does not depend on the current folder.
+    pub(super) path: PathBuf,
     pub(super) manifest: Manifest,
 }
 
@@ -33,15 +34,6 @@ impl Folder {
             .with_context(|| format!("{}: this path has no meaning", path.display()))?;
         let manifest = Manifest::read(&path.join(NAME))?;
         Ok(Self { path: absolute, manifest })
-    }
-
-    pub(super) fn new(path: PathBuf, manifest: Manifest) -> Self {
-        Self { path, manifest }
-    }
-
-    /// The path, which does not depend on the current folder.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
     }
 
     pub(super) fn part(&self, unit: usize) -> PathBuf {

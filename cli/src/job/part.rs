@@ -73,7 +73,7 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
 impl Work<'_> {
     fn run(&self) -> Result<(), Failure> {
         let manifest = &self.folder.manifest;
-        let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path().join(PARTS), true)?;
+        let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path.join(PARTS), true)?;
         let Recipe { args, wanted, job } = recipe;
         let note = |note: &dyn std::fmt::Display| {
             if !self.quiet {

@@ -131,7 +131,6 @@ pub(crate) fn css([r, g, b]: [u8; 3]) -> String {
 /// A part of the film, drawn at a reduced size: `step` × `step` pixels of the film become one pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
-    pub(crate) first: [u32; 2],
     pub(crate) size: [u32; 2],
     pub(crate) step: u32,
 }
@@ -140,7 +139,7 @@ impl Window {
     /// Makes a window of the whole film, reduced in size if it is large.
     pub(crate) fn whole(size: [u32; 2]) -> Self {
         let step = size[0].max(size[1]).div_ceil(LONGEST);
-        Self { first: [0, 0], size, step }
+        Self { size, step }
     }
 
     /// Returns the width and height of the drawn picture.
@@ -252,11 +251,11 @@ pub(crate) fn encoded(
     window: Window,
     color: impl Fn(Block) -> [u8; 3] + Sync + Send,
 ) -> Result<String> {
-    let Window { first, size, step } = window;
+    let Window { size, step } = window;
     let [width, height] = window.shown();
     let range = |axis: usize, index: u32| {
         let start = index * step;
-        first[axis] + start..first[axis] + (start + step).min(size[axis])
+        start..(start + step).min(size[axis])
     };
     let row = |j: usize| -> Vec<[u8; 3]> {
         // The height is a u32, so its rows are too.

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context, anyhow};
 
 use crate::args::VerifyArgs;
-use crate::device::{AdapterReport, WantedAdapter, choice, explained_alone};
+use crate::device::{AdapterReport, WantedAdapter, explained_alone};
 use crate::failure::Failure;
 use crate::input::{Input, Source};
 use crate::progress::{self, tell};
@@ -65,7 +65,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
     self_test::check(&headless)?;
     let (scene, view) = (&input.scene, &input.view());
     let settings = &input.settings.by_primary_rays();
-    let choice = choice(args.accel.accel);
+    let choice = args.accel.accel.unwrap_or_default();
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
     let plan = |choice| headless.plan_record(scene, view, choice, encoding);
     let done = with_structures(&headless, choice, plan, |plan| {

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 
 use crate::device::AdapterReport;
-use crate::shell::in_quotes;
+use crate::text::in_quotes;
 use pinhole::image::Image;
 use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::{self, DenoiseCertificate};

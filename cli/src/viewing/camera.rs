@@ -20,7 +20,6 @@ pub struct ViewCamera {
 
 impl ViewCamera {
     /// Takes the parameters of a camera that has its place, as [`crate::viewing::Shown::camera`] has. `None` if it has no place.
-    #[must_use]
     pub fn new(parameters: &CameraParameters) -> Option<Self> {
         let Ok(Value::Table(document)) = Value::try_from(parameters) else { return None };
         let (kind, Value::Table(table)) = document.into_iter().next()? else { return None };
@@ -42,19 +41,16 @@ impl ViewCamera {
     }
 
     /// The position of the camera.
-    #[must_use]
     pub fn eye(&self) -> DVec3 {
         self.place().map_or(DVec3::ZERO, |[eye, ..]| eye)
     }
 
     /// The direction in which the camera looks, of unit length.
-    #[must_use]
     pub fn direction(&self) -> DVec3 {
         self.place().map_or(DVec3::NEG_Z, |[_, direction, _]| direction.normalize_or(DVec3::NEG_Z))
     }
 
     /// The direction that is up in the picture: perpendicular to the view, of unit length.
-    #[must_use]
     pub fn up(&self) -> DVec3 {
         let up = self.place().map_or(DVec3::Y, |[.., up]| up);
         let forward = self.direction();
@@ -62,13 +58,11 @@ impl ViewCamera {
     }
 
     /// The point at which the camera looks, if it has one.
-    #[must_use]
     pub fn look_at(&self) -> Option<DVec3> {
         self.vector("look_at")
     }
 
     /// Whether what is far is as large as what is near, so that the camera comes no nearer by moving.
-    #[must_use]
     pub fn is_orthographic(&self) -> bool {
         self.kind == "orthographic"
     }
@@ -105,9 +99,6 @@ impl ViewCamera {
     }
 
     /// The parameters of the camera.
-    ///
-    /// # Errors
-    /// If a key does not belong to this kind of camera, which does not happen for parameters that were taken.
     pub fn parameters(&self) -> Result<CameraParameters, ViewError> {
         let document = Table::from_iter([(self.kind.clone(), Value::Table(self.table.clone()))]);
         CameraParameters::deserialize(Value::Table(document))
@@ -167,9 +158,6 @@ impl ViewCamera {
 
 impl RenderFlags {
     /// The camera of the flags, if they say where it is.
-    ///
-    /// # Errors
-    /// If the flags do not make a camera.
     pub fn camera(&self) -> Result<Option<ViewCamera>, ViewError> {
         if self.get("eye").is_none() {
             return Ok(None);

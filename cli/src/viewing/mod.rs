@@ -28,19 +28,16 @@ pub struct ViewError {
 
 impl ViewError {
     /// Something that failed; the exit code is 1.
-    #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: FAILED }
     }
 
     /// Wrong usage; the exit code is 2.
-    #[must_use]
     pub fn usage(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: USAGE }
     }
 
     /// The exit code that `pinhole` has in this case.
-    #[must_use]
     pub fn exit_code(&self) -> ExitCode {
         self.code.into()
     }
@@ -63,9 +60,6 @@ impl fmt::Display for ViewError {
 impl std::error::Error for ViewError {}
 
 /// Prepares the process for showing files: starts its threads, and shows no progress on the terminal.
-///
-/// # Errors
-/// If the threads cannot be started.
 pub fn prepare() -> Result<(), ViewError> {
     crate::progress::close();
     Ok(crate::threads::start()?)

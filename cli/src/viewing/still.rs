@@ -49,15 +49,11 @@ pub struct StillPicture {
 
 impl StillRenderer {
     /// Opens the device that the flags ask for.
-    ///
-    /// # Errors
-    /// If there is no such adapter, or it fails.
     pub fn open(flags: &RenderFlags) -> Result<Self, ViewError> {
         Ok(Self { opened: flags.job()?.device.open()?, uploaded: None })
     }
 
     /// What is wrong with the device, if something is.
-    #[must_use]
     pub fn warning(&self) -> Option<&str> {
         match &self.opened {
             Opened::Device { warning, .. } => warning.as_deref(),
@@ -70,9 +66,6 @@ impl StillRenderer {
 
     /// Renders the picture, first with few samples and at last with all, and gives each to `show`. Ends early, and
     /// returns false, when `is_wanted` says that the picture is not wanted any more.
-    ///
-    /// # Errors
-    /// The errors of `pinhole render`.
     pub fn render(
         &mut self,
         shown: &Shown,

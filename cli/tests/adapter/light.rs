@@ -8,7 +8,7 @@ use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
-use crate::program::{command_on, succeed};
+use crate::{command_on, succeed};
 use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {

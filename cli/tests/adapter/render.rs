@@ -9,9 +9,9 @@ use pinhole::scene_file::SceneFile;
 use pinhole::write::exr::Remarks;
 use pinhole::{Encoding, LayerSet, write};
 
-use crate::program::{command, command_on, succeed};
 use crate::trial;
 use crate::view::View;
+use crate::{command, command_on, succeed};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![

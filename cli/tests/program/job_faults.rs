@@ -107,8 +107,7 @@ fn merge_waits_for_parts_that_are_not_seen_yet() {
     let (seen, hidden) = (part(&folder, 5), folder.path("hidden"));
     fs::rename(&seen, &hidden).unwrap();
     let started = Instant::now();
-    let run = folder.run("job merge job -o m%d.png --wait 0.3");
-    assert_eq!(run.code, 1, "{}", run.stderr);
+    folder.refuses("job merge job -o m%d.png --wait 0.3", 1, "missing 5");
     assert!(started.elapsed() >= Duration::from_millis(300));
     let child = folder.command("job merge job -o m%d.png --wait 60 -q").spawn().unwrap();
     std::thread::sleep(Duration::from_millis(700));
@@ -141,12 +140,8 @@ fn a_part_that_hangs_ends_with_a_code_of_its_own() {
     folder
         .run("job split many.npy --backend cpu --size 3000x3000 --samples 99 -o job -q")
         .succeeded();
-    let run = folder.run("job part job 0 --timeout 0.5 -q");
-    assert_eq!(run.code, 5, "{}", run.stderr);
-    assert_eq!(
-        run.stderr,
-        "error: unit 0 did not end within 0.5 s; the device may hang: try again\n"
-    );
+    let words = "error: unit 0 did not end within 0.5 s; the device may hang: try again\n";
+    folder.refuses("job part job 0 --timeout 0.5 -q", 5, words);
     assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
 }
 
@@ -191,9 +186,8 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     through_parts(&folder, SPLIT, "-o good%d.png");
     set_device(&folder, 3, "Another GPU (driver 1.2)");
     let run = folder.run("job merge job -o m%d.png");
-    assert_eq!(run.code, 1, "{}", run.stderr);
-    assert!(run.stderr.contains("Another GPU (driver 1.2) 3, CPU ("), "{}", run.stderr);
-    assert!(run.stderr.ends_with("add --allow-mixed-adapters\n"), "{}", run.stderr);
+    run.refused(1, "Another GPU (driver 1.2) 3, CPU (");
+    run.refused(1, "add --allow-mixed-adapters\n");
     assert!(!folder.path("m0.png").exists());
     folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
     assert!(folder.read("m0.png") == folder.read("good0.png"));

@@ -46,22 +46,6 @@ fn an_exr_has_the_layers_that_are_named() {
 }
 
 #[test]
-fn transparent_pictures_have_no_background() {
-    let folder = folder();
-    render(&folder, "three.toml -o out.png --transparent");
-    let image = rgba(&folder.read("out.png"));
-    assert_eq!(image.color(), image::ColorType::Rgba8);
-    let image = image.to_rgba8();
-    assert_eq!(image.get_pixel(0, 0).0, [0; 4]);
-    assert_eq!(image.get_pixel(19, 30).0, [0xff, 0, 0, 0xff]);
-    // Standard output and 16 bits can be transparent too.
-    let run = render(&folder, "three.toml -o - --transparent --bits 16");
-    let deep = rgba(&run.stdout);
-    assert_eq!(deep.color(), image::ColorType::Rgba16);
-    assert_eq!(deep.to_rgba16().get_pixel(61, 30).0, [0, 0x8080, 0, 0xffff]);
-}
-
-#[test]
 fn scenes_say_how_they_are_written_and_flags_come_first() {
     let folder = folder();
     let output = "[output]\nexposure = -1\ntone = 'agx'\ntransparent = true\nbits = 16\n";

@@ -120,11 +120,12 @@ impl Run {
 
     /// Checks that the run ended with this exit code and one line that has these words.
     #[track_caller]
-    pub(crate) fn refused(&self, code: i32, words: &str) {
+    pub(crate) fn refused(&self, code: i32, words: &str) -> &Self {
         let said = &self.stderr;
         assert_eq!(self.code, code, "{said}");
         assert!(said.starts_with("error: ") && said.contains(words), "{said} lacks {words}");
         assert_eq!(said.lines().count(), 1, "{said}");
+        self
     }
 
     #[track_caller]
