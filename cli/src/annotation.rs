@@ -1,22 +1,38 @@
-//! The flags for legends, scale bars and labels. They take precedence over the keys of a scene file.
+//! The flags about how a picture is written: what is drawn over it, and its encoding.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use super::failure::Failure;
-use super::input::Input;
-use super::picture::PictureFormat;
+use crate::args::one_of;
+use crate::failure::Failure;
+use crate::input::Input;
+use crate::picture::PictureFormat;
 use pinhole::LinearRgb;
 use pinhole::annotate::{
     AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
 };
 use pinhole::camera::film::Film;
 use pinhole::color_by::ColorKey;
-use pinhole::image::encoding::Encoding;
+use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::tone::ToneCurve;
 
-pub(super) const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
+pub(crate) const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
+
+/// The values of `--panel`.
+const PANELS: &[(&str, &str, Panel)] = &[
+    ("auto", "Where the picture behind is mixed", Panel::Auto),
+    ("always", "Everywhere", Panel::Always),
+    ("never", "Nowhere", Panel::Never),
+];
+
+/// The values of `--tone`.
+const TONES: &[(&str, &str, ToneCurve)] = &[
+    ("none", "No curve: brighter light is clipped", ToneCurve::None),
+    ("filmic", "A curve like that of film, for red, green and blue separately", ToneCurve::Filmic),
+    ("agx", "AgX: strong colors turn white", ToneCurve::Agx),
+];
 
 #[derive(Debug, Args)]
-pub(super) struct AnnotationArgs {
+pub(crate) struct AnnotationArgs {
     /// Show what the colors of --color-by mean, at a position: top-left, top, top-right, left, right, bottom-left,
     /// bottom, bottom-right, or fractions of the width and height such as 0.9,0.5 [without a position: right]
     #[arg(
@@ -52,36 +68,15 @@ pub(super) struct AnnotationArgs {
     #[arg(long, help_heading = HEADING, value_name = "CSS")]
     text_color: Option<String>,
     /// Whether a translucent panel lies behind annotations [default: auto]
-    #[arg(long, help_heading = HEADING, value_enum)]
-    panel: Option<PanelArg>,
+    #[arg(long, help_heading = HEADING, value_parser = one_of(PANELS))]
+    panel: Option<Panel>,
     /// Pixels per inch at which a PNG is to be printed; changes no pixel [default: the scene's, or none]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     dpi: Option<f32>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum PanelArg {
-    /// Where the picture behind is mixed
-    Auto,
-    /// Everywhere
-    Always,
-    /// Nowhere
-    Never,
-}
-
-impl From<PanelArg> for Panel {
-    fn from(panel: PanelArg) -> Self {
-        match panel {
-            PanelArg::Auto => Self::Auto,
-            PanelArg::Always => Self::Always,
-            PanelArg::Never => Self::Never,
-        }
-    }
-}
-
-/// The flags that were given, checked.
 #[derive(Clone, Debug, Default)]
-pub(super) struct AnnotationFlags {
+pub(crate) struct AnnotationFlags {
     plan: AnnotationPlan,
     dots_per_inch: Option<f32>,
     format: Option<PictureFormat>,
@@ -90,7 +85,7 @@ pub(super) struct AnnotationFlags {
 }
 
 impl AnnotationFlags {
-    pub(super) fn new(
+    pub(crate) fn new(
         args: &AnnotationArgs,
         format: PictureFormat,
         has_new_column: bool,
@@ -122,7 +117,7 @@ impl AnnotationFlags {
             labels: args.labels.iter().map(|text| label(text)).collect(),
             text_scale: args.text_scale,
             color: color.map(LinearRgb::to_srgb8),
-            panel: args.panel.map(Into::into),
+            panel: args.panel,
         };
         if format == PictureFormat::Exr && !plan.is_empty() {
             return Err(Failure::usage(
@@ -139,14 +134,14 @@ impl AnnotationFlags {
     }
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
-    pub(super) fn apply_to(&self, scene: Encoding) -> Encoding {
+    pub(crate) fn apply_to(&self, scene: Encoding) -> Encoding {
         let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
         // Both were checked, so this does not fail.
         scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
     }
 
     /// The parts of the film that a camera must leave free for the legend. `file` is what a scene file draws.
-    pub(super) fn free_sides(
+    pub(crate) fn free_sides(
         &self,
         file: &AnnotationPlan,
         key: Option<&ColorKey>,
@@ -159,7 +154,7 @@ impl AnnotationFlags {
     }
 
     /// What is to be drawn: what a scene file says, over which flags take precedence.
-    pub(super) fn plan_over(&self, file: &AnnotationPlan) -> AnnotationPlan {
+    pub(crate) fn plan_over(&self, file: &AnnotationPlan) -> AnnotationPlan {
         let (mut file, flags) = (file.clone(), self.plan.clone());
         if let Some(legend) = file.legend.as_mut().filter(|_| self.has_new_column) {
             legend.title = None;
@@ -182,7 +177,7 @@ impl AnnotationFlags {
     }
 
     /// The annotations of a picture. Notes are given to `note`.
-    pub(super) fn for_input(
+    pub(crate) fn for_input(
         &self,
         input: &Input,
         note: impl Fn(&dyn std::fmt::Display),
@@ -235,6 +230,75 @@ fn scale_bar(text: &str) -> ScaleBarPlan {
         None => (None, text),
     };
     ScaleBarPlan { length, unit: unit.trim().to_owned(), position }
+}
+
+/// Flags for writing the picture. [`EncodingFlags`] checks them.
+#[derive(Debug, Args)]
+pub(crate) struct EncodingArgs {
+    /// Bits per channel of a PNG, 8 or 16 [default: the scene's, or 8]
+    #[arg(long, value_name = "N")]
+    bits: Option<u32>,
+    /// Make the background transparent: write RGBA, with alpha from the spheres [default: the scene's, or false]
+    #[arg(
+        long,
+        value_name = "BOOL",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "true"
+    )]
+    transparent: Option<bool>,
+    /// Exposure of a PNG in stops from -32 to 32; each stop doubles the brightness [default: the scene's, or 0]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    exposure: Option<f32>,
+    /// Tone curve of a PNG, which brings light that is brighter than white into range [default: the scene's, or none]
+    #[arg(long, value_parser = one_of(TONES))]
+    tone: Option<ToneCurve>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EncodingFlags {
+    bits: Option<Bits>,
+    transparent: Option<bool>,
+    exposure: Option<f32>,
+    tone: Option<ToneCurve>,
+}
+
+impl EncodingFlags {
+    pub(crate) fn new(args: &EncodingArgs, format: PictureFormat) -> Result<Self, Failure> {
+        let EncodingArgs { bits, transparent, exposure, tone } = *args;
+        let given = [
+            ("--bits", bits.is_some()),
+            ("--exposure", exposure.is_some()),
+            ("--tone", tone.is_some()),
+        ];
+        let given = given.into_iter().find(|(_, is_given)| *is_given);
+        if let (PictureFormat::Exr, Some((flag, _))) = (format, given) {
+            return Err(Failure::usage(format!(
+                "{flag} applies only to PNG; an EXR file stores the light unchanged in 32 bits; remove {flag}"
+            )));
+        }
+        if let Some(stops) = exposure {
+            let checked = Encoding::default().with_exposure(stops);
+            checked.map_err(|error| Failure::usage(format!("--exposure: {error}")))?;
+        }
+        let bits = bits.map(Bits::new).transpose();
+        Ok(Self {
+            bits: bits.map_err(|error| Failure::usage(format!("--bits: {error}")))?,
+            transparent,
+            exposure,
+            tone,
+        })
+    }
+
+    /// Applies the flags to the encoding of a scene. Flags take precedence.
+    pub(crate) fn apply_to(self, scene: Encoding) -> Encoding {
+        let encoding = scene
+            .with_bits(self.bits.unwrap_or(scene.bits()))
+            .with_transparent(self.transparent.unwrap_or(scene.transparent()))
+            .with_tone(self.tone.unwrap_or(scene.tone()));
+        // Both exposures were checked, so this does not fail.
+        encoding.with_exposure(self.exposure.unwrap_or(scene.exposure())).unwrap_or(encoding)
+    }
 }
 
 #[cfg(test)]

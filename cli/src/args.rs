@@ -3,32 +3,31 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
-use super::camera::CameraArgs;
-use super::data::format_parser;
-use super::excluded_flags::{CAMERA, RENDERING, not_of_pictures};
+use crate::camera::CameraArgs;
+use crate::data::format_parser;
 #[cfg(feature = "gpu")]
-use super::light::LightArgs;
-use super::verify_help::AFTER_HELP;
+use crate::light::LightArgs;
 use pinhole::accel::AccelChoice;
 use pinhole::load::Format;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Stereo {
+pub(crate) enum Stereo {
     /// In one picture of twice the width, with the left eye on the left
     SideBySide,
     /// In two files: OUT-left.png and OUT-right.png
     TwoFiles,
 }
 
-/// The scene and the view of it. [`super::input::Source`] checks them.
+/// The scene and the view of it. [`crate::input::Source`] checks them.
 #[derive(Debug, Args)]
-pub(super) struct InputArgs {
+pub(crate) struct InputArgs {
     #[arg(value_name = "SCENE_OR_DATA", help = input_help())]
-    pub(super) path: PathBuf,
+    pub(crate) path: PathBuf,
     #[command(flatten)]
-    pub(super) view: ViewArgs,
+    pub(crate) view: ViewArgs,
 }
 
 /// The help of the input, which lists the extensions of all formats.
@@ -42,63 +41,63 @@ fn input_help() -> String {
 
 /// Flags for reading the input, and for the camera.
 #[derive(Debug, Args)]
-pub(super) struct ViewArgs {
+pub(crate) struct ViewArgs {
     /// Format of the data file, whatever its extension is
     #[arg(long, value_parser = format_parser())]
-    pub(super) format: Option<&'static Format>,
+    pub(crate) format: Option<&'static Format>,
     /// File that says what the spheres of a trajectory are, for formats that have positions alone
     #[arg(long, value_name = "FILE")]
-    pub(super) topology: Option<PathBuf>,
+    pub(crate) topology: Option<PathBuf>,
     /// Names of the columns of a table without a header, such as x,y,z,radius
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub(super) columns: Vec<String>,
+    pub(crate) columns: Vec<String>,
     /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
-    pub(super) radius: Option<f64>,
+    pub(crate) radius: Option<f64>,
     /// CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]
     #[arg(long, value_name = "CSS")]
-    pub(super) color: Option<String>,
+    pub(crate) color: Option<String>,
     /// Frame of a trajectory, counted from 0 [default: the scene's, or 0]
     #[arg(long, value_name = "N")]
-    pub(super) frame: Option<usize>,
+    pub(crate) frame: Option<usize>,
     /// Width and height of the picture in pixels, such as 800x600 [default: the scene's, or 800x600]
     #[arg(long, value_name = "WxH")]
-    pub(super) size: Option<String>,
+    pub(crate) size: Option<String>,
     #[command(flatten)]
-    pub(super) camera: CameraArgs,
+    pub(crate) camera: CameraArgs,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct DemoArgs {
+pub(crate) struct DemoArgs {
     /// Width and height of the picture in pixels, such as 800x600 [default: the scene's]
     #[arg(long, value_name = "WxH")]
-    pub(super) size: Option<String>,
+    pub(crate) size: Option<String>,
     #[command(flatten)]
-    pub(super) device: DeviceArgs,
+    pub(crate) device: DeviceArgs,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct DeviceArgs {
+pub(crate) struct DeviceArgs {
     /// What renders the picture
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
-    pub(super) backend: Backend,
+    pub(crate) backend: Backend,
     #[command(flatten)]
-    pub(super) adapter: AdapterArgs,
+    pub(crate) adapter: AdapterArgs,
 }
 
 /// Flags that choose the adapter and its limits.
 #[derive(Debug, Args)]
-pub(super) struct AdapterArgs {
+pub(crate) struct AdapterArgs {
     /// Use the adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best adapter]
     #[arg(long, value_name = "NAME")]
-    pub(super) adapter: Option<String>,
+    pub(crate) adapter: Option<String>,
     /// Limits of the device that the program may use [default: adapter]
     #[arg(long, value_enum)]
-    pub(super) limits: Option<Limits>,
+    pub(crate) limits: Option<Limits>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Limits {
+pub(crate) enum Limits {
     /// All limits that the adapter offers
     Adapter,
     /// The default limits of WebGPU, or less where the adapter offers less
@@ -106,76 +105,77 @@ pub(super) enum Limits {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct AccelArgs {
+pub(crate) struct AccelArgs {
     /// Acceleration structure with which an adapter finds the spheres that a ray hits [default: auto]
-    #[arg(long, value_enum)]
-    pub(super) accel: Option<Structure>,
+    #[arg(long, value_parser = one_of(STRUCTURES))]
+    pub(crate) accel: Option<AccelChoice>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Structure {
-    /// The structure that suits the scene best
-    Auto,
-    /// A grid of cells, with nested grids where spheres are dense
-    Grid,
-    /// A tree with eight children per node (BVH8)
-    Tree,
-    /// No structure, every ray tests every sphere: slow, for comparison
-    List,
-    /// Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`
-    Query,
-}
+/// The values of `--accel`.
+const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
+    ("auto", "The structure that suits the scene best", AccelChoice::Auto),
+    ("grid", "A grid of cells, with nested grids where spheres are dense", AccelChoice::Grid),
+    ("tree", "A tree with eight children per node (BVH8)", AccelChoice::Tree),
+    ("list", "No structure, every ray tests every sphere: slow, for comparison", AccelChoice::List),
+    (
+        "query",
+        "Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`",
+        AccelChoice::RayQuery,
+    ),
+];
 
-impl From<Structure> for AccelChoice {
-    fn from(structure: Structure) -> Self {
-        match structure {
-            Structure::Auto => Self::Auto,
-            Structure::Grid => Self::Grid,
-            Structure::Tree => Self::Tree,
-            Structure::List => Self::List,
-            Structure::Query => Self::RayQuery,
-        }
-    }
+/// A parser of names, each with its help, or none if that is empty, and the value that it stands for.
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
+    all: &'static [(&'static str, &'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    let names = all.iter().map(|(name, help, _)| match *help {
+        "" => PossibleValue::new(*name),
+        help => PossibleValue::new(*name).help(help),
+    });
+    PossibleValuesParser::new(names).try_map(|name| {
+        let found = all.iter().find(|(other, ..)| *other == name);
+        found.map(|(.., value)| *value).ok_or("this name has no meaning here")
+    })
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = AFTER_HELP)]
-pub(super) struct VerifyArgs {
+pub(crate) struct VerifyArgs {
     /// File to check: a scene file or a data file, as for `render`; or with --scene a picture
     #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]
-    pub(super) path: Option<PathBuf>,
+    pub(crate) path: Option<PathBuf>,
     /// The scene file or data file of a picture that `render --certify` wrote: check the picture's samples and its
     /// certificate, which says the other arguments of `render`. This needs no adapter
     #[arg(long, value_name = "SCENE_OR_DATA", conflicts_with_all = not_of_pictures())]
-    pub(super) scene: Option<PathBuf>,
+    pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
-    pub(super) view: ViewArgs,
+    pub(crate) view: ViewArgs,
     #[command(flatten)]
-    pub(super) adapter: AdapterArgs,
+    pub(crate) adapter: AdapterArgs,
     #[command(flatten)]
-    pub(super) accel: AccelArgs,
+    pub(crate) accel: AccelArgs,
     /// Samples of each pixel that are checked stage by stage, in scenes with light: paths bounce by bounce, studios
     /// surface by surface and light by light. The last sample is one of them. In a picture with a side of more than 256
     /// pixels, only the middle and a part at random are checked, and of a studio with many lights smaller parts
     /// [default: 1]
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
-    pub(super) paths: Option<u32>,
+    pub(crate) paths: Option<u32>,
     /// Where the part at random is in which light is checked as well: the same seed, the same part [default: another one
     /// in each run]
     #[arg(long, value_name = "SEED")]
-    pub(super) tile_seed: Option<u32>,
+    pub(crate) tile_seed: Option<u32>,
     /// Also write the results to this file as JSON
     #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
+    pub(crate) json: Option<PathBuf>,
     /// Also write the results as a web page, report.html, into this folder, which is created if it is missing
     #[arg(long, value_name = "DIR")]
-    pub(super) report: Option<PathBuf>,
+    pub(crate) report: Option<PathBuf>,
     /// Also save the scene and the recording to this file, for --replay
     #[arg(long, value_name = "RUN")]
-    pub(super) save: Option<PathBuf>,
+    pub(crate) save: Option<PathBuf>,
     /// Check a saved recording again; this needs no adapter
     #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING.into_iter().chain(CAMERA).chain(["scene"]))]
-    pub(super) replay: Option<PathBuf>,
+    pub(crate) replay: Option<PathBuf>,
 }
 
 #[cfg(feature = "gpu")]
@@ -189,22 +189,22 @@ pub(super) struct VerifyArgs {
     `host_peak`, `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
     `problem`. New versions may add keys, but do not change these."
 )]
-pub(super) struct PlanArgs {
+pub(crate) struct PlanArgs {
     #[command(flatten)]
-    pub(super) input: InputArgs,
+    pub(crate) input: InputArgs,
     #[command(flatten)]
-    pub(super) light: LightArgs,
+    pub(crate) light: LightArgs,
     #[command(flatten)]
-    pub(super) adapter: AdapterArgs,
+    pub(crate) adapter: AdapterArgs,
     #[command(flatten)]
-    pub(super) accel: AccelArgs,
+    pub(crate) accel: AccelArgs,
     /// Data layer that would be written in addition (alpha, depth, normal, position, albedo, id, samples, variance);
     /// may be repeated
     #[arg(long = "layer", value_name = "LAYER")]
-    pub(super) layers: Vec<String>,
+    pub(crate) layers: Vec<String>,
     /// Print the results as JSON
     #[arg(long)]
-    pub(super) json: bool,
+    pub(crate) json: bool,
 }
 
 #[cfg(feature = "gpu")]
@@ -220,35 +220,35 @@ pub(super) struct PlanArgs {
     submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
     peak_memory_bytes. New versions may add keys, but do not change these."
 )]
-pub(super) struct BenchArgs {
+pub(crate) struct BenchArgs {
     /// Scenes to measure: R1M, R10M, L1M, C200k, or scene or data files; R10M needs almost 1 GiB of memory
     /// [default: R1M L1M C200k]
     #[arg(value_name = "SCENE")]
-    pub(super) scenes: Vec<PathBuf>,
+    pub(crate) scenes: Vec<PathBuf>,
     /// Width and height of the pictures in pixels [default: 1024x1024, or the file's]
     #[arg(long, value_name = "WxH")]
-    pub(super) size: Option<String>,
+    pub(crate) size: Option<String>,
     /// Format of the data files, whatever their extensions are
     #[arg(long, value_parser = format_parser())]
-    pub(super) format: Option<&'static Format>,
+    pub(crate) format: Option<&'static Format>,
     /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R")]
-    pub(super) radius: Option<f64>,
+    pub(crate) radius: Option<f64>,
     /// Measure only these acceleration structures, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(super) accel: Vec<Structure>,
+    #[arg(long, value_parser = one_of(STRUCTURES), value_delimiter = ',')]
+    pub(crate) accel: Vec<AccelChoice>,
     /// Number of measurements of each structure
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(super) reps: u32,
+    pub(crate) reps: u32,
     #[command(flatten)]
-    pub(super) adapter: AdapterArgs,
+    pub(crate) adapter: AdapterArgs,
     /// Print the results as JSON
     #[arg(long)]
-    pub(super) json: bool,
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Backend {
+pub(crate) enum Backend {
     /// An adapter (GPU) if there is one, otherwise the CPU reference
     Auto,
     /// An adapter (GPU); without one, the job fails
@@ -256,3 +256,72 @@ pub(super) enum Backend {
     /// The CPU reference, which is slower
     Cpu,
 }
+
+/// Arguments of `verify` that say nothing about a picture that was written.
+pub(crate) fn not_of_pictures() -> impl IntoIterator<Item = &'static str> {
+    RENDERING.into_iter().chain(CAMERA).filter(|id| *id != "path").chain(["report"])
+}
+
+/// Arguments that describe the camera and the size of the picture.
+pub(crate) const CAMERA: [&str; 21] = [
+    "size",
+    "camera",
+    "eye",
+    "look_at",
+    "direction",
+    "view",
+    "turn",
+    "margin",
+    "zoom",
+    "up",
+    "fov",
+    "distance",
+    "half_extent",
+    "aperture_radius",
+    "f_stop",
+    "focal_length",
+    "focus_distance",
+    "focus_on",
+    "angle",
+    "separation",
+    "convergence",
+];
+
+/// The other arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay`
+/// excludes them, as it does those of the camera.
+pub(crate) const RENDERING: [&str; 13] = [
+    "path",
+    "format",
+    "radius",
+    "color",
+    "frame",
+    "topology",
+    "columns",
+    "adapter",
+    "limits",
+    "accel",
+    "paths",
+    "save",
+    "tile_seed",
+];
+
+pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and \
+    color. It computes in f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
+    given one of them. The CPU reference never replaces an adapter here.\n\n\
+    Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
+    or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
+    pixels have several legal answers, or of the stages of light paths or the denoised pixels have bounds so wide that \
+    they say little.\n\n\
+    JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
+    `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
+    `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
+    wrong), `violations` (the first hundred: pixel, stage, message), `open` (the first three ties and the first three silhouettes: \
+    pixel, verdict, message), `paths` (only with the integrator `path`: paths, \
+    stages, rectangles (column, row, width and height of what was checked), judged (samples, of_samples, pixels, of_pixels: so many of \
+    so many in the picture, and fraction, of all its samples), open (the first stages that are open or \
+    undecided: pixel, sample, surface, stage, is_undecided, legal: of an open search, up to four legal answers), upload, \
+    violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
+     stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
+     outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
+    (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program \
+    that rendered. New versions may add keys, but do not change these.";

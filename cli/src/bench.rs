@@ -1,29 +1,37 @@
 //! `pinhole bench`: measures acceleration structures on an adapter, and shows whether the automatic choice is fastest.
 
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
-use super::adapter::{AdapterReport, DEVICE_CLOCK};
-use super::args::BenchArgs;
-use super::bench_report::{BenchReport, RunReport, SceneReport, Spread};
-use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
-use super::device::{WantedAdapter, explained};
-use super::failure::Failure;
-use super::input_format::parse_size;
-use super::speak::{answer, tell};
-use super::with_scene::watch_upload;
-use super::{interrupt, memory, process, progress, threads};
+use crate::args::BenchArgs;
+use crate::bench_report::{BenchReport, RunReport, SceneReport, Spread};
+use crate::device::{AdapterReport, DEVICE_CLOCK, WantedAdapter, explained};
+use crate::failure::Failure;
+use crate::input::{Input, Source};
+use crate::memory;
+use crate::progress::{self, answer, tell};
+use crate::read_file::parse_size;
+use crate::with_scene::watch_upload;
+use crate::{interrupt, threads};
 use pinhole::accel::{AccelChoice, Structure};
-use pinhole::camera::View;
+use pinhole::camera::film::Film;
+use pinhole::camera::{Camera, View};
+use pinhole::generate::{BYTES_PER_SPHERE, Standard};
 use pinhole::gpu::{
     GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
     UploadStep,
 };
 use pinhole::image::LayerSet;
+use pinhole::image::color::LinearRgb;
+use pinhole::internals::text::one_line;
 use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::scene_file::DEFAULT_COLOR;
 
-pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let size = args.size.as_deref().map(parse_size).transpose()?;
     let sources = if args.scenes.is_empty() {
         DEFAULT.into_iter().map(BenchSource::Standard).collect()
@@ -70,7 +78,7 @@ fn measure_scene(
     scene: &BenchScene,
     args: &BenchArgs,
 ) -> Result<SceneReport, Failure> {
-    let mut choices: Vec<AccelChoice> = args.accel.iter().map(|accel| (*accel).into()).collect();
+    let mut choices = args.accel.clone();
     if choices.is_empty() {
         let planned = headless.plan_accel(&scene.scene, AccelChoice::Auto).structure;
         let other = match planned {
@@ -167,7 +175,7 @@ fn measure(
         device_bytes,
         device_bytes_per_sphere: (!spheres.is_empty())
             .then(|| device_bytes as f64 / spheres.len() as f64),
-        peak_memory_bytes: process::peak_bytes(),
+        peak_memory_bytes: memory::peak_bytes(),
     })
 }
 
@@ -206,4 +214,90 @@ fn repeat(
             time.map_err(|error| explained(headless, &error))
         })
         .collect()
+}
+
+/// The scenes to measure by default; any machine has enough memory for them.
+pub(crate) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
+
+/// A scene as it was named on the command line.
+pub(crate) enum BenchSource {
+    Standard(Standard),
+    File(PathBuf, Box<Source>),
+}
+
+/// A scene that was generated or read.
+pub(crate) struct BenchScene {
+    pub(crate) name: String,
+    pub(crate) scene: Scene,
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) film: Film,
+    pub(crate) load: Duration,
+}
+
+impl BenchSource {
+    /// Finds the standard scene of this name, or takes the name as that of a file.
+    pub(crate) fn new(
+        named: &Path,
+        args: &BenchArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
+        let standard = Standard::ALL.iter().find(|standard| named == Path::new(standard.name()));
+        match standard {
+            Some(standard) => Ok(Self::Standard(*standard)),
+            None if named.extension().is_none() => {
+                let names: Vec<_> = Standard::ALL.iter().map(|standard| standard.name()).collect();
+                Err(Failure::usage(format!(
+                    "{}: this is neither a standard scene nor a file with an extension; name one of {} or a file",
+                    named.display(),
+                    names.join(", ")
+                )))
+            }
+            None => {
+                Ok(Self::File(named.to_path_buf(), Box::new(Source::of_bench(named, args, size)?)))
+            }
+        }
+    }
+
+    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not
+    /// free.
+    pub(crate) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+        match self {
+            Self::Standard(standard) => made(*standard, size),
+            Self::File(path, source) => {
+                let started = Instant::now();
+                let input = source.load()?;
+                let load = started.elapsed();
+                for note in &input.notes {
+                    tell(format_args!("note: {note}"));
+                }
+                let name = one_line(&path.display().to_string());
+                let Input { scene, camera, film, .. } = input;
+                let scene = Arc::unwrap_or_clone(scene);
+                Ok(BenchScene { name, scene, camera, film, load })
+            }
+        }
+    }
+}
+
+fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+    let (name, count) = (standard.name(), standard.count());
+    let film = match size {
+        Some((width, height)) => film(width, height)?,
+        None => standard.film().context(name)?,
+    };
+    let bytes = count * BYTES_PER_SPHERE;
+    memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
+        .map_err(anyhow::Error::msg)?;
+    tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
+    progress::stage(format!("generating {name}"));
+    let started = Instant::now();
+    let spheres = standard.spheres().context(name)?;
+    let scene = Scene::from_f32(spheres, LinearRgb::from_srgb8(DEFAULT_COLOR)).context(name)?;
+    let load = started.elapsed();
+    let camera = Box::new(standard.camera().context(name)?);
+    Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
+}
+
+fn film(width: u32, height: u32) -> Result<Film, Failure> {
+    Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))
 }

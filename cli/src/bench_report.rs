@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::adapter::{AdapterReport, DEVICE_CLOCK};
-use super::bench_scene::BenchScene;
+use super::bench::BenchScene;
+use super::device::{AdapterReport, DEVICE_CLOCK};
 use super::memory::readable;
-use super::table::table;
+use crate::text::table;
 
 /// The JSON document.
 #[derive(Serialize)]

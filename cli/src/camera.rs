@@ -13,7 +13,7 @@ use pinhole::glam::DVec3;
 /// is set once.
 pub(super) const HEADING: &str = "Camera (any of these flags replaces the camera of the scene)";
 
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct CameraArgs {
     /// Kind of the camera [default: pinhole]
     #[arg(long, help_heading = HEADING, value_name = "KIND", value_parser = kinds())]
@@ -105,23 +105,15 @@ impl CameraArgs {
             return Err(Failure::usage(format!("--turn {turn}: it must be a finite angle")));
         }
         let is_any = self.camera.is_some() || self.view.is_some() || self.turn.is_some();
-        let flags = CameraFlags {
-            is_given: is_any || !table.is_empty(),
-            kind: self.camera.clone().unwrap_or_else(|| CameraKind::ALL[0].name().to_owned()),
-            table,
-            view: self.view,
-            turn: self.turn.unwrap_or(0.0),
-            eye: self.eye.is_some(),
-            direction: self.direction.map(DVec3::from),
-            up: self.up.map(DVec3::from),
-        };
+        let flags =
+            CameraFlags { args: self.clone(), is_given: is_any || !table.is_empty(), table };
         self.check(&flags)?;
         Ok(flags)
     }
 
     /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
-        let kind = flags.kind.as_str();
+        let kind = flags.kind();
         // Data is seen from here, with any direction up; of scene files, the real check comes later.
         let parameters = flags
             .parameters(Some(Viewpoint::OBLIQUE), DVec3::Y)
@@ -131,12 +123,12 @@ impl CameraArgs {
         let checked = match parameters.camera(1.0, subject) {
             // For a camera without an eye position, the distance of the focus depends on the scene.
             Err(CameraError::Range { parameter, .. })
-                if parameter == "`aperture_radius`" && !flags.eye =>
+                if parameter == "`aperture_radius`" && self.eye.is_none() =>
             {
                 Ok(())
             }
             Err(CameraError::Length { .. })
-                if kind == CameraKind::ThinLens.name() && !flags.eye =>
+                if kind == CameraKind::ThinLens.name() && self.eye.is_none() =>
             {
                 Ok(())
             }
@@ -196,55 +188,41 @@ impl CameraArgs {
 }
 
 /// The camera flags that were given, checked.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct CameraFlags {
+    args: CameraArgs,
     /// Whether there is any flag, so that the camera takes the place of the scene's.
     pub(super) is_given: bool,
-    kind: String,
     table: toml::Table,
-    view: Option<Viewpoint>,
-    turn: f64,
-    eye: bool,
-    direction: Option<DVec3>,
-    up: Option<DVec3>,
-}
-
-impl Default for CameraFlags {
-    /// No flag: a pinhole camera that frames the scene.
-    fn default() -> Self {
-        Self {
-            is_given: false,
-            kind: CameraKind::ALL[0].name().to_owned(),
-            table: toml::Table::new(),
-            view: None,
-            turn: 0.0,
-            eye: false,
-            direction: None,
-            up: None,
-        }
-    }
 }
 
 impl CameraFlags {
-    /// Returns the direction of `--up`, if it was given.
+    fn kind(&self) -> &str {
+        self.args.camera.as_deref().unwrap_or(CameraKind::ALL[0].name())
+    }
+
     pub(super) fn up(&self) -> Option<DVec3> {
-        self.up
+        self.args.up.map(DVec3::from)
     }
 
     /// Returns the viewpoint: that of `--view`, or else `automatic` for a camera that stands outside the scene and has
     /// no eye and no direction.
     pub(super) fn viewpoint(&self, automatic: Option<Viewpoint>) -> Option<Viewpoint> {
-        let is_outside = ["panorama", "fisheye"].iter().all(|kind| *kind != self.kind);
-        let automatic = automatic.filter(|_| is_outside && !self.eye && self.direction.is_none());
-        self.view.or(automatic)
+        let is_outside = ["panorama", "fisheye"].iter().all(|kind| *kind != self.kind());
+        let automatic = automatic
+            .filter(|_| is_outside && self.args.eye.is_none() && self.args.direction.is_none());
+        self.args.view.or(automatic)
     }
 
     /// Returns the flags that show how the camera is turned, to be used again; `None` if there is nothing to say.
     pub(super) fn view_in_flags(&self, automatic: Option<Viewpoint>) -> Option<String> {
-        let turn = if self.turn == 0.0 { String::new() } else { format!(" --turn {}", self.turn) };
-        let direction = |d: DVec3| format!("--direction {},{},{}{turn}", d.x, d.y, d.z);
+        let turn = match self.args.turn.unwrap_or(0.0) {
+            0.0 => String::new(),
+            turn => format!(" --turn {turn}"),
+        };
+        let direction = |[x, y, z]: [f64; 3]| format!("--direction {x},{y},{z}{turn}");
         let named = self.viewpoint(automatic).map(|view| format!("--view {view}{turn}"));
-        named.or(self.direction.filter(|_| !self.eye).map(direction))
+        named.or(self.args.direction.filter(|_| self.args.eye.is_none()).map(direction))
     }
 
     /// Returns the parameters of the camera, which stands at the `automatic` viewpoint if no flag says where, and whose
@@ -255,17 +233,18 @@ impl CameraFlags {
         default_up: DVec3,
     ) -> Result<CameraParameters, String> {
         let mut table = self.table.clone();
-        let up = self.up.unwrap_or(default_up);
+        let (up, turn) = (self.up().unwrap_or(default_up), self.args.turn.unwrap_or(0.0));
         if let Some(view) = self.viewpoint(automatic) {
-            let [direction, up] = view.axes(up, self.turn);
+            let [direction, up] = view.axes(up, turn);
             table.insert("direction".to_owned(), list(direction.to_array()));
             table.insert("up".to_owned(), list(up.to_array()));
-        } else if self.turn != 0.0 {
-            let direction = self.direction.unwrap_or(DVec3::NEG_Z);
-            let direction = turned(direction, up, self.turn);
+        } else if turn != 0.0 {
+            let direction = self.args.direction.map_or(DVec3::NEG_Z, DVec3::from);
+            let direction = turned(direction, up, turn);
             table.insert("direction".to_owned(), list(direction.to_array()));
         }
-        let document = toml::Table::from_iter([(self.kind.clone(), toml::Value::Table(table))]);
+        let document =
+            toml::Table::from_iter([(self.kind().to_owned(), toml::Value::Table(table))]);
         CameraParameters::deserialize(toml::Value::Table(document))
             .map_err(|error| error.message().to_owned())
     }

@@ -7,10 +7,9 @@ use clap::{ArgMatches, CommandFactory};
 use super::device::Opened;
 use super::failure::Failure;
 use super::input::Input;
-use super::progress;
-use super::render;
 use super::render_args::RenderLine;
 use super::views::Views;
+use super::{progress, render};
 use pinhole::image::denoise;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
@@ -89,7 +88,6 @@ impl Written {
         Ok(Self { size, samples, per_pixel })
     }
 
-    /// The digest of the samples.
     fn digest(&self) -> String {
         match &self.samples {
             FileSamples::Encoded { bytes, .. } => samples_digest(self.size, bytes),

@@ -1,22 +1,27 @@
 //! `pinhole certify`: judges the answers of any renderer by exact rays.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
-use super::args::ViewArgs;
-use super::certify_report::Report;
-use super::excluded_flags::CAMERA;
-use super::failure::Failure;
-use super::input::{Input, Source, read};
-use super::output::{check_not_inputs, check_writable, name_all, unnamed};
-use super::speak::{answer, tell};
-use super::{progress, threads};
+use crate::args::{CAMERA, ViewArgs};
+use crate::failure::Failure;
+use crate::input::{Input, Source, read};
+use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
+use crate::progress::{self, answer, tell};
+use crate::threads;
+use crate::verify::report::{Scene, command_line};
 use pinhole::geometry::ray::Ray;
+use pinhole::image::NO_ID;
 use pinhole::load::LoadError;
 use pinhole::load::npy::pixels::{self, Pixels};
-use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays};
+use pinhole::verify::conformance::{
+    Answers, Conformance, ConformanceError, DepthKind, Finding, Rays,
+};
+use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 
 #[derive(Debug, Args)]
@@ -38,7 +43,7 @@ use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
     (up to a hundred pixels: pixel, id, depth, outcome, k, margin, reason, exact_id, exact_distance, message), `outcome`, \
     `command`; what is infinite or a miss is null. New versions may add keys, but do not change these."
 )]
-pub(super) struct CertifyArgs {
+pub(crate) struct CertifyArgs {
     /// File that was rendered: a scene file or a data file, as for `render`
     #[arg(value_name = "SCENE_OR_DATA")]
     path: PathBuf,
@@ -81,7 +86,7 @@ impl CertifyArgs {
     }
 }
 
-pub(super) fn run(args: &CertifyArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     check(args)?;
     threads::start()?;
     let ids = array(&args.id, pixels::ids)?;
@@ -136,7 +141,6 @@ fn check(args: &CertifyArgs) -> Result<(), Failure> {
     args.json.as_deref().map_or(Ok(()), check_writable)
 }
 
-/// Reads an array.
 fn array<T>(
     path: &Path,
     decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, LoadError>,
@@ -231,11 +235,151 @@ fn verdict(found: &Conformance) -> Result<(), Failure> {
     }
 }
 
+/// The number of pixels that the text lists.
+const LISTED: usize = 10;
+
+/// The JSON document.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    version: &'static str,
+    scene: Scene,
+    picture: Picture,
+    checked: Vec<&'static str>,
+    at_most: f64,
+    counts: BTreeMap<&'static str, usize>,
+    decided_fraction: f64,
+    largest: Option<f64>,
+    histogram: Vec<Bin>,
+    worst: Vec<Listed>,
+    outcome: &'static str,
+    command: String,
+    /// The results as a table of text.
+    #[serde(skip)]
+    table: String,
+}
+
+#[derive(Serialize)]
+struct Picture {
+    width: u32,
+    height: u32,
+    /// The camera, unless rays were given.
+    camera: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct Bin {
+    up_to: Option<f64>,
+    count: usize,
+}
+
+/// A pixel with its message.
+#[derive(Serialize)]
+struct Listed {
+    pixel: [u32; 2],
+    id: Option<u32>,
+    depth: Option<f64>,
+    outcome: &'static str,
+    k: Option<f64>,
+    margin: Option<f64>,
+    reason: &'static str,
+    exact_id: Option<u32>,
+    exact_distance: Option<f64>,
+    message: String,
+}
+
+/// A finite number, which JSON can hold.
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+impl From<&Finding> for Listed {
+    fn from(finding: &Finding) -> Self {
+        let id = Some(finding.id).filter(|id| *id != NO_ID);
+        Self {
+            pixel: finding.pixel,
+            id,
+            depth: id.and(finding.depth),
+            outcome: finding.outcome.name(),
+            k: finite(finding.least),
+            margin: finite(finding.margin),
+            reason: finding.reason.name(),
+            exact_id: finding.exact.map(|(id, _)| id),
+            exact_distance: finding.exact.map(|(_, t)| t),
+            message: finding.to_string(),
+        }
+    }
+}
+
+impl Report {
+    pub(crate) fn new(
+        input: &Input,
+        answers: &Answers<'_>,
+        has_rays: bool,
+        found: &Conformance,
+    ) -> Self {
+        let [width, height] = found.size;
+        let depth = match answers.depth_kind {
+            DepthKind::Distance => "depth as t",
+            DepthKind::AlongAxis => "depth as z",
+        };
+        let checked =
+            [Some("id"), answers.depths.map(|_| depth), answers.normals.map(|_| "normal")];
+        let count = |outcome: &Outcome| (outcome.name(), found.count(*outcome));
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: Scene { spheres: input.scene.len(), sha256: scene_sha256(&input.scene) },
+            picture: Picture {
+                width,
+                height,
+                camera: (!has_rays).then(|| input.camera.kind().name()),
+            },
+            checked: checked.into_iter().flatten().collect(),
+            at_most: found.at_most,
+            counts: Outcome::ALL.iter().map(count).collect(),
+            decided_fraction: found.decided_fraction(),
+            largest: finite(found.largest()),
+            histogram: found
+                .histogram()
+                .into_iter()
+                .map(|(up_to, count)| Bin { up_to: finite(up_to), count })
+                .collect(),
+            worst: found.worst.iter().map(Listed::from).collect(),
+            outcome: found.outcome().name(),
+            command: command_line(),
+            table: table(found),
+        }
+    }
+
+    /// Returns the report as text.
+    pub(crate) fn table(&self) -> String {
+        let Scene { spheres, sha256 } = &self.scene;
+        let Picture { width, height, camera } = self.picture;
+        let rays = camera.map_or("given rays".to_owned(), |camera| format!("{camera} camera"));
+        format!(
+            "scene: {spheres} spheres, {} bytes, sha256 {sha256}\npicture: {width}x{height}, {rays}\n\
+             checked: {}\n{}{}\n",
+            16 * spheres,
+            self.checked.join(", "),
+            self.table,
+            self.outcome
+        )
+    }
+}
+
+/// Returns the counts, the histogram, and the first of the worst pixels.
+fn table(found: &Conformance) -> String {
+    let mut text = found.to_string();
+    // The first is there already.
+    for finding in found.worst.iter().take(LISTED).skip(1) {
+        text += &format!("\n       {finding}");
+    }
+    text + "\n"
+}
+
 #[cfg(test)]
 mod tests {
-    use clap::{Command, FromArgMatches as _};
-
     use super::*;
+    use clap::{Command, FromArgMatches as _};
 
     #[test]
     fn rays_exclude_all_arguments_that_describe_a_camera() {

@@ -2,16 +2,16 @@
 
 use clap::{Parser, Subcommand};
 
-#[cfg(feature = "gpu")]
-use super::args::{BenchArgs, PlanArgs};
-use super::args::{DemoArgs, VerifyArgs};
 use super::bricks::SortArgs;
-use super::certify::CertifyArgs;
-use super::generate::GenerateArgs;
 use super::info::InfoArgs;
 use super::job::JobArgs;
 use super::render_args::RenderArgs;
 use super::view::ViewArguments;
+#[cfg(feature = "gpu")]
+use crate::args::{BenchArgs, PlanArgs};
+use crate::args::{DemoArgs, VerifyArgs};
+use crate::certify::CertifyArgs;
+use crate::generate::GenerateArgs;
 
 /// Ray traces spheres with compute shaders, without a display, and checks its pictures.
 #[derive(Debug, Parser)]
@@ -58,7 +58,7 @@ mod tests {
     use clap::CommandFactory;
 
     use super::*;
-    use crate::excluded_flags::{CAMERA, RENDERING};
+    use crate::args::{CAMERA, RENDERING};
 
     #[test]
     fn replay_excludes_all_arguments_that_describe_the_picture() {

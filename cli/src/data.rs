@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use super::failure::Failure;
+use crate::memory;
+use crate::read_file::read as read_bytes;
 use pinhole::LinearRgb;
 use pinhole::load::{
     FORMATS, Format, LoadError, LoadErrorKind, Loaded, Options, Place, Trajectory,
 };
-
-use super::failure::Failure;
-use super::memory;
-use super::read_file::read as read_bytes;
 
 /// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Debug, Default)]

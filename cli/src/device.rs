@@ -1,25 +1,27 @@
-//! Chooses and opens what renders: an adapter or the CPU reference.
+//! The device that renders: which adapter is asked for, and what is known of one.
 
 use std::panic::resume_unwind;
 use std::thread::{self, ScopedJoinHandle};
 
-use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
+use serde::Serialize;
+
+use crate::args::{AdapterArgs, Backend, DeviceArgs, Limits};
+use crate::failure::Failure;
 #[cfg(feature = "gpu")]
-pub(super) use super::device_error::{explained, explained_alone};
-use super::failure::Failure;
+use crate::quick_test::quick_warning;
 #[cfg(feature = "gpu")]
-use super::quick_test::quick_warning;
+pub(super) use crate::with_scene::{explained, explained_alone};
 #[cfg(feature = "gpu")]
-use super::{deadline, interrupt, profile};
+use crate::{interrupt, profile};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
+use pinhole::verify::run_file::Provenance;
 
 /// What renders, as the flags ask for it.
-pub(super) enum Device {
+pub(crate) enum Device {
     /// The CPU reference.
     Cpu,
-    /// An adapter.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
     Adapter {
         /// The adapter that the flags ask for.
@@ -33,7 +35,7 @@ pub(super) enum Device {
 
 /// The adapter that the flags ask for; without a name, the best one.
 #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
-pub(super) struct WantedAdapter {
+pub(crate) struct WantedAdapter {
     name: Option<String>,
     limits: Option<Limits>,
     /// Whether the device is opened for ray queries.
@@ -41,7 +43,7 @@ pub(super) struct WantedAdapter {
 }
 
 impl Device {
-    pub(super) fn new(args: &DeviceArgs, accel: Option<Structure>) -> Result<Self, Failure> {
+    pub(crate) fn new(args: &DeviceArgs, accel: Option<AccelChoice>) -> Result<Self, Failure> {
         let AdapterArgs { adapter, limits } = &args.adapter;
         let given = [
             ("--adapter", adapter.is_some()),
@@ -56,7 +58,7 @@ impl Device {
             ))),
             (backend, given) => Ok(Self::Adapter {
                 wanted: WantedAdapter::new(&args.adapter).for_structures(accel),
-                choice: choice(accel),
+                choice: accel.unwrap_or_default(),
                 // A flag that only adapters have means that the user wants an adapter.
                 or_cpu: backend == Backend::Auto && given.is_none(),
             }),
@@ -64,13 +66,8 @@ impl Device {
     }
 }
 
-/// Returns the structure that the flag asks for, or the automatic choice.
-pub(super) fn choice(accel: Option<Structure>) -> AccelChoice {
-    accel.unwrap_or(Structure::Auto).into()
-}
-
 /// What renders, opened and ready.
-pub(super) enum Opened {
+pub(crate) enum Opened {
     /// The CPU reference.
     Cpu,
     /// The CPU reference, used because there is no adapter.
@@ -89,8 +86,7 @@ pub(super) enum Opened {
 }
 
 impl Opened {
-    /// Returns the name of the adapter, if an adapter renders.
-    pub(super) fn adapter(&self) -> Option<&str> {
+    pub(crate) fn adapter(&self) -> Option<&str> {
         match self {
             #[cfg(feature = "gpu")]
             Self::Device { headless, .. } => Some(&headless.adapter_info().name),
@@ -103,12 +99,12 @@ impl Opened {
 
 impl Device {
     /// Opens the device and runs the quick part of its self-test.
-    pub(super) fn open(&self) -> Result<Opened, Failure> {
+    pub(crate) fn open(&self) -> Result<Opened, Failure> {
         match self {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => {
-                match deadline::opening(|| wanted.tested())? {
+                match interrupt::opening(|| wanted.tested())? {
                     Ok((headless, warning)) => {
                         let (headless, choice) = (Box::new(headless), *choice);
                         Ok(Opened::Device { headless, choice, warning })
@@ -127,7 +123,7 @@ impl Device {
     }
 
     /// Opens the device while `work` is done. If both fail, the failure is that of `work`.
-    pub(super) fn open_beside<T>(
+    pub(crate) fn open_beside<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
     ) -> Result<(T, Opened), Failure> {
@@ -151,25 +147,25 @@ impl Device {
 }
 
 impl WantedAdapter {
-    pub(super) fn new(args: &AdapterArgs) -> Self {
+    pub(crate) fn new(args: &AdapterArgs) -> Self {
         Self { name: args.adapter.clone(), limits: args.limits, ray_query: false }
     }
 
     /// The same adapter, opened for what these structures need.
-    pub(super) fn for_structures(self, structures: impl IntoIterator<Item = Structure>) -> Self {
-        let ray_query = structures.into_iter().any(|structure| structure == Structure::Query);
+    pub(crate) fn for_structures(self, structures: impl IntoIterator<Item = AccelChoice>) -> Self {
+        let ray_query = structures.into_iter().any(|structure| structure == AccelChoice::RayQuery);
         Self { ray_query, ..self }
     }
 
     /// Asks for the adapter of this name with all its limits; without a name, for the best adapter.
     #[cfg(feature = "gpu")]
-    pub(super) fn named(name: Option<String>) -> Self {
+    pub(crate) fn named(name: Option<String>) -> Self {
         Self { name, limits: None, ray_query: false }
     }
 
     /// Opens the adapter. The inner error means that there is no adapter, which is not a failure for every caller.
     #[cfg(feature = "gpu")]
-    pub(super) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
+    pub(crate) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
         let options = HeadlessOptions {
             adapter: self.name.clone(),
             limits: match self.limits {
@@ -205,7 +201,62 @@ impl WantedAdapter {
 
     /// Opens the adapter; it is a failure if there is none.
     #[cfg(feature = "gpu")]
-    pub(super) fn open_any(&self) -> Result<Headless, Failure> {
+    pub(crate) fn open_any(&self) -> Result<Headless, Failure> {
         self.open()?.map_err(|error| Failure::Job(error.into()))
+    }
+}
+
+/// Name of the device's own clock.
+#[cfg(feature = "gpu")]
+pub(crate) const DEVICE_CLOCK: &str = "device";
+
+/// Name of the host's clock. The clock of a software device measures when commands were queued, not when they ran.
+#[cfg(feature = "gpu")]
+const HOST_CLOCK: &str = "host";
+
+#[derive(Serialize)]
+pub(crate) struct AdapterReport {
+    pub(crate) name: String,
+    pub(crate) backend: String,
+    pub(crate) device_type: String,
+    pub(crate) driver: String,
+    pub(crate) driver_info: String,
+}
+
+impl AdapterReport {
+    #[cfg(feature = "gpu")]
+    pub(crate) fn of(headless: &Headless) -> Self {
+        let info = headless.adapter_info();
+        Self {
+            name: info.name.clone(),
+            backend: format!("{:?}", info.backend),
+            device_type: format!("{:?}", info.device_type),
+            driver: info.driver.clone(),
+            driver_info: info.driver_info.clone(),
+        }
+    }
+
+    /// Describes the adapter that rendered a saved run.
+    pub(crate) fn of_run(provenance: &Provenance) -> Self {
+        let Provenance { adapter, backend, device_type, driver, driver_info, .. } = provenance;
+        Self {
+            name: adapter.clone(),
+            backend: backend.clone(),
+            device_type: device_type.clone(),
+            driver: driver.clone(),
+            driver_info: driver_info.clone(),
+        }
+    }
+
+    /// Returns the clock that measures the work of this adapter.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn clock(&self) -> &'static str {
+        if self.device_type == "Cpu" { HOST_CLOCK } else { DEVICE_CLOCK }
+    }
+
+    /// Describes the adapter on one line.
+    pub(crate) fn line(&self) -> String {
+        let Self { name, backend, device_type, driver, driver_info } = self;
+        format!("{name} ({backend}, {device_type}), driver: {driver} {driver_info}")
     }
 }

@@ -4,48 +4,46 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
+use serde::Serialize;
 
-use super::bricks;
-use super::data::{self, DataOptions, as_usage, format_parser};
-use super::failure::Failure;
-use super::file_info_text as text;
-use super::file_report::{ColumnReport, DataReport, Kind, Report, SceneReport};
-use super::input::{self, Source};
-use super::input_format;
-use super::read_file;
-use super::speak::answer;
+use crate::data::{self, DataOptions, as_usage, format_parser};
+use crate::failure::Failure;
+use crate::input::{self, Source};
+use crate::progress::answer;
+use crate::{bricks, read_file};
 use pinhole::LinearRgb;
-use pinhole::load::{Format, Loaded};
+use pinhole::internals::text::one_line;
+use pinhole::load::{Column, ColumnValues, Format, Loaded};
 
 /// The file to describe, and how it is read.
 #[derive(Debug, Args)]
-pub(super) struct FileArgs {
+pub(crate) struct FileArgs {
     /// Data file or scene file to describe, instead of the adapters
     #[arg(value_name = "FILE")]
     #[cfg_attr(feature = "gpu", arg(conflicts_with_all = ["self_test", "adapter", "dump_shaders"]))]
-    pub(super) path: Option<PathBuf>,
+    pub(crate) path: Option<PathBuf>,
     /// Format of the file, whatever its extension is
     #[arg(long, value_parser = format_parser(), requires = "path")]
-    pub(super) format: Option<&'static Format>,
+    pub(crate) format: Option<&'static Format>,
     /// Frame of a trajectory to describe, counted from 0 [default: 0]
     #[arg(long, value_name = "N", requires = "path")]
-    pub(super) frame: Option<usize>,
+    pub(crate) frame: Option<usize>,
     /// File that says what the spheres of a trajectory are, for formats that have positions alone
     #[arg(long, value_name = "TOPOLOGY", requires = "path")]
-    pub(super) topology: Option<PathBuf>,
+    pub(crate) topology: Option<PathBuf>,
     /// Names of the columns of a table without a header, such as x,y,z,radius
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "path")]
-    pub(super) columns: Vec<String>,
+    pub(crate) columns: Vec<String>,
     /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R", requires = "path", allow_hyphen_values = true)]
-    pub(super) radius: Option<f64>,
+    pub(crate) radius: Option<f64>,
 }
 
-const BRICKS: input_format::Format = input_format::Format::Bricks;
+const BRICKS: read_file::Format = read_file::Format::Bricks;
 
 /// Describes the file.
-pub(super) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failure> {
-    if args.format.is_none() && input_format::Format::of(path).ok() == Some(BRICKS) {
+pub(crate) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failure> {
+    if args.format.is_none() && read_file::Format::of(path).ok() == Some(BRICKS) {
         let text = bricks::info_lines(path, json)?;
         return Ok(answer(text.as_bytes()).context("standard output: cannot be written")?);
     }
@@ -54,15 +52,15 @@ pub(super) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failur
         serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
             + "\n"
     } else {
-        text::readable(&report)
+        readable(&report)
     };
     Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }
 
 fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     let format = match args.format {
-        Some(format) => input_format::Format::Data(format),
-        None => input_format::Format::of(path).map_err(Failure::Usage)?,
+        Some(format) => read_file::Format::Data(format),
+        None => read_file::Format::of(path).map_err(Failure::Usage)?,
     };
     let options = DataOptions {
         frame: args.frame,
@@ -73,9 +71,9 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     };
     input::check_flags(format, &options)?;
     match format {
-        input_format::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
+        read_file::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
         // Files of bricks have a report of their own.
-        input_format::Format::Scene | BRICKS => of_scene(path, args),
+        read_file::Format::Scene | BRICKS => of_scene(path, args),
     }
 }
 
@@ -189,4 +187,224 @@ fn of_scene(path: &Path, args: &FileArgs) -> Result<Report, Failure> {
         radius_max: radii.reduce(f64::max),
         notes: input.notes.clone(),
     })
+}
+
+#[derive(Serialize)]
+pub(crate) struct Report {
+    pub(crate) version: &'static str,
+    pub(crate) file: String,
+    /// Size of the file; `None` on standard input.
+    pub(crate) bytes: Option<u64>,
+    #[serde(flatten)]
+    pub(crate) kind: Kind,
+    pub(crate) spheres: usize,
+    /// The corners of the box of all spheres.
+    pub(crate) min: Option<[f64; 3]>,
+    pub(crate) max: Option<[f64; 3]>,
+    pub(crate) radius_min: Option<f64>,
+    pub(crate) radius_max: Option<f64>,
+    pub(crate) notes: Vec<String>,
+}
+
+/// What only one of the two kinds of file has.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub(crate) enum Kind {
+    Data(DataReport),
+    Scene(SceneReport),
+}
+
+#[derive(Serialize)]
+pub(crate) struct DataReport {
+    pub(crate) format: &'static str,
+    #[serde(skip)]
+    pub(crate) about: &'static str,
+    /// Whether the file is compressed with gzip; `None` on standard input.
+    pub(crate) compressed: Option<bool>,
+    /// Number of frames; `None` if files of this format have none, or it is not known.
+    pub(crate) frames: Option<usize>,
+    /// The frame that the rest describes.
+    pub(crate) frame: Option<usize>,
+    /// What is wrong after the last complete frame.
+    pub(crate) problem: Option<String>,
+    pub(crate) colors: bool,
+    pub(crate) opacities: bool,
+    pub(crate) cell: Option<[[f64; 3]; 3]>,
+    /// The corner from which the edges of the cell start.
+    pub(crate) cell_origin: Option<[f64; 3]>,
+    pub(crate) columns: Vec<ColumnReport>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct ColumnReport {
+    pub(crate) name: String,
+    #[serde(flatten)]
+    pub(crate) values: ValuesReport,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub(crate) enum ValuesReport {
+    Numbers { min: Option<f64>, max: Option<f64>, nan: usize },
+    Text { different: usize, first: Vec<String> },
+}
+
+#[derive(Serialize)]
+pub(crate) struct SceneReport {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) camera: &'static str,
+    pub(crate) stereo: bool,
+    pub(crate) integrator: &'static str,
+    pub(crate) samples: u32,
+    pub(crate) lights: usize,
+    /// Other files that the scene names.
+    pub(crate) files: Vec<String>,
+}
+
+impl ColumnReport {
+    pub(crate) fn new(Column { name, values }: &Column) -> Self {
+        /// How many texts are shown.
+        const SHOWN: usize = 6;
+        let values = match values {
+            ColumnValues::Numbers(numbers) => {
+                let known = || numbers.iter().copied().filter(|number| !number.is_nan());
+                ValuesReport::Numbers {
+                    min: known().reduce(f64::min),
+                    max: known().reduce(f64::max),
+                    nan: numbers.len() - known().count(),
+                }
+            }
+            ColumnValues::Labels(labels) => ValuesReport::Text {
+                different: labels.names.len(),
+                first: labels.names.iter().take(SHOWN).cloned().collect(),
+            },
+            _ => ValuesReport::Text { different: 0, first: Vec::new() },
+        };
+        Self { name: name.clone(), values }
+    }
+}
+
+/// Formats the report. Text from the file has its control characters escaped.
+pub(crate) fn readable(report: &Report) -> String {
+    let mut text = format!("{}\n", one_line(&report.file));
+    let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
+    match &report.kind {
+        Kind::Data(data) => {
+            let compressed =
+                if data.compressed == Some(true) { ", compressed with gzip" } else { "" };
+            line("format", format!("{} ({}){compressed}", data.format, data.about));
+        }
+        Kind::Scene(_) => line("format", "scene file".to_owned()),
+    }
+    if let Some(bytes) = report.bytes {
+        line("size", format!("{bytes} bytes"));
+    }
+    match &report.kind {
+        Kind::Data(DataReport { frames, frame, .. }) => {
+            if let Some(frames) = frames {
+                line("frames", frames.to_string());
+            }
+            if let Some(frame) = frame {
+                line("frame", format!("{frame}, which the following describes"));
+            }
+        }
+        Kind::Scene(scene) => {
+            let SceneReport { width, height, camera, stereo, integrator, samples, lights, files } =
+                scene;
+            line("picture", format!("{width}x{height}"));
+            line("camera", format!("{camera}{}", if *stereo { ", stereo" } else { "" }));
+            line("integrator", (*integrator).to_owned());
+            line("samples", samples.to_string());
+            line("lights", lights.to_string());
+            for file in files {
+                line("file", one_line(file));
+            }
+        }
+    }
+    line("spheres", report.spheres.to_string());
+    if let (Some(min), Some(max)) = (report.min, report.max) {
+        let corner = |corner: [f64; 3]| corner.map(short).join(" ");
+        line("box", format!("{} to {}", corner(min), corner(max)));
+    }
+    if let (Some(min), Some(max)) = (report.radius_min, report.radius_max) {
+        let radii =
+            if min < max { format!("{} to {}", short(min), short(max)) } else { short(min) };
+        line("radii", radii);
+    }
+    if let Kind::Data(data) = &report.kind {
+        let yes_or_no = |is: bool| if is { "yes" } else { "no" }.to_owned();
+        line("colors", yes_or_no(data.colors));
+        line("opacities", yes_or_no(data.opacities));
+        if let Some(cell) = data.cell {
+            let edges = cell.map(|edge| format!("({})", edge.map(short).join(" ")));
+            let origin = data.cell_origin.filter(|origin| origin.iter().any(|x| *x != 0.0));
+            let origin = origin.map(|origin| format!(" from ({})", origin.map(short).join(" ")));
+            line("cell", edges.join(" ") + &origin.unwrap_or_default());
+        }
+        if !data.columns.is_empty() {
+            let rows: Vec<_> = data.columns.iter().map(row).collect();
+            let width = rows.iter().map(|[name, ..]| name.chars().count()).max().unwrap_or(0);
+            text += "columns\n";
+            for [name, kind, values] in rows {
+                text += &format!("  {name:<width$}  {kind:<7}  {values}\n");
+            }
+        }
+        if let Some(problem) = &data.problem {
+            text += &format!("problem: {}\n", one_line(problem));
+        }
+    }
+    for note in &report.notes {
+        text += &format!("note: {}\n", one_line(note));
+    }
+    text
+}
+
+fn row(ColumnReport { name, values }: &ColumnReport) -> [String; 3] {
+    let name = one_line(name);
+    match values {
+        ValuesReport::Numbers { min, max, nan } => {
+            let range = min.zip(*max).map_or_else(
+                || "none".to_owned(),
+                |(min, max)| format!("{} to {}", short(min), short(max)),
+            );
+            let nan = if *nan > 0 { format!(", {nan} NaN") } else { String::new() };
+            [name, "numbers".to_owned(), range + &nan]
+        }
+        ValuesReport::Text { different, first } => {
+            let shown = first.iter().map(|name| one_line(name)).collect::<Vec<_>>().join(", ");
+            let more = if first.len() < *different { ", …" } else { "" };
+            [name, "text".to_owned(), format!("{different} different: {shown}{more}")]
+        }
+    }
+}
+
+/// A number with six digits, which are as many as anyone reads.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+    let size = rounded.abs();
+    if rounded == 0.0 || !size.is_finite() || (1e-4..1e9).contains(&size) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_digits() {
+        for (number, expected) in [
+            (0.1 + 0.2, "0.3"),
+            (123_456_789.0, "123457000"),
+            (1e300, "1e300"),
+            (-2.5e-7, "-2.5e-7"),
+            (0.0, "0"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(short(number), expected);
+        }
+    }
 }

@@ -1,35 +1,42 @@
-//! `pinhole generate`: writes a file of generated spheres.
+//! Spheres that the program makes: `pinhole generate` writes them into a file, and `pinhole demo` a scene and its picture.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::failure::Failure;
-use super::memory;
-use super::output::{self, SpheresFormat};
-use super::progress;
-use super::speak::tell;
-use super::threads;
+use crate::args::DemoArgs;
+use crate::device::Device;
+use crate::failure::Failure;
+use crate::input::Source;
+use crate::output::{self, SpheresFormat};
+use crate::picture::Outputs;
+use crate::progress::{self, tell};
+use crate::render::render;
+use crate::{memory, threads};
 use pinhole::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
+use pinhole::image::LayerSet;
 
 #[derive(Debug, Args)]
-pub(super) struct GenerateArgs {
+pub(crate) struct GenerateArgs {
     /// Arrangement of the spheres
     #[arg(value_name = "KIND", value_parser = kinds())]
-    pub(super) kind: String,
+    pub(crate) kind: String,
     /// Number of spheres
     #[arg(short = 'n', value_name = "N")]
-    pub(super) count: u64,
+    pub(crate) count: u64,
     /// File for the spheres: a NumPy array (.npy) or raw little-endian f32 (.bin) of x, y, z, radius
     #[arg(short, long, value_name = "OUT.npy")]
-    pub(super) output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Seed of the random numbers: the same kind, number and seed give the same file on every machine
     #[arg(long, value_name = "S", default_value_t = 1)]
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
 }
 
-pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let Some(kind) = Kind::ALL.iter().copied().find(|kind| kind.name() == args.kind) else {
         return Err(Failure::usage(format!("{}: this is not a valid kind", args.kind)));
     };
@@ -53,4 +60,41 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
 /// Returns a parser that accepts the names of the kinds.
 fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(Kind::ALL.iter().map(|kind| kind.name()))
+}
+
+const SCENE: &str = include_str!("../../examples/demo.toml");
+const SCENE_FILE: &str = "demo.toml";
+const PICTURE_FILE: &str = "demo.png";
+
+pub(crate) fn run_demo(args: &DemoArgs) -> Result<(), Failure> {
+    let started = Instant::now();
+    let device = Device::new(&args.device, None)?;
+    let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
+    let scene_file = PathBuf::from(SCENE_FILE);
+    let source = Source::of_scene(&scene_file).with_size(args.size.as_deref())?;
+    let is_there = is_there(&scene_file)?;
+    threads::start()?;
+    let input = source.scene_from_text(SCENE)?;
+    let opened = device.open()?;
+    let image = render(&input, LayerSet::COLOR, &opened)?;
+    outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
+    tell(format_args!(
+        "wrote {SCENE_FILE} and {PICTURE_FILE} in {:.1} s; change the scene and run \
+         `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`",
+        started.elapsed().as_secs_f64()
+    ));
+    Ok(())
+}
+
+/// Whether the demo's scene file exists already. A file that the user has changed is refused, never overwritten.
+fn is_there(scene_file: &Path) -> Result<bool, Failure> {
+    match std::fs::read(scene_file) {
+        Ok(found) if found == SCENE.as_bytes() => Ok(true),
+        Ok(_) => Err(Failure::usage(format!(
+            "{SCENE_FILE}: this file exists and differs from the demo's; \
+             rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(anyhow!(error)).context(format!("{SCENE_FILE}: cannot be read"))?,
+    }
 }

@@ -7,15 +7,13 @@ use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
 
-#[cfg(feature = "gpu")]
-use super::device::WantedAdapter;
-#[cfg(feature = "gpu")]
-use super::dump_shaders::dump;
 use super::failure::Failure;
-use super::file_info::{self, FileArgs};
 #[cfg(feature = "gpu")]
-use super::self_test::SelfTested;
-use super::speak::answer;
+use crate::device::WantedAdapter;
+use crate::file_info::{self, FileArgs};
+use crate::progress::answer;
+#[cfg(feature = "gpu")]
+use crate::self_test::{SelfTested, dump};
 
 /// The end of the help.
 pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
@@ -57,7 +55,6 @@ pub(super) struct InfoArgs {
 /// The report on this program and the machine.
 #[derive(Serialize)]
 struct Info {
-    /// Version of the program.
     version: &'static str,
     /// The adapters, best first; `render` uses the one that is `chosen`.
     adapters: Vec<AdapterReport>,

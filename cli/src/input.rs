@@ -4,13 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::bricks::BrickFile;
-pub(super) use super::input_format::extension;
-pub(super) use super::read_file::read;
 use super::report::Report;
-pub(super) use look::{Framed, Look};
-pub(super) use open_frames::FoundFrames;
+pub(super) use crate::input::look::{Framed, Look};
 #[cfg(feature = "gpu")]
-pub(super) use open_frames::OpenFrames;
+pub(super) use crate::input::source::OpenFrames;
+pub(super) use crate::input::source::{FoundFrames, Source, check_flags, default_color};
+pub(super) use crate::read_file::{extension, read};
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};
@@ -21,13 +20,10 @@ use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene_file::Data;
-pub(super) use source::{Source, check_flags, default_color};
 
 pub(super) mod contents;
-mod frames;
 mod load;
 mod look;
-mod open_frames;
 mod source;
 
 /// Everything that a render needs from its input.
@@ -38,7 +34,6 @@ pub(super) struct Input {
     /// The left and the right eye of a stereo camera.
     pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(super) film: Film,
-    /// The settings for rendering.
     pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
     /// What colors mean, if a column of the data gives them.
@@ -53,7 +48,6 @@ pub(super) struct Input {
     pub(super) bricks: Option<Arc<BrickFile>>,
     /// The color of spheres without one.
     pub(super) color: LinearRgb,
-    /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
     /// What the program says about the picture.
     pub(super) report: Report,
@@ -63,7 +57,6 @@ pub(super) struct Input {
     pub(super) data: Option<Data>,
     /// The spheres of a scene file itself.
     pub(super) own_spheres: Vec<Sphere>,
-    /// Path of the image of the sky.
     pub(super) sky_image: Option<PathBuf>,
 }
 

@@ -5,15 +5,18 @@
 //! the lock is held that the signal handler needs, so there are all of the files or none.
 
 use std::path::PathBuf;
+#[cfg(feature = "gpu")]
+use std::sync::OnceLock;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use anyhow::Context;
 
-use super::failure::{Failure, NOTHING_WRITTEN, STOPPED};
+use crate::failure::{DEVICE, Failure, NOTHING_WRITTEN, STOPPED};
 #[cfg(unix)]
-use super::process::ignores_hang_up;
-use super::progress;
-use super::speak::tell;
+use crate::memory::ignores_hang_up;
+use crate::progress::{self, tell};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::Decision;
 
@@ -51,7 +54,7 @@ fn state() -> MutexGuard<'static, State> {
 }
 
 /// Starts to listen for Ctrl-C and other signals that end programs.
-pub(super) fn install() -> Result<(), Failure> {
+pub(crate) fn install() -> Result<(), Failure> {
     Ok(listen().context("the program cannot listen for signals such as Ctrl-C")?)
 }
 
@@ -94,7 +97,7 @@ fn on_signal() {
 
 /// Runs work with a driver. The work should end soon after [`decide`] returns `Stop`.
 #[cfg(feature = "gpu")]
-pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
+pub(crate) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     state().phase = Phase::Device;
     let result = work();
     let mut state = state();
@@ -104,7 +107,7 @@ pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
 
 /// Says whether the driver has nothing to do during work with it, so that a signal may end the program.
 #[cfg(feature = "gpu")]
-pub(super) fn driver_rests(rests: bool) {
+pub(crate) fn driver_rests(rests: bool) {
     let mut state = state();
     state.phase = match state.phase {
         Phase::Free => Phase::Free,
@@ -115,7 +118,7 @@ pub(super) fn driver_rests(rests: bool) {
 
 /// Runs work, on a device or not, that should end soon after [`is_requested`] returns true. Returns the result, and
 /// whether the program was asked to end.
-pub(super) fn keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
+pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     state().phase = Phase::Device;
     let result = work();
     let mut state = state();
@@ -124,18 +127,18 @@ pub(super) fn keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
 }
 
 /// Whether the program was asked to end, so that work which it awaits should stop.
-pub(super) fn is_requested() -> bool {
+pub(crate) fn is_requested() -> bool {
     state().is_requested
 }
 
 /// Returns whether work on the device continues or stops.
 #[cfg(feature = "gpu")]
-pub(super) fn decide() -> Decision {
+pub(crate) fn decide() -> Decision {
     if is_requested() { Decision::Stop } else { Decision::GoOn }
 }
 
 /// Creates a temporary file that is removed if the program is stopped.
-pub(super) fn creating<F, E>(
+pub(crate) fn creating<F, E>(
     create: impl FnOnce() -> Result<F, E>,
     path: impl FnOnce(&F) -> PathBuf,
 ) -> Result<F, E> {
@@ -146,7 +149,7 @@ pub(super) fn creating<F, E>(
 }
 
 /// Gives files their final names, if there are `any`. A signal is handled only afterwards.
-pub(super) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
+pub(crate) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
     let mut state = state();
     name()?;
     if any {
@@ -156,6 +159,60 @@ pub(super) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>)
 }
 
 /// Changes the message if the program is stopped from now on.
-pub(super) fn set_message(message: &'static str) {
+pub(crate) fn set_message(message: &'static str) {
     state().message = message;
+}
+
+/// Work that must end in time. Dropping it says that the work has ended.
+pub(crate) struct Deadline {
+    _ended: Sender<()>,
+}
+
+impl Deadline {
+    /// Ends the program after this time, with the exit code for devices that do not answer and with what did not happen.
+    pub(crate) fn new(limit: Duration, what: String) -> Self {
+        let (ended, is_ended) = channel();
+        let watch = move || {
+            if is_ended.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+                give_up(&format!("{what} within {} s", limit.as_secs_f64()));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().spawn(watch) {
+            tell(format_args!(
+                "note: --timeout has no effect, because a thread cannot be started: {error}"
+            ));
+        }
+        Self { _ended: ended }
+    }
+}
+
+/// The time that opening and testing a device may take.
+#[cfg(feature = "gpu")]
+static OPENING: OnceLock<Duration> = OnceLock::new();
+
+/// Limits the time of each [`opening`] from now on.
+#[cfg(feature = "gpu")]
+pub(crate) fn limit_opening(limit: Duration) {
+    let _ = OPENING.set(limit);
+}
+
+/// Opens a device, and ends the program if that takes longer than it may.
+#[cfg(feature = "gpu")]
+pub(crate) fn opening<T>(open: impl FnOnce() -> T) -> T {
+    let limit = OPENING.get();
+    let _deadline = limit.map(|limit| Deadline::new(*limit, "no device was ready".to_owned()));
+    open()
+}
+
+/// Ends the program with the exit code for devices that do not answer.
+fn give_up(why: &str) -> ! {
+    progress::close();
+    tell(format_args!("error: {why}; the device may hang: try again"));
+    // What a driver does at the end of a process may hang as well.
+    let _ = std::thread::Builder::new().spawn(|| {
+        std::thread::sleep(Duration::from_secs(5));
+        std::process::abort();
+    });
+    // The lock of signals is not held, so a file that is being renamed is renamed or not.
+    std::process::exit(DEVICE.into());
 }

@@ -11,65 +11,61 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use commands::{Arguments, Command};
 
-mod adapter;
+use crate::explain::explain;
+use crate::progress::tell;
+
+/// Without devices, no phase is measured.
+#[cfg(not(feature = "gpu"))]
+mod profile {
+    pub(crate) struct NoPhase;
+
+    impl Drop for NoPhase {
+        /// Ends the phase, like that of a profile.
+        fn drop(&mut self) {}
+    }
+
+    pub(crate) fn phase(_: &'static str) -> NoPhase {
+        NoPhase
+    }
+}
+
 mod annotation;
 mod args;
 #[cfg(feature = "gpu")]
 mod bench;
 #[cfg(feature = "gpu")]
 mod bench_report;
-#[cfg(feature = "gpu")]
-mod bench_scene;
 mod bricks;
 mod camera;
 mod certified;
 mod certify;
-mod certify_report;
-mod color_flags;
 mod commands;
 mod data;
-mod deadline;
-mod demo;
+mod data_flags;
 mod device;
-#[cfg(feature = "gpu")]
-mod device_error;
-#[cfg(feature = "gpu")]
-mod dump_shaders;
-mod encoding;
-mod excluded_flags;
 mod explain;
 mod failure;
 mod file_info;
-mod file_info_text;
-mod file_report;
 mod frames;
 mod generate;
 mod info;
 mod input;
-mod input_format;
 mod interrupt;
 mod job;
-mod kind_color;
 mod light;
 mod memory;
 mod output;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
-mod print_scene;
-mod process;
-#[cfg(not(feature = "gpu"))]
-#[path = "no_profile.rs"]
-mod profile;
 #[cfg(feature = "gpu")]
 mod profile;
 mod progress;
-mod progress_line;
 #[cfg(feature = "gpu")]
 mod quick_test;
 mod read_file;
-mod removed;
 mod render;
 mod render_args;
 mod render_certified;
@@ -77,37 +73,17 @@ mod render_command;
 mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
-mod shell;
-mod speak;
 mod stop_rule;
-mod structure_flags;
-#[cfg(feature = "gpu")]
-mod table;
+mod text;
 mod threads;
-mod unknown_flag;
 mod verify;
-mod verify_denoiser;
-mod verify_help;
-mod verify_kept;
-mod verify_light;
-mod verify_listed;
-mod verify_lit;
-mod verify_open;
-mod verify_output;
-mod verify_page;
-mod verify_picture;
-mod verify_pictures;
-mod verify_report;
 mod view;
 #[cfg(feature = "gpu")]
+#[allow(clippy::missing_errors_doc, clippy::must_use_candidate, reason = "for the viewer alone")]
 pub mod viewing;
 mod views;
 #[cfg(feature = "gpu")]
 mod with_scene;
-
-use commands::{Arguments, Command};
-use explain::explain;
-use speak::tell;
 
 /// Runs the program with the arguments of the process. This must be the first thing that the process does.
 ///
@@ -167,7 +143,7 @@ fn run() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
         Command::Job(args) => job::run(&args),
         Command::Sort(args) => bricks::run(&args),
-        Command::Demo(args) => demo::run(&args),
+        Command::Demo(args) => generate::run_demo(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),
         Command::View(args) => view::run(&args),

@@ -1,8 +1,9 @@
 //! The light flags of the command line. They take precedence over the keys of a scene file.
 
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 
+use super::args::one_of;
 use super::failure::Failure;
 use pinhole::LinearRgb;
 use pinhole::camera::filter::PixelFilter;
@@ -15,7 +16,29 @@ use pinhole::style::Style;
 /// is set once.
 pub(super) const HEADING: &str = "Light and style";
 
-#[derive(Debug, Args)]
+/// The values of `--integrator`.
+const INTEGRATORS: &[(&str, &str, IntegratorKind)] = &[
+    (
+        "primary",
+        "No light: the color of the first sphere that the ray through the center of a pixel hits",
+        IntegratorKind::Primary,
+    ),
+    (
+        "studio",
+        "Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines",
+        IntegratorKind::Studio,
+    ),
+    ("path", "Path tracing: light is followed as surfaces scatter it", IntegratorKind::Path),
+];
+
+/// The values of `--filter`.
+const FILTERS: &[(&str, &str, PixelFilter)] = &[
+    ("box", "", PixelFilter::Box),
+    ("gaussian", "", PixelFilter::Gaussian),
+    ("blackman-harris", "", PixelFilter::BlackmanHarris),
+];
+
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct LightArgs {
     /// Look of the picture: light, lines and background. It takes the place of the scene's [default: the scene's; for
     /// data files: default, or the one that suits --integrator]
@@ -25,8 +48,8 @@ pub(super) struct LightArgs {
     #[arg(long, help_heading = HEADING, value_name = "CSS")]
     background: Option<String>,
     /// How the light is computed [default: the scene's, or the style's]
-    #[arg(long, help_heading = HEADING, value_enum)]
-    integrator: Option<IntegratorArg>,
+    #[arg(long, help_heading = HEADING, value_parser = one_of(INTEGRATORS))]
+    integrator: Option<IntegratorKind>,
     /// Samples per pixel, from 1 to 16777216: how smooth the picture is [default: the scene's, or the style's]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     samples: Option<u32>,
@@ -34,8 +57,8 @@ pub(super) struct LightArgs {
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     seed: Option<u32>,
     /// Pixel filter, which weights the samples around the center of a pixel [default: the scene's, or blackman-harris]
-    #[arg(long, help_heading = HEADING, value_enum)]
-    filter: Option<FilterArg>,
+    #[arg(long, help_heading = HEADING, value_parser = one_of(FILTERS))]
+    filter: Option<PixelFilter>,
     /// Ambient occlusion with this number of rays per sample, from 1 to 1024 (studio) [without a number: 4]
     #[arg(
         long,
@@ -61,52 +84,17 @@ pub(super) struct LightArgs {
     denoise: Option<bool>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum IntegratorArg {
-    /// No light: the color of the first sphere that the ray through the center of a pixel hits
-    Primary,
-    /// Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines
-    Studio,
-    /// Path tracing: light is followed as surfaces scatter it
-    Path,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum FilterArg {
-    Box,
-    Gaussian,
-    BlackmanHarris,
-}
-
-impl From<FilterArg> for PixelFilter {
-    fn from(filter: FilterArg) -> Self {
-        match filter {
-            FilterArg::Box => Self::Box,
-            FilterArg::Gaussian => Self::Gaussian,
-            FilterArg::BlackmanHarris => Self::BlackmanHarris,
-        }
-    }
-}
-
-/// The flags that were given, checked.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct LightFlags {
-    style: Option<Style>,
+    args: LightArgs,
     background: Option<LinearRgb>,
-    integrator: Option<IntegratorKind>,
-    samples: Option<u32>,
-    seed: Option<u32>,
-    filter: Option<PixelFilter>,
-    ao: Option<u32>,
-    outline: Option<f32>,
-    denoise: Option<bool>,
     /// The flag (`--time` or `--noise`) that leaves the number of samples open, unless `samples` limits it.
     open_ended_by: Option<&'static str>,
 }
 
 impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
-        let LightArgs { style, samples, seed, ao, outline, denoise, .. } = *args;
+        let LightArgs { samples, ao, outline, .. } = *args;
         let refused = |flag: &str, given: String, error: &RangeError| {
             Failure::usage(format!("--{flag} {given}: it must be {}", error.range))
         };
@@ -126,25 +114,7 @@ impl LightFlags {
             add_to_studio(&mut studio, None, outline);
             studio.check().map_err(|error| refused("outline", width.to_string(), &error))?;
         }
-        let integrator = args.integrator.map(|integrator| match integrator {
-            IntegratorArg::Primary => IntegratorKind::Primary,
-            IntegratorArg::Studio => IntegratorKind::Studio,
-            IntegratorArg::Path => IntegratorKind::Path,
-        });
-        let filter = args.filter.map(Into::into);
-        let open_ended_by = None;
-        Ok(Self {
-            style,
-            background,
-            integrator,
-            samples,
-            seed,
-            filter,
-            ao,
-            outline,
-            denoise,
-            open_ended_by,
-        })
+        Ok(Self { args: args.clone(), background, open_ended_by: None })
     }
 
     /// Returns these flags with the flag that leaves the number of samples open, if there is one.
@@ -154,12 +124,12 @@ impl LightFlags {
 
     /// Returns the style that takes the place of the scene's.
     pub(super) fn style(&self) -> Option<Style> {
-        self.style
+        self.args.style
     }
 
     /// Returns the style of data that no scene file describes.
     pub(super) fn style_of_data(&self) -> Style {
-        self.style.unwrap_or(match self.integrator {
+        self.args.style.unwrap_or(match self.args.integrator {
             Some(IntegratorKind::Primary) => Style::Fast,
             Some(IntegratorKind::Path) => Style::Path,
             Some(IntegratorKind::Studio) | None => Style::Default,
@@ -168,8 +138,8 @@ impl LightFlags {
 
     /// Returns the style of bricks, which have one ray for each pixel unless a flag asks for light.
     pub(super) fn style_of_bricks(&self) -> Style {
-        match self.integrator {
-            None => self.style.unwrap_or(Style::Fast),
+        match self.args.integrator {
+            None => self.args.style.unwrap_or(Style::Fast),
             Some(_) => self.style_of_data(),
         }
     }
@@ -182,19 +152,19 @@ impl LightFlags {
     /// Returns the integrator of the picture; `scene` is the one that the scene asks for. If neither says, occlusion
     /// needs a studio, and other flags do not change the light.
     pub(super) fn integrator(&self, scene: Option<IntegratorKind>) -> IntegratorKind {
-        let by_flags = self.ao.map(|_| IntegratorKind::Studio);
-        self.integrator.or(scene).or(by_flags).unwrap_or_default()
+        let by_flags = self.args.ao.map(|_| IntegratorKind::Studio);
+        self.args.integrator.or(scene).or(by_flags).unwrap_or_default()
     }
 
     /// Returns the flags that were given and ask for light.
     fn for_light(&self) -> impl Iterator<Item = &'static str> {
         let given = [
-            ("--samples", self.samples.is_some()),
-            ("--seed", self.seed.is_some()),
-            ("--filter", self.filter.is_some()),
-            ("--ao", self.ao.is_some()),
-            ("--outline", self.outline.is_some()),
-            ("--denoise", self.denoise == Some(true)),
+            ("--samples", self.args.samples.is_some()),
+            ("--seed", self.args.seed.is_some()),
+            ("--filter", self.args.filter.is_some()),
+            ("--ao", self.args.ao.is_some()),
+            ("--outline", self.args.outline.is_some()),
+            ("--denoise", self.args.denoise == Some(true)),
         ];
         let given = given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag);
         given.chain(self.open_ended_by)
@@ -210,7 +180,7 @@ impl LightFlags {
         if let (Integrator::Primary(_), Some(flag)) =
             (&settings.integrator, self.for_light().next())
         {
-            if self.integrator.or(scene).is_some() {
+            if self.args.integrator.or(scene).is_some() {
                 return Err(Failure::usage(format!(
                     "{flag} applies only to the integrators `studio` and `path`, but this picture is made by \
                      `primary`; remove {flag} or choose another --integrator or --style"
@@ -221,14 +191,14 @@ impl LightFlags {
         let sampling = &mut settings.sampling;
         let most =
             if self.open_ended_by.is_some() { Sampling::MAX_SAMPLES } else { sampling.samples };
-        sampling.samples = self.samples.unwrap_or(most);
-        sampling.seed = self.seed.unwrap_or(sampling.seed);
-        sampling.filter = self.filter.unwrap_or(sampling.filter);
-        settings.is_denoised = self.denoise.unwrap_or(settings.is_denoised);
-        let flag = if self.ao.is_some() { "--ao" } else { "--outline" };
+        sampling.samples = self.args.samples.unwrap_or(most);
+        sampling.seed = self.args.seed.unwrap_or(sampling.seed);
+        sampling.filter = self.args.filter.unwrap_or(sampling.filter);
+        settings.is_denoised = self.args.denoise.unwrap_or(settings.is_denoised);
+        let flag = if self.args.ao.is_some() { "--ao" } else { "--outline" };
         match &mut settings.integrator {
-            Integrator::Studio(studio) => add_to_studio(studio, self.ao, self.outline),
-            Integrator::Path(_) if self.ao.is_some() || self.outline.is_some() => {
+            Integrator::Studio(studio) => add_to_studio(studio, self.args.ao, self.args.outline),
+            Integrator::Path(_) if self.args.ao.is_some() || self.args.outline.is_some() => {
                 return Err(Failure::usage(format!(
                     "{flag} applies only to the integrator `studio`, but this picture is made by `path`; \
                      remove {flag} or choose --integrator studio"

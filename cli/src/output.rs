@@ -10,8 +10,8 @@ use tempfile::NamedTempFile;
 
 use super::failure::Failure;
 use super::input::extension;
-use super::interrupt;
 use super::profile;
+use crate::interrupt;
 use pinhole::write::{npy, raw};
 
 /// Refuses to use one file for two outputs.
@@ -83,7 +83,6 @@ impl NewFolder {
     }
 }
 
-/// A format for writing spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SpheresFormat {
     Npy,
@@ -108,7 +107,6 @@ impl SpheresFormat {
     }
 }
 
-/// Writes spheres to a file.
 pub(super) fn write_spheres(
     path: &Path,
     format: SpheresFormat,

@@ -7,19 +7,17 @@ use tempfile::NamedTempFile;
 
 use super::failure::Failure;
 use super::input::extension;
-use super::interrupt;
 use super::output::{
     check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
 use super::profile;
-use super::progress;
-use super::speak::answer;
+use crate::interrupt;
+use crate::progress::{self, answer};
 use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
 use pinhole::write::{exr, npy, png};
 
-/// A format for writing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PictureFormat {
     Png,
@@ -27,18 +25,18 @@ pub(super) enum PictureFormat {
 }
 
 /// The outputs of a render, checked before any work is done.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Outputs {
-    format: PictureFormat,
+    pub(super) format: PictureFormat,
     /// Path of the picture; `None` is standard output.
-    picture: Option<PathBuf>,
+    pub(super) picture: Option<PathBuf>,
     /// Layers in the file of the picture.
-    inside: LayerSet,
-    layers: Vec<(Layer, PathBuf)>,
+    pub(super) inside: LayerSet,
+    pub(super) layers: Vec<(Layer, PathBuf)>,
     /// What is drawn over a PNG.
-    annotations: Annotations,
-    /// The certificate that the picture carries.
-    certificate: Option<String>,
+    pub(super) annotations: Annotations,
+    /// The certificate that the picture carries; a PNG then has no annotations.
+    pub(super) certificate: Option<String>,
 }
 
 impl Outputs {
@@ -46,14 +44,8 @@ impl Outputs {
     pub(super) fn new(picture: &Path, layers: &[String]) -> Result<Self, Failure> {
         let is_file = picture != Path::new("-");
         let format = if is_file { format_of(picture)? } else { PictureFormat::Png };
-        let mut outputs = Self {
-            format,
-            picture: is_file.then(|| picture.to_path_buf()),
-            inside: LayerSet::COLOR,
-            layers: Vec::new(),
-            annotations: Annotations::default(),
-            certificate: None,
-        };
+        let mut outputs = Self::unwritten(format);
+        outputs.picture = is_file.then(|| picture.to_path_buf());
         for text in layers {
             match parse_layer(text)? {
                 (layer, Some(path)) => outputs.layers.push((layer, path)),
@@ -84,25 +76,6 @@ impl Outputs {
         }
     }
 
-    pub(super) fn format(&self) -> PictureFormat {
-        self.format
-    }
-
-    /// What is drawn over a PNG.
-    pub(super) fn annotations(&self) -> &Annotations {
-        &self.annotations
-    }
-
-    /// Returns these outputs with annotations that are drawn over a PNG.
-    pub(super) fn with_annotations(self, annotations: Annotations) -> Self {
-        Self { annotations, ..self }
-    }
-
-    /// Returns these outputs with a certificate that the picture carries; a PNG then has no annotations.
-    pub(super) fn with_certificate(self, certificate: String) -> Self {
-        Self { certificate: Some(certificate), ..self }
-    }
-
     /// Encodes the picture as PNG, with its annotations or its certificate.
     fn png(&self, image: &Image, encoding: &Encoding) -> Result<Vec<u8>, png::PngError> {
         let _phase = profile::phase("encode");
@@ -117,16 +90,12 @@ impl Outputs {
     /// Returns these outputs with other names.
     pub(super) fn renamed(&self, name: impl Fn(&Path) -> PathBuf) -> Self {
         Self {
-            format: self.format,
             picture: self.picture.as_deref().map(&name),
-            inside: self.inside,
             layers: self.layers.iter().map(|(layer, path)| (*layer, name(path))).collect(),
-            annotations: self.annotations.clone(),
-            certificate: self.certificate.clone(),
+            ..self.clone()
         }
     }
 
-    /// The paths of all files.
     pub(super) fn paths(&self) -> impl Iterator<Item = &PathBuf> {
         self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
     }
@@ -136,7 +105,6 @@ impl Outputs {
         check_not_inputs(self.paths(), inputs)
     }
 
-    /// Returns the layers to render.
     pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
         // The exposure and the tone curve of a PNG need what tells the background from the rest.
         let encoded = if self.format == PictureFormat::Png || encoding.transparent() {

@@ -5,19 +5,16 @@ use std::sync::Arc;
 use anyhow::Context;
 use serde::Serialize;
 
-use super::adapter::AdapterReport;
-use super::args::PlanArgs;
-use super::device::{WantedAdapter, choice, explained};
 use super::failure::Failure;
 use super::input::{Input, Source};
 use super::light::LightFlags;
-use super::memory;
-use super::progress;
-use super::render;
-use super::speak::{answer, tell};
-use super::table::table;
-use super::threads;
 use super::views::Views;
+use super::{render, threads};
+use crate::args::PlanArgs;
+use crate::device::{AdapterReport, WantedAdapter, explained};
+use crate::memory;
+use crate::progress::{self, answer, tell};
+use crate::text::table;
 use pinhole::accel::PlannedBuffer;
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Layer, LayerSet};
@@ -111,7 +108,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
-    let choice = choice(args.accel.accel);
+    let choice = args.accel.accel.unwrap_or_default();
     let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
     let available = memory::available();
     let verdict = plan

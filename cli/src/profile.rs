@@ -7,14 +7,12 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::progress;
-use super::speak::tell_all;
-use super::table::table;
+use crate::progress::{self, tell_all};
+use crate::text::table;
 use pinhole::gpu::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 
 static PROFILE: OnceLock<Profile> = OnceLock::new();
 
-/// The flag for a profile.
 #[derive(Debug, Args)]
 pub(super) struct ProfileArgs {
     /// Say at the end where the time went: the phases of the program, and the passes of the device. Each pass is submitted

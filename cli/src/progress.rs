@@ -1,16 +1,17 @@
-//! Shows the progress of the program on one line of standard error, if that is a terminal. The line fits the terminal,
-//! and is removed at the end. Where standard error is no terminal, a long render writes a line now and then.
+//! What the program prints on the terminal: lines, answers, and how far the work is.
 
 use std::borrow::Cow;
+use std::fmt;
+use std::io::{self, IsTerminal, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
+use indicatif::{ProgressBar, ProgressStyle};
 
-use super::progress_line::{Plain, line};
-use super::speak::tell;
+use pinhole::internals::text::one_line;
 
 /// Shows a stage whose length is not known.
-pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
+pub(crate) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() && !line.is_held {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {wide_msg}", None);
@@ -21,7 +22,7 @@ pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
 
 /// Shows the progress of many pictures, in place of that of each of them from now on. Returns whether it is shown, which
 /// needs a terminal.
-pub(super) fn frames(text: String) -> bool {
+pub(crate) fn frames(text: String) -> bool {
     let mut line = line();
     let is_seen = line.is_seen();
     if is_seen {
@@ -38,7 +39,7 @@ pub(super) fn frames(text: String) -> bool {
 }
 
 /// Whether progress is shown, which needs a terminal.
-pub(super) fn is_seen() -> bool {
+pub(crate) fn is_seen() -> bool {
     line().is_seen()
 }
 
@@ -46,12 +47,12 @@ pub(super) fn is_seen() -> bool {
 const STEPS: u64 = 10_000;
 
 /// Shows the fraction of the picture that is traced, from 0 to 1.
-pub(super) fn tracing(part: f64) {
+pub(crate) fn tracing(part: f64) {
     show_part(part, "tracing [{wide_bar}] {percent}%, {eta} left", None);
 }
 
 /// Shows the fraction of a lit picture that is done, from 0 to 1, with a message.
-pub(super) fn rendering(part: f64, message: String) {
+pub(crate) fn rendering(part: f64, message: String) {
     let template = "rendering {percent}%, {eta} left; {wide_msg}";
     show_part(part, template, Some(message));
 }
@@ -82,7 +83,7 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
 }
 
 /// Removes the line.
-pub(super) fn clear() {
+pub(crate) fn clear() {
     let mut line = line();
     (line.total, line.plain) = (None, None);
     if let Some(bar) = line.bar.take() {
@@ -91,7 +92,134 @@ pub(super) fn clear() {
 }
 
 /// Removes the line, and shows no more progress.
-pub(super) fn close() {
+pub(crate) fn close() {
     clear();
     line().is_closed = true;
+}
+
+/// The progress line of the program.
+static LINE: Mutex<Line> =
+    Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
+
+/// The time between two lines where standard error is no terminal.
+const PLAIN: Duration = Duration::from_secs(10);
+
+/// What the line shows, if anything.
+pub(crate) struct Line {
+    pub(crate) bar: Option<ProgressBar>,
+    /// Number of steps of a bar; `None` for a stage whose length is not known.
+    pub(crate) total: Option<u64>,
+    /// Whether the line shows the progress of all frames, and not that of one picture.
+    pub(crate) is_held: bool,
+    pub(crate) is_closed: bool,
+    /// The lines without a terminal, since the first part of a picture.
+    pub(crate) plain: Option<Plain>,
+}
+
+/// When lines are due where standard error is no terminal.
+pub(crate) struct Plain {
+    start: Instant,
+    next: Instant,
+}
+
+impl Plain {
+    pub(crate) fn new(now: Instant) -> Self {
+        Self { start: now, next: now + PLAIN }
+    }
+
+    /// The line about a part of the picture, if one is due.
+    pub(crate) fn line(
+        &mut self,
+        now: Instant,
+        part: f64,
+        message: Option<&str>,
+    ) -> Option<String> {
+        if now < self.next {
+            return None;
+        }
+        self.next = now + PLAIN;
+        let (percent, seconds) = (100.0 * part, now.duration_since(self.start).as_secs_f64());
+        let message = message.map_or(String::new(), |message| format!("; {message}"));
+        Some(format!("rendering: {percent:.0}% after {seconds:.0} s{message}"))
+    }
+}
+
+/// The line, which nobody else changes meanwhile.
+pub(crate) fn line() -> MutexGuard<'static, Line> {
+    LINE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Line {
+    /// Shows another bar in place of the one that is there.
+    pub(crate) fn show(
+        &mut self,
+        bar: ProgressBar,
+        template: &str,
+        total: Option<u64>,
+    ) -> &ProgressBar {
+        if let Some(old) = self.bar.take() {
+            old.finish_and_clear();
+        }
+        // A wrong template is not a reason to fail.
+        let style = ProgressStyle::with_template(template);
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        self.total = total;
+        self.bar.insert(bar)
+    }
+
+    /// Whether the line is shown, which needs a terminal.
+    pub(crate) fn is_seen(&self) -> bool {
+        !self.is_closed && std::io::stderr().is_terminal()
+    }
+}
+
+/// Runs `write` while the line is hidden.
+pub(crate) fn while_hidden<T>(write: impl FnOnce() -> T) -> T {
+    let bar = line().bar.clone();
+    match bar {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
+}
+
+/// Prints one line on standard error, with control characters escaped.
+pub(crate) fn tell(line: impl fmt::Display) {
+    let line = one_line(&line.to_string());
+    while_hidden(|| {
+        let _ = writeln!(io::stderr().lock(), "{line}");
+    });
+}
+
+/// Prints a text of several lines on standard error.
+pub(crate) fn tell_all(text: &str) {
+    let _ = write!(io::stderr().lock(), "{text}");
+}
+
+/// Prints the result on standard output.
+pub(crate) fn answer(bytes: &[u8]) -> io::Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        // The reader has closed the pipe because it needs no more.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_terminal_a_line_comes_every_ten_seconds() {
+        let start = Instant::now();
+        let after = |seconds| start + Duration::from_secs(seconds);
+        let mut plain = Plain::new(start);
+        let lines: Vec<_> = (0..35)
+            .filter_map(|second| plain.line(after(second), second as f64 / 40.0, Some("more")))
+            .collect();
+        let wanted = [(25, 10), (50, 20), (75, 30)];
+        let wanted = wanted.map(|(part, time)| format!("rendering: {part}% after {time} s; more"));
+        assert_eq!(lines, wanted);
+        assert_eq!(plain.line(after(41), 1.0, None).unwrap(), "rendering: 100% after 41 s");
+    }
 }

@@ -1,7 +1,7 @@
 //! The quick part of the self-test of an adapter, which runs before a render.
 
-use super::device_error::explained_alone;
 use super::failure::Failure;
+use crate::with_scene::explained_alone;
 use pinhole::gpu::{GpuError, Headless, SelfTestExtent, SelfTestReport};
 
 /// Returns a message about the first property that failed.

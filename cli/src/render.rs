@@ -6,29 +6,24 @@ use std::sync::Once;
 
 use anyhow::Context;
 
-use super::annotation::AnnotationFlags;
-use super::args::Stereo;
-use super::bricks;
-use super::color_flags::ColorFlags;
-#[cfg(feature = "gpu")]
-use super::device::explained;
-use super::device::{Device, Opened};
-use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::input::{Input, Source};
-use super::interrupt;
 use super::light::LightFlags;
-use super::memory;
 use super::picture::Outputs;
-use super::profile;
-use super::progress;
 use super::render_args::RenderArgs;
-use super::speak::tell;
 use super::stop_rule::{StopRule, Watching};
-use super::structure_flags::StructureFlags;
 use super::views::Views;
+use super::{bricks, profile};
+use crate::annotation::{AnnotationFlags, EncodingFlags};
+use crate::args::Stereo;
+use crate::data_flags::{ColorFlags, StructureFlags};
 #[cfg(feature = "gpu")]
-use super::with_scene::{upload, watch_upload, with_structures};
+use crate::device::explained;
+use crate::device::{Device, Opened};
+use crate::progress::{self, tell};
+#[cfg(feature = "gpu")]
+use crate::with_scene::{upload, watch_upload, with_structures};
+use crate::{interrupt, memory};
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
@@ -64,15 +59,13 @@ impl Job {
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         let color = ColorFlags::new(&args.color)?;
         let annotation =
-            AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
+            AnnotationFlags::new(&args.color.annotation, outputs.format, color.names_column())?;
+        let structure = StructureFlags::new(&args.structure)?;
+        let source = Source::new(&args.input)?.with_light(light);
         Ok(Self {
-            source: Source::new(&args.input)?
-                .with_light(light)
-                .with_color(color)
-                .with_structure(StructureFlags::new(&args.structure)?)
-                .with_annotation(annotation.clone()),
+            source: Source { color, structure, annotation: annotation.clone(), ..source },
             stop_rule,
-            encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            encoding: EncodingFlags::new(&args.encoding, outputs.format)?,
             annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,

@@ -4,16 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::args::{AccelArgs, DeviceArgs, InputArgs, Stereo};
-use super::color_flags::ColorArgs;
-use super::encoding::EncodingArgs;
 use super::frames::FramesArgs;
 use super::light::LightArgs;
 #[cfg(feature = "gpu")]
 use super::profile::ProfileArgs;
 use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
-use super::structure_flags::StructureArgs;
+use crate::annotation::EncodingArgs;
+use crate::args::{AccelArgs, DeviceArgs, InputArgs, Stereo};
+use crate::data_flags::{ColorArgs, StructureArgs};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {

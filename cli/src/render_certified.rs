@@ -45,7 +45,7 @@ pub(super) fn run(
     opened: &Opened,
 ) -> Result<Result<(), Failure>, Failure> {
     let arguments = certified::arguments()?;
-    certified::check(input, !outputs.annotations().is_empty())?;
+    certified::check(input, !outputs.annotations.is_empty())?;
     let making = Making { stop_rule, outputs: &outputs, encoding, opened };
     let Made { image, written, judged } = match input.settings.is_denoised {
         true => making.denoised(input)?,
@@ -58,7 +58,8 @@ pub(super) fn run(
     let adapter = opened.adapter();
     let certificate = certified::certificate(input, &written, &judged, adapter, arguments);
     let text = certificate.to_text().map_err(anyhow::Error::from)?;
-    outputs.with_certificate(text).write(&image, encoding, adapter, None)?;
+    let outputs = Outputs { certificate: Some(text), ..outputs };
+    outputs.write(&image, encoding, adapter, None)?;
     Ok(verdict)
 }
 
@@ -112,7 +113,7 @@ impl Making<'_> {
                 "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
             ));
         }
-        Written::of(image, self.encoding, self.outputs.format() == PictureFormat::Png, first)
+        Written::of(image, self.encoding, self.outputs.format == PictureFormat::Png, first)
     }
 }
 

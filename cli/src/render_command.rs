@@ -3,23 +3,25 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::Stereo;
-use super::failure::Failure;
-use super::frames;
-use super::input::Input;
-use super::picture::Outputs;
-use super::print_scene;
-#[cfg(feature = "gpu")]
-use super::profile;
-use super::progress;
-use super::render::{Job, render_joined, render_views};
-use super::render_args::RenderArgs;
-use super::render_certified;
-use super::speak::tell;
-use super::threads;
-use super::views::Views;
+use anyhow::{Context, Result, anyhow};
 
-pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+use crate::args::Stereo;
+use crate::failure::Failure;
+use crate::input::Input;
+use crate::picture::Outputs;
+#[cfg(feature = "gpu")]
+use crate::profile;
+use crate::progress::{self, answer, tell};
+use crate::render::{Job, render_joined, render_views};
+use crate::render_args::RenderArgs;
+use crate::views::Views;
+use crate::{frames, render_certified, threads};
+use pinhole::annotate::AnnotationPlan;
+use pinhole::image::encoding::Encoding;
+use pinhole::internals::text::one_line;
+use pinhole::scene_file::{Contents, write};
+
+pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]
     profile::start(&args.profile);
     run_measured(args)?;
@@ -59,18 +61,14 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
         let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
-        return Ok(print_scene::print(
-            &input,
-            encoding,
-            job.annotation.plan_over(&input.annotations),
-        )?);
+        return Ok(print(&input, encoding, job.annotation.plan_over(&input.annotations))?);
     }
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
     let (encoding, annotations) = job.finish(&mut input, note)?;
-    let outputs = job.outputs.with_annotations(annotations);
+    let outputs = Outputs { annotations, ..job.outputs };
     let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
@@ -104,4 +102,38 @@ fn said(quiet: bool, input: &Input, started: Instant) {
     if !quiet {
         tell(input.report.line(started.elapsed()));
     }
+}
+
+/// Writes the scene file to standard output. `encoding` and `annotations` have the flags about the picture's file and
+/// about what is drawn on it.
+pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPlan) -> Result<()> {
+    let contents = Contents {
+        film: input.film,
+        encoding,
+        annotations,
+        camera: input.parameters,
+        settings: &input.settings,
+        sky_image: input.sky_image.as_deref().map(named).transpose()?,
+        data: input.data.clone(),
+        spheres: input.own_spheres.clone(),
+    };
+    input.files.iter().try_for_each(|path| named(path).map(drop))?;
+    let title = one_line(&input.report.path);
+    let text = format!(
+        "# The scene that `pinhole render` made of {title}, with every value that it chose.\n\
+         # Paths are relative to the folder in which it was written: keep it there.\n\n{}",
+        write(&contents)
+    );
+    answer(text.as_bytes()).context("standard output: cannot be written")
+}
+
+/// Returns a path as text, which is all that a scene file can name.
+fn named(path: &Path) -> Result<String> {
+    let text = path.to_str().ok_or_else(|| {
+        anyhow!(
+            "{}: a scene file cannot name this path, because it is not UTF-8; rename it",
+            path.display()
+        )
+    })?;
+    Ok(text.to_owned())
 }

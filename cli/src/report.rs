@@ -26,7 +26,6 @@ pub(super) struct Report {
     pub(super) spheres: usize,
     /// The number of spheres from which a selection kept these.
     pub(super) selected_from: Option<usize>,
-    /// The number of bonds, if bonds are drawn.
     pub(super) bonds: Option<usize>,
     pub(super) has_atoms: bool,
     pub(super) style: Option<Style>,

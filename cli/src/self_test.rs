@@ -1,20 +1,24 @@
-//! The full self-test of an adapter, for `pinhole info` and `verify`.
+//! What `pinhole info` does beyond telling what there is: the self-test of a device, and the files of all kernels.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use serde::Serialize;
 
-use super::adapter::AdapterReport;
-use super::device::{WantedAdapter, explained_alone};
-use super::failure::Failure;
-use super::quick_test::failure;
-use super::{interrupt, progress};
-use pinhole::gpu::{Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
+use crate::device::{AdapterReport, WantedAdapter, explained_alone};
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::output::{NewFolder, name_all, unnamed};
+use crate::progress::{self, answer};
+use crate::quick_test::failure;
+use pinhole::gpu::{
+    Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty, composed_kernels,
+};
 
 /// The results of the self-test of an adapter.
 #[derive(Serialize)]
-pub(super) struct SelfTested {
+pub(crate) struct SelfTested {
     adapter: AdapterReport,
     passed: bool,
     properties: Vec<PropertyReport>,
@@ -34,7 +38,7 @@ struct PropertyReport {
 
 impl SelfTested {
     /// Opens an adapter and runs the full test.
-    pub(super) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
+    pub(crate) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
         let headless = wanted.open_any()?;
         let report = test(&headless)?;
         progress::clear();
@@ -46,7 +50,7 @@ impl SelfTested {
         })
     }
 
-    pub(super) fn readable(&self) -> String {
+    pub(crate) fn readable(&self) -> String {
         let mut text = self.adapter.line() + "\n";
         for PropertyReport { name, outcome, words, .. } in &self.properties {
             text += &format!("  {outcome:<6}  {name}: {words}\n");
@@ -55,13 +59,13 @@ impl SelfTested {
     }
 
     /// Returns a failure if a property failed.
-    pub(super) fn verdict(&self) -> Result<(), Failure> {
+    pub(crate) fn verdict(&self) -> Result<(), Failure> {
         check_failed(self.failure.as_deref())
     }
 }
 
 /// Runs the full test on an open adapter, and returns a failure if a property failed.
-pub(super) fn check(headless: &Headless) -> Result<(), Failure> {
+pub(crate) fn check(headless: &Headless) -> Result<(), Failure> {
     let report = test(headless)?;
     check_failed(failure(&headless.adapter_info().name, &report).as_deref())
 }
@@ -91,6 +95,44 @@ impl PropertyReport {
             figures: figures.iter().copied().collect(),
         }
     }
+}
+
+/// The list of pipelines: the file of the kernel, and the values of its `override` constants.
+const PIPELINES: &str = "pipelines.txt";
+
+/// Writes all kernels and the list of pipelines into a folder, or none.
+pub(crate) fn dump(folder: &Path) -> Result<(), Failure> {
+    let mut kernels: Vec<(PathBuf, String)> = Vec::new();
+    let mut pipelines = String::new();
+    for kernel in composed_kernels() {
+        let file = file_name(&kernel.name);
+        for constants in &kernel.pipelines {
+            let constants = constants.iter().map(|(name, value)| format!(" {name}={value}"));
+            pipelines += &format!("{file}{}\n", constants.collect::<String>());
+        }
+        kernels.push((folder.join(file), kernel.source));
+    }
+    let text = format!(
+        "{}: {} kernels, and {PIPELINES} with the constants of {} pipelines\n",
+        folder.display(),
+        kernels.len(),
+        pipelines.lines().count(),
+    );
+    kernels.push((folder.join(PIPELINES), pipelines));
+    let first = kernels.first().map(|(path, _)| path.clone()).unwrap_or_default();
+    NewFolder::new(folder, &first.file_name().unwrap_or_default().to_string_lossy())?.with(
+        || {
+            let files =
+                kernels.iter().map(|(path, source)| Ok((path, unnamed(path, source.as_bytes())?)));
+            name_all(files.collect::<anyhow::Result<Vec<_>>>()?)
+        },
+    )?;
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+}
+
+/// What distinguishes a kernel, as the name of a file.
+fn file_name(kernel: &str) -> String {
+    kernel.replace([' ', '#'], "-") + ".wgsl"
 }
 
 #[cfg(test)]
@@ -127,7 +169,7 @@ mod tests {
                     failure.to_string(),
                     "error: some fails the self-test (fence: the words)"
                 );
-                assert_eq!(failure.exit_code(), super::super::failure::CHECK_FAILED.into());
+                assert_eq!(failure.exit_code(), crate::failure::CHECK_FAILED.into());
             }
             other => panic!("{other:?}"),
         }

@@ -7,7 +7,8 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::light::HEADING;
-use super::{interrupt, progress, speak::tell};
+use crate::interrupt;
+use crate::progress::{self, tell};
 use pinhole::render::{Decision, Progress};
 
 #[derive(Debug, Args)]
@@ -37,7 +38,6 @@ fn open_end<T>(time: Option<T>, noise: Option<f64>) -> Option<&'static str> {
     time.map(|_| "--time").or(noise.map(|_| "--noise"))
 }
 
-/// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StopRule {
     time: Option<Duration>,

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use std::thread::available_parallelism;
 
 use super::failure::Failure;
-use super::speak::tell;
+use crate::progress::tell;
 
 /// The environment variable for the number of threads, which rayon reads.
 const VARIABLE: &str = "RAYON_NUM_THREADS";

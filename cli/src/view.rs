@@ -6,12 +6,11 @@ use std::process::Command;
 use anyhow::Context;
 use clap::Args;
 
-use super::args::{AccelArgs, DeviceArgs, InputArgs};
-use super::color_flags::ColorArgs;
-use super::encoding::EncodingArgs;
 use super::failure::Failure;
 use super::light::LightArgs;
-use super::structure_flags::StructureArgs;
+use crate::annotation::EncodingArgs;
+use crate::args::{AccelArgs, DeviceArgs, InputArgs};
+use crate::data_flags::{ColorArgs, StructureArgs};
 
 /// The flags of `render` that say what is seen. The viewer reads them itself; here they are parsed for the help and
 /// for errors.

@@ -1,7 +1,7 @@
 //! Values for one picture, or for the two pictures of a stereo camera.
 
 use super::input::Input;
-use super::memory;
+use crate::memory;
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;

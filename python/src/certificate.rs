@@ -1,17 +1,16 @@
 //! Whether a device rendered as it should.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
-use pinhole::Scene;
-use pinhole::accel::AccelChoice;
-use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
-use pinhole::verify::{Certificate, Checker, Verdict};
 use pyo3::prelude::*;
 
 use crate::device::{self, Backend};
 use crate::fault::{Fault, Outcome};
 use crate::look::Look;
-use crate::memory;
 use crate::worker::Stop;
+use pinhole::Scene;
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
+use pinhole::verify::{Certificate, Checker, Verdict};
 
 /// The result of the checker.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -74,7 +73,7 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judge
     let settings = look.settings.by_primary_rays();
     let plan = |choice| headless.plan_record(scene, &view, choice, 0);
     let record = |plan: &RenderPlan| {
-        plan.check(&headless.device().limits(), memory::available())?;
+        plan.check(&headless.device().limits(), device::available())?;
         let watch = &mut |_: &UploadProgress| stop.decision();
         let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
         headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision())

@@ -1,17 +1,17 @@
-//! Reads files: as a whole, or frame by frame.
+//! Reads files, as a whole or frame by frame, and what colours mean in all frames.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
-use crate::frame_keys::FrameKeys;
+use crate::look::SceneText;
 use crate::scene::Given;
-use crate::scene_text::SceneText;
 use crate::spheres::SphereData;
 use crate::worker;
+use pinhole::color_by::JoinedKeys;
+use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
 
 /// A file of spheres, perhaps with several frames, of which one at a time is read.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -119,5 +119,33 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
                 found.map_err(|error| Fault::File(format!("{path}: cannot be read: {error}")))?;
             found.ok_or_else(|| Fault::Input(format!("{path}: {}", Format::unknown())))
         }
+    }
+}
+
+/// What colours mean in several frames together.
+#[pyclass(frozen, module = "pinhole._pinhole")]
+#[derive(Default)]
+pub(crate) struct FrameKeys {
+    keys: Mutex<JoinedKeys>,
+}
+
+#[pymethods]
+impl FrameKeys {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds what colours mean in a frame, if a column gives them.
+    fn add(&self, frame: &SphereData) {
+        if let Some(key) = &frame.key {
+            self.keys.lock().unwrap_or_else(PoisonError::into_inner).add(key);
+        }
+    }
+}
+
+impl FrameKeys {
+    pub(crate) fn joined(&self) -> JoinedKeys {
+        self.keys.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }

@@ -6,24 +6,19 @@
     reason = "functions of Python own what PyO3 makes of their arguments"
 )]
 
+use pyo3::prelude::*;
+
 mod arrays;
 mod certificate;
-mod colors;
 mod device;
 mod fault;
 mod files;
-mod frame_keys;
 mod image;
-mod keys;
 mod look;
-mod memory;
 mod render;
 mod scene;
-mod scene_text;
 mod spheres;
 mod worker;
-
-use pyo3::prelude::*;
 
 /// Panics in work, so that tests see what becomes of it.
 #[pyfunction]
@@ -40,11 +35,11 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<certificate::Judged>()?;
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
-    module.add_class::<frame_keys::FrameKeys>()?;
+    module.add_class::<files::FrameKeys>()?;
     module.add_class::<spheres::SphereData>()?;
     module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;
-    module.add_function(wrap_pyfunction!(colors::srgb_of_names, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::srgb_of_names, module)?)?;
     module.add_function(wrap_pyfunction!(image::png_of, module)?)?;
     module.add_function(wrap_pyfunction!(worker::wait_for_threads, module)?)?;
     module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;

@@ -1,16 +1,56 @@
-//! From the text of a scene file to cameras, settings and encoding, for a scene that exists.
+//! The text of a scene file, which Python writes from its arguments, becomes cameras, settings and encoding for a scene that
+//! exists.
 
+use pyo3::prelude::*;
+
+use crate::fault::{Fault, Outcome};
 use pinhole::annotate::{AnnotationError, Annotations};
 use pinhole::camera::{Camera, CameraError};
 use pinhole::color_by::ColorKey;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::light::environment::Environment;
 use pinhole::load::environment;
-use pinhole::scene_file::IntegratorKind;
+use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
 
-use crate::fault::{Fault, Outcome};
-use crate::scene_text::SceneText;
+/// The text of a scene file, and which argument of Python each line is of.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SceneText {
+    text: String,
+    /// The argument of each line, such as `studio` or `studio.outline`; may be empty.
+    arguments: Vec<String>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for SceneText {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let (text, arguments) = object.extract()?;
+        Ok(Self { text, arguments })
+    }
+}
+
+impl SceneText {
+    /// Parses the text.
+    pub(crate) fn parse(&self) -> Outcome<SceneFile> {
+        SceneFile::parse(&self.text).map_err(|error| self.fault(&error))
+    }
+
+    /// Whether there are no settings.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.text.trim().is_empty()
+    }
+
+    /// An error in the text, with the argument in place of the line.
+    pub(crate) fn fault(&self, error: &SceneFileError) -> Fault {
+        let argument = self.arguments.get(error.line.saturating_sub(1)).map_or("", String::as_str);
+        let message = &error.message;
+        Fault::Input(match argument.is_empty() {
+            true => message.clone(),
+            false => format!("{argument}: {message}"),
+        })
+    }
+}
 
 /// How a scene is seen, lit and encoded.
 pub(crate) struct Look {

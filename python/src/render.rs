@@ -4,18 +4,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::Duration;
 
+use crate::device::{self, Backend, Opened};
+use crate::fault::{Fault, Outcome};
+use crate::look::Look;
+use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
 use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
 use pinhole::render::{Integrator, Progress};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
-
-use crate::device::{self, Backend, Opened};
-use crate::fault::{Fault, Outcome};
-use crate::look::Look;
-use crate::memory;
-use crate::worker::Stop;
 
 /// How long a thread sleeps before it looks again whether another has rendered its picture.
 const WAIT: Duration = Duration::from_millis(2);
@@ -115,7 +113,7 @@ impl OnDevice {
         };
         let mut kept = slot.take().filter(fits);
         let views = look.views();
-        let extra = memory::ENCODING_BYTES_PER_PIXEL;
+        let extra = device::ENCODING_BYTES_PER_PIXEL;
         let plan =
             |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, extra);
         let work = |buffers: &SceneBuffers| {
@@ -140,7 +138,7 @@ impl OnDevice {
                 drop(kept);
                 let copied = Mutex::new(None);
                 let copy_and_work = |plan: &RenderPlan| {
-                    plan.check(&headless.device().limits(), memory::available())?;
+                    plan.check(&headless.device().limits(), device::available())?;
                     let watch = &mut |_: &UploadProgress| stop.decision();
                     let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
                     let images = work(&buffers)?;
@@ -190,7 +188,7 @@ impl OnDevice {
 
 fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
     let plan = SearchPlan::new(scene);
-    memory::check_on_cpu(&plan, look, layers)?;
+    device::check_on_cpu(&plan, look, layers)?;
     let structure = plan.build().map_err(Fault::input)?;
     let views = look.views();
     let pictures = views.iter().enumerate().map(|(done, view)| {

@@ -1,13 +1,12 @@
 //! Spheres with what a scene file says about data become a scene.
 
+use crate::fault::{Fault, Outcome};
+use crate::look::SceneText;
 use pinhole::color_by::{ColorBy, ColorKey, JoinedKeys};
 use pinhole::load::Loaded;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, SceneFile};
 use pinhole::{Appearance, Colors, LinearRgb, Scene};
-
-use crate::fault::{Fault, Outcome};
-use crate::scene_text::SceneText;
 
 /// A scene, and what is known about its spheres.
 pub(crate) struct Made {

@@ -4,6 +4,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Centers, ColorArray, Radii};
+use crate::certificate::{self, Judged};
+use crate::device::Backend;
+use crate::fault::{Fault, Outcome};
+use crate::image::Picture;
+use crate::look::{self, Look, SceneText};
+use crate::render::OnDevice;
+use crate::scene::{Given, Made, scene_of};
+use crate::worker;
 use pinhole::camera::Viewpoint;
 use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
@@ -11,19 +22,6 @@ use pinhole::image::Layer;
 use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
-use pyo3::prelude::*;
-
-use crate::arrays::{Centers, ColorArray, Radii};
-use crate::certificate::{self, Judged};
-use crate::device::Backend;
-use crate::fault::{Fault, Outcome};
-use crate::image::Picture;
-use crate::keys;
-use crate::look::{self, Look};
-use crate::render::OnDevice;
-use crate::scene::{Given, Made, scene_of};
-use crate::scene_text::SceneText;
-use crate::worker;
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -206,7 +204,7 @@ impl SphereData {
 
     /// What colours mean, if a column gives them.
     fn color_key(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
-        self.key.as_ref().map(|key| keys::in_python(py, key)).transpose()
+        self.key.as_ref().map(|key| arrays::in_python(py, key)).transpose()
     }
 
     /// The three edges of the periodic cell; None if there is none.

@@ -72,14 +72,13 @@ fn readers_and_writers_touch_no_files() {
     assert_absent("src", &["std::fs", "fs::File"], &but);
     let program = [
         "bricks/read.rs",
-        "bricks/stream.rs",
+        "bricks/writer.rs",
         "read_file.rs",
         "output.rs",
-        "demo.rs",
+        "generate.rs",
         "interrupt.rs",
         "job/files.rs",
-        "memory/control_group.rs",
-        "process.rs",
+        "memory.rs",
     ];
     assert_absent("cli/src", &["std::fs"], &program);
 }

@@ -3,16 +3,14 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use eframe::egui;
+use eframe::egui::{self, Color32};
 use pinhole_cli::viewing::{RenderFlags, StillPicture, ViewCamera, ViewError};
 
 use crate::details::Details;
-use crate::fields::Fields;
 use crate::orbit::Orbit;
 use crate::quick::Quick;
-use crate::save::Saving;
-use crate::state::State;
-use crate::worker::{Message, News, Window, Worker};
+use crate::state::{Fields, State};
+use crate::worker::{Message, News, Saving, Window, Worker};
 
 /// How long nothing moves before still pictures are rendered.
 pub(crate) const STILL_AFTER: Duration = Duration::from_millis(120);
@@ -87,7 +85,7 @@ impl App {
     ) -> Result<Self, String> {
         let render = creation.wgpu_render_state.clone().ok_or("the window has no device")?;
         let context = creation.egui_ctx.clone();
-        crate::look::dress(&context);
+        dress(&context);
         let (device, queue) = (render.device.clone(), render.queue.clone());
         worker.attach(Window { context, device, queue });
         let now = Instant::now();
@@ -181,7 +179,6 @@ impl App {
         self.said = "copied the command line".to_owned();
     }
 
-    /// Saves the picture.
     pub(crate) fn save(&mut self, context: &egui::Context) {
         if self.saving.is_some() {
             return;
@@ -397,10 +394,24 @@ impl eframe::App for App {
 
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
         // Panels and pictures cover the rest.
-        crate::look::BESIDE.to_normalized_gamma_f32()
+        BESIDE.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {
         self.worker.close();
     }
 }
+
+/// The look of the window.
+pub(crate) fn dress(context: &egui::Context) {
+    context.set_theme(egui::Theme::Light);
+    context.all_styles_mut(|style| {
+        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+        style.spacing.combo_width = 140.0;
+        style.visuals.panel_fill = Color32::from_rgb(248, 248, 250);
+        style.visuals.window_fill = Color32::WHITE;
+    });
+}
+
+/// The color beside a picture that does not fill its part of the window.
+pub(crate) const BESIDE: Color32 = Color32::from_rgb(214, 216, 220);

@@ -49,7 +49,6 @@ impl Details {
         Some(Self { id, center, radius, is_added, rows: rows.collect() })
     }
 
-    /// The value of a column.
     pub(crate) fn value(&self, name: &str) -> Option<&str> {
         self.rows.iter().find(|row| row.name == name).map(|row| row.value.as_str())
     }

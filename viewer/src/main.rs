@@ -3,32 +3,28 @@
 //! The state of the window is a list of flags of `pinhole render`, so that the command that it copies and the pictures
 //! that it saves are exact by construction.
 
-mod app;
-mod blit;
-mod details;
-mod fields;
-mod layers;
-mod look;
-mod orbit;
-mod panels;
-mod picture;
-mod quick;
-mod save;
-mod sections;
-mod state;
-mod worker;
-
 use std::process::ExitCode;
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 
 use eframe::{egui, egui_wgpu, wgpu};
-use pinhole::gpu::GpuError;
 use pinhole_cli::viewing::{self, RenderFlags, ViewError};
 
-use app::{App, Ending};
-use state::State;
-use worker::{Message, Worker};
+use crate::app::{App, Ending};
+use crate::state::State;
+use crate::worker::{Message, Worker};
+use pinhole::gpu::GpuError;
+
+mod app;
+mod blit;
+mod details;
+mod orbit;
+mod panels;
+mod picture;
+mod quick;
+mod sections;
+mod state;
+mod worker;
 
 fn main() -> ExitCode {
     let flags = match RenderFlags::of_process() {

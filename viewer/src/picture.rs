@@ -3,12 +3,12 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use pinhole::camera::Camera;
-use pinhole::glam::DVec3;
 
 use crate::app::{App, Rate, STILL_AFTER};
 use crate::details::Details;
 use crate::quick::Sight;
+use pinhole::camera::Camera;
+use pinhole::glam::DVec3;
 
 impl App {
     /// The camera of what is to be seen, for the picture in the window.

@@ -7,14 +7,13 @@ use std::time::{Duration, Instant};
 
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use eframe::{egui, wgpu};
+
+use crate::blit::{Blit, Layers};
+use crate::worker::QuickScene;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
 use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker};
 use pinhole::render::{Integrator, RenderSettings};
-
-use crate::blit::Blit;
-use crate::layers::Layers;
-use crate::worker::QuickScene;
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
 const MOVING: Duration = Duration::from_millis(55);
@@ -300,7 +299,6 @@ impl State {
         Ok(())
     }
 
-    /// Records what is due.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), String> {
         let (Some(scene), Some(targets), Some(camera)) =
             (&self.scene, &mut self.targets, &self.camera)

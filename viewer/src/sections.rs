@@ -1,12 +1,12 @@
 //! The controls. Each shows a flag of `pinhole render`, under its own name.
 
 use eframe::egui::{self, Align, Layout, RichText};
+
+use crate::app::App;
 use pinhole::color_by::MapName;
 use pinhole::load::{Column, ColumnValues};
 use pinhole::render::Integrator;
 use pinhole::style::Style;
-
-use crate::app::App;
 
 /// The columns that all spheres have.
 const BUILT_IN: [&str; 5] = ["index", "radius", "x", "y", "z"];

@@ -30,7 +30,6 @@ impl State {
         Self { flags, number: 1, window: [800, 600], size, output: format!("{stem}.png") }
     }
 
-    /// The size of the picture that is saved.
     pub(crate) fn saved_size(&self) -> [u32; 2] {
         self.size.unwrap_or(self.window)
     }
@@ -77,7 +76,6 @@ impl State {
         Request { state: self.number, flags: self.sized(self.window), still }
     }
 
-    /// The flags of the picture that is saved.
     pub(crate) fn saved(&self) -> RenderFlags {
         self.sized(self.saved_size())
     }
@@ -91,6 +89,35 @@ impl State {
 pub(crate) fn sides(text: &str) -> Option<[u32; 2]> {
     let (width, height) = text.split_once(['x', 'X'])?;
     Some([width.parse().ok()?, height.parse().ok()?])
+}
+
+/// What the user types, until it becomes a flag.
+pub(crate) struct Fields {
+    pub(crate) select: String,
+    pub(crate) range: String,
+    pub(crate) background: String,
+    /// Any flags, as on a command line.
+    pub(crate) others: String,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Whether the window closes when it has saved a picture.
+    pub(crate) closes: bool,
+}
+
+impl Fields {
+    pub(crate) fn of(state: &State) -> Self {
+        let text = |name| state.flags.get(name).unwrap_or_default().to_owned();
+        let [width, height] = state.size.unwrap_or([1600, 1200]);
+        Self {
+            select: text("select"),
+            range: text("range"),
+            background: text("background"),
+            others: String::new(),
+            width,
+            height,
+            closes: false,
+        }
+    }
 }
 
 #[cfg(test)]

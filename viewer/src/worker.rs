@@ -1,13 +1,15 @@
-//! The thread that reads files, prepares scenes for the window's device and renders still pictures.
+//! Threads beside the window: one reads files and renders stills, others save pictures.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use crate::layers::Layers;
 use eframe::egui;
+use pinhole_cli::viewing::{RenderFlags, Shown, StillPicture, StillRenderer, TimeLine, ViewError};
+
+use crate::blit::Layers;
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, CameraParameters, View};
 use pinhole::gpu::{
@@ -16,7 +18,6 @@ use pinhole::gpu::{
 use pinhole::load::Column;
 use pinhole::render::{Integrator, RenderSettings};
 use pinhole::scene::Scene;
-use pinhole_cli::viewing::{RenderFlags, Shown, StillPicture, StillRenderer, TimeLine, ViewError};
 
 /// What the window wants to show.
 #[derive(Clone, Debug)]
@@ -102,7 +103,6 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    /// Starts the thread with a first request.
     pub(crate) fn start(request: Request) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         shared.inbox().request = Some(request);
@@ -138,7 +138,6 @@ impl Worker {
         self.shared.newest.fetch_add(1, Ordering::AcqRel);
     }
 
-    /// The next message, if there is one.
     pub(crate) fn message(&self) -> Option<Message> {
         self.messages.try_recv().ok()
     }
@@ -309,4 +308,41 @@ fn is_live(
 
 fn error_of(error: &GpuError) -> ViewError {
     ViewError::new(format!("the window's device: {error}"))
+}
+
+/// A picture that is being saved.
+pub(crate) struct Saving {
+    pub(crate) output: String,
+    pub(crate) started: Instant,
+    result: Receiver<Result<(), ViewError>>,
+}
+
+impl Saving {
+    pub(crate) fn start(
+        flags: RenderFlags,
+        output: String,
+        context: egui::Context,
+    ) -> std::io::Result<Self> {
+        let (sender, result) = channel();
+        std::thread::Builder::new().name("saving".to_owned()).spawn({
+            let output = output.clone();
+            move || {
+                let _ = sender.send(flags.save(&output));
+                context.request_repaint();
+            }
+        })?;
+        Ok(Self { output, started: Instant::now(), result })
+    }
+
+    /// Whether the picture is written, or why not, once that is known.
+    pub(crate) fn result(&self) -> Option<Result<(), ViewError>> {
+        use std::sync::mpsc::TryRecvError;
+        match self.result.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                Some(Err(ViewError::new(format!("{}: saving ended without a result", self.output))))
+            }
+        }
+    }
 }

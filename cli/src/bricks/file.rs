@@ -18,7 +18,6 @@ pub(super) const PLACE: usize = 24;
 /// Bytes before the first brick.
 pub(super) const BEFORE: u64 = 40;
 
-/// The length of a digest.
 pub(super) const DIGEST: usize = 32;
 
 /// No header is longer.
@@ -32,7 +31,6 @@ pub(super) const COLOR: u64 = 4;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
-    /// The version of the program.
     pub(super) version: String,
     /// The file that was sorted.
     pub(super) source: String,

@@ -4,16 +4,6 @@
 use std::ops::Range;
 
 use anyhow::{Context, anyhow};
-use pinhole::camera::View;
-use pinhole::cpu::{self, SearchPlan};
-use pinhole::glam::DVec2;
-#[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, UploadWatch};
-use pinhole::image::{Image, LayerSet};
-#[cfg(feature = "gpu")]
-use pinhole::render::{Decision, Watch};
-use pinhole::render::{Nearest, RenderSettings};
-use pinhole::scene::Scene;
 
 use super::BrickFile;
 use crate::device::Opened;
@@ -25,6 +15,16 @@ use crate::views::Views;
 #[cfg(feature = "gpu")]
 use crate::with_scene::{watch_upload, with_structures};
 use crate::{interrupt, memory, progress};
+use pinhole::camera::View;
+use pinhole::cpu::{self, SearchPlan};
+use pinhole::glam::DVec2;
+#[cfg(feature = "gpu")]
+use pinhole::gpu::{Headless, UploadWatch};
+use pinhole::image::{Image, LayerSet};
+#[cfg(feature = "gpu")]
+use pinhole::render::{Decision, Watch};
+use pinhole::render::{Nearest, RenderSettings};
+use pinhole::scene::Scene;
 
 /// Renders the picture of each view.
 pub(crate) fn render(

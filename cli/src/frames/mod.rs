@@ -1,40 +1,27 @@
 //! Several pictures at once: frames of a file, or views from all sides, as files or as a movie.
 
-mod apng;
-mod args;
-mod frame;
-mod gif;
-mod moving;
-mod names;
-mod notes;
-mod numbers;
-mod overview;
-mod range;
-mod run;
-mod series;
-mod sink;
-mod status;
-mod target;
-mod turn;
-mod union;
-mod video;
-mod write;
-mod y4m;
-
 use std::path::Path;
 
-use super::args::Stereo;
+use self::target::Target;
 use super::failure::Failure;
 use super::render_args::RenderArgs;
-pub(super) use args::{FramesArgs, Raw};
-use moving::WantedPath;
-pub(crate) use overview::Overview;
-use range::FrameRange;
-pub(super) use run::run;
-pub(crate) use run::{Known, Ready, ready};
-use target::Target;
+use crate::args::Stereo;
+use crate::frames::args::FrameRange;
+pub(super) use crate::frames::args::{FramesArgs, Raw};
+use crate::frames::moving::WantedPath;
+pub(crate) use crate::frames::numbers::Overview;
+pub(super) use crate::frames::run::run;
+pub(crate) use crate::frames::run::{Known, Ready, ready};
 
-/// Whether a path is that of a movie.
+mod args;
+mod movie;
+mod moving;
+mod numbers;
+mod run;
+mod series;
+mod target;
+mod union;
+
 pub(super) fn is_movie(path: &Path) -> bool {
     target::movie_of(path).is_some()
 }
@@ -67,7 +54,7 @@ impl Wanted {
         let movie = target::movie_of(output);
         let is_asked = frames.is_some() || turntable.is_some() || path.is_some();
         if !is_asked && movie.is_none() && raw.is_none() {
-            if names::has_sign(output) {
+            if args::has_sign(output) {
                 return Err(Failure::usage(format!(
                     "{name}: a % stands for the number of a frame; add --frames RANGE (: for all) or --turntable N, or \
                      choose a name without %"

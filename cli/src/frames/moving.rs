@@ -1,38 +1,37 @@
-//! Cameras that move along a path.
+//! Cameras that move along a path or turn about an axis.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
+use serde::Deserialize;
+use toml::Value;
+
+use crate::failure::Failure;
+use crate::frames::union::around;
+use crate::input::{Framed, Look, Source, read};
 use pinhole::camera::{
     CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
 };
 use pinhole::color_by::ColorKey;
-use pinhole::glam::DVec3;
+use pinhole::glam::{DQuat, DVec3};
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
 use pinhole::scene_file::{SceneFile, parse_camera_path};
-use serde::Deserialize;
-use toml::Value;
-
-use super::turn::up_of;
-use super::union::around;
-use crate::failure::Failure;
-use crate::input::{Framed, Look, Source, read};
 
 /// Most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;
 
 /// A camera path, and the file that has it.
 #[derive(Clone, Debug)]
-pub(super) struct WantedPath {
-    pub(super) path: CameraPath,
-    pub(super) file: PathBuf,
+pub(crate) struct WantedPath {
+    pub(crate) path: CameraPath,
+    pub(crate) file: PathBuf,
 }
 
 impl WantedPath {
-    /// Reads a file that holds a camera path.
-    pub(super) fn read(file: &Path) -> Result<Self, Failure> {
+    pub(crate) fn read(file: &Path) -> Result<Self, Failure> {
         let name = || file.display().to_string();
         let text = String::from_utf8(read(file)?).map_err(|_| {
             anyhow::anyhow!("{}: this is not UTF-8 text; a camera path is TOML text", name())
@@ -42,7 +41,7 @@ impl WantedPath {
     }
 
     /// How many pictures there are of a scene that has no frames: those up to the last key.
-    pub(super) fn count(&self, frames_per_second: u32) -> Result<usize, Failure> {
+    pub(crate) fn count(&self, frames_per_second: u32) -> Result<usize, Failure> {
         let last = match self.path.clock() {
             PathClock::Frames => self.path.end(),
             // A second is a whole number of pictures up to rounding.
@@ -60,86 +59,97 @@ impl WantedPath {
     }
 }
 
-/// A camera on its way, and what makes the light of each picture.
-pub(super) struct Moving {
-    motion: CameraMotion,
-    clock: PathClock,
-    frames_per_second: f64,
-    /// The camera before it is moved, with its position.
-    base: CameraParameters,
-    /// The middle of what it frames, and how far from it the camera is.
-    center: DVec3,
-    distance: f64,
-    /// What light and style are chosen for.
-    framed: Scene,
+/// What a moving camera sees, and what makes the light of each picture.
+pub(crate) struct Stage {
+    /// What the camera frames, and what light and style are chosen for.
+    pub(crate) framed: Scene,
     /// What the legend shows.
-    key: Option<ColorKey>,
-    file: Arc<SceneFile>,
-    sky: Option<Environment>,
+    pub(crate) key: Option<ColorKey>,
+    pub(crate) file: Arc<SceneFile>,
+    pub(crate) sky: Option<Environment>,
 }
 
-impl Moving {
-    /// Prepares the motion around the spheres of `framed`.
-    pub(super) fn new(
+/// A camera that is elsewhere in each picture.
+pub(crate) struct MovingCamera {
+    pub(crate) course: Course,
+    pub(crate) stage: Stage,
+}
+
+/// Where a camera is.
+pub(crate) enum Course {
+    /// Turned about an axis, at the end once around.
+    Turn { count: usize, axis: Axis },
+    Path {
+        motion: CameraMotion,
+        clock: PathClock,
+        frames_per_second: f64,
+        /// The camera before it is moved, with its position.
+        base: CameraParameters,
+        /// The middle of what it frames, and how far from it the camera is.
+        center: DVec3,
+        distance: f64,
+    },
+}
+
+impl MovingCamera {
+    /// Prepares the motion along a path around the spheres of a stage.
+    pub(crate) fn on_path(
         source: &Source,
         wanted: &WantedPath,
         frames_per_second: u32,
-        (framed, key): (Scene, Option<ColorKey>),
-        file: Arc<SceneFile>,
-        sky: Option<Environment>,
+        stage: Stage,
     ) -> Result<Self, Failure> {
         // From a distance at which every view fits.
-        let whole = around(&framed).with_context(|| source.name())?;
-        let base =
-            source.look(&file, Framed::new(&whole, key.as_ref()), sky.clone(), None)?.parameters;
+        let whole = around(&stage.framed).with_context(|| source.name())?;
+        let framed = Framed::new(&whole, stage.key.as_ref());
+        let base = source.look(&stage.file, framed, stage.sky.clone(), None)?.parameters;
         let up = source.up().or_else(|| up_of(&base)).unwrap_or(DVec3::Y);
         let motion = wanted.path.motion(up);
         let motion = motion.with_context(|| wanted.file.display().to_string())?;
-        let center = framed.bounds_to_frame().center();
+        let center = stage.framed.bounds_to_frame().center();
         let distance = eye_of(&base).map_or(1.0, |eye| eye.distance(center));
-        let clock = wanted.path.clock();
-        let frames_per_second = f64::from(frames_per_second);
-        Ok(Self {
-            motion,
-            clock,
-            frames_per_second,
-            base,
-            center,
-            distance,
-            framed,
-            key,
-            file,
-            sky,
-        })
-    }
-
-    fn framed(&self) -> Framed<'_> {
-        Framed::new(&self.framed, self.key.as_ref())
+        let (clock, frames_per_second) = (wanted.path.clock(), f64::from(frames_per_second));
+        let course = Course::Path { motion, clock, frames_per_second, base, center, distance };
+        Ok(Self { course, stage })
     }
 
     /// Makes the camera and the light of one picture: the frame with this number, which is the picture `index` of the
     /// movie.
-    pub(super) fn view(
+    pub(crate) fn view(
         &self,
         source: &Source,
         number: usize,
         index: usize,
     ) -> Result<Look, Failure> {
-        let time = match self.clock {
-            PathClock::Frames => number as f64,
-            PathClock::Seconds => index as f64 / self.frames_per_second,
+        let Stage { framed, key, file, sky } = &self.stage;
+        let look = |moved: &dyn Fn(&CameraParameters) -> Result<CameraParameters>| {
+            source.look(file, Framed::new(framed, key.as_ref()), sky.clone(), Some(moved))
         };
-        let on_path = self.motion.at(time);
-        let moved = |_: &CameraParameters| {
-            moved(&self.base, &on_path, self.center, self.distance)
-                .context("the camera cannot follow its path")
-        };
-        let look = source.look(&self.file, self.framed(), self.sky.clone(), Some(&moved));
-        let look = look.map_err(|failure| match failure {
-            Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
-            other => other,
-        })?;
-        Ok(look.without_view())
+        match &self.course {
+            Course::Turn { count, axis } => {
+                look(&|camera| turned(camera, *axis, number as f64 / *count as f64))
+            }
+            Course::Path { motion, clock, frames_per_second, base, center, distance } => {
+                let on_path = motion.at(match clock {
+                    PathClock::Frames => number as f64,
+                    PathClock::Seconds => index as f64 / frames_per_second,
+                });
+                let moved = |_: &CameraParameters| {
+                    moved(base, &on_path, *center, *distance)
+                        .context("the camera cannot follow its path")
+                };
+                let look = look(&moved).map_err(|failure| in_frame(failure, number))?;
+                Ok(look.without_view())
+            }
+        }
+    }
+}
+
+/// A failure of the job in one frame, with its number.
+pub(crate) fn in_frame(failure: Failure, number: usize) -> Failure {
+    match failure {
+        Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
+        other => other,
     }
 }
 
@@ -175,7 +185,67 @@ fn moved(
 /// The position of a camera that has one.
 fn eye_of(camera: &CameraParameters) -> Option<DVec3> {
     let document = Value::try_from(camera).ok()?;
-    let eye =
-        document.as_table()?.values().find_map(|table| super::turn::vector(table.get("eye")?))?;
+    let eye = document.as_table()?.values().find_map(|table| vector(table.get("eye")?))?;
     Some(eye)
+}
+
+/// The axis about which a camera turns, and a point on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    pub(crate) direction: DVec3,
+    pub(crate) center: DVec3,
+}
+
+/// Turns a camera that has its position by a part of a full turn, counter-clockwise seen from above.
+pub(crate) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result<CameraParameters> {
+    let turn = DQuat::from_axis_angle(axis.direction, TAU * part);
+    let mut document = Value::try_from(camera).context("this camera cannot be turned")?;
+    for table in document.as_table_mut().into_iter().flat_map(|kinds| kinds.iter_mut()) {
+        let Some(table) = table.1.as_table_mut() else { continue };
+        for (key, value) in table {
+            let is_point = matches!(key.as_str(), "eye" | "look_at" | "focus_on");
+            let is_direction = matches!(key.as_str(), "direction" | "up");
+            if let (true, Some(vector)) = (is_point || is_direction, vector(value)) {
+                let center = if is_point { axis.center } else { DVec3::ZERO };
+                let turned = center + turn * (vector - center);
+                *value = Value::from(turned.to_array().to_vec());
+            }
+        }
+    }
+    CameraParameters::deserialize(document).context("this camera cannot be turned")
+}
+
+/// The direction that is up for a camera that has its position.
+pub(crate) fn up_of(camera: &CameraParameters) -> Option<DVec3> {
+    let document = Value::try_from(camera).ok()?;
+    let up = document.as_table()?.values().find_map(|table| vector(table.get("up")?))?;
+    up.try_normalize()
+}
+
+pub(crate) fn vector(value: &Value) -> Option<DVec3> {
+    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_float).collect();
+    Some(DVec3::from(<[f64; 3]>::try_from(numbers).ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_moves_the_eye_from_z_to_x() {
+        let table =
+            "[pinhole]\neye = [1.0, 2.0, 5.0]\ndirection = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]";
+        let camera: CameraParameters = toml::from_str(table).unwrap();
+        let axis = Axis { direction: DVec3::Y, center: DVec3::new(1.0, 0.0, 0.0) };
+        let turned = turned(&camera, axis, 0.25).unwrap();
+        let turned = Value::try_from(turned).unwrap();
+        let near = |key: &str, expected: [f64; 3]| {
+            let found = vector(&turned["pinhole"][key]).unwrap();
+            assert!((found - DVec3::from(expected)).length() < 1e-12, "{key} {found}");
+        };
+        near("eye", [6.0, 2.0, 0.0]);
+        near("direction", [-1.0, 0.0, 0.0]);
+        near("up", [0.0, 1.0, 0.0]);
+        assert_eq!(up_of(&camera), Some(DVec3::Y));
+    }
 }

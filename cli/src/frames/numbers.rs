@@ -1,32 +1,38 @@
-//! Which pictures there are: the frames of a file, or the moments of a moving camera.
+//! Which pictures there are, the frames of a file or the moments of a moving camera, and what all of them are together.
 
-use super::moving::WantedPath;
-use super::notes::Notes;
-use super::range::FrameRange;
-use super::target::Target;
-use super::{Pictures, Wanted};
+use std::collections::HashSet;
+
 use crate::failure::Failure;
+use crate::frames::args::FrameRange;
+use crate::frames::moving::{WantedPath, in_frame};
+use crate::frames::target::Target;
+use crate::frames::union::{Union, scene_of};
+use crate::frames::{Pictures, Wanted};
+use crate::input::contents::Contents;
 use crate::input::{FoundFrames, Source};
+use crate::progress::{self, tell};
+use pinhole::color_by::{ColorBy, JoinedKeys};
+use pinhole::scene::{Scene, SceneError};
 
 /// The numbers of pictures.
 #[derive(Default)]
-pub(super) struct Numbers {
+pub(crate) struct Numbers {
     /// Those that the camera frames, if these are not all.
-    pub(super) framed: Option<Vec<usize>>,
-    pub(super) all: Vec<usize>,
+    pub(crate) framed: Option<Vec<usize>>,
+    pub(crate) all: Vec<usize>,
     /// Whether the pictures are those of one scene.
-    pub(super) is_still: bool,
+    pub(crate) is_still: bool,
 }
 
 impl Numbers {
     /// The place of a number among all pictures, from 0.
-    pub(super) fn index_of(&self, number: usize) -> usize {
+    pub(crate) fn index_of(&self, number: usize) -> usize {
         self.all.iter().position(|one| *one == number).unwrap_or(0)
     }
 }
 
 /// The path of the camera: that of a flag, or else that of the scene, unless other flags replace it.
-pub(super) fn wanted_path(
+pub(crate) fn wanted_path(
     source: &Source,
     wanted: &Wanted,
     notes: &mut Notes,
@@ -47,7 +53,7 @@ pub(super) fn wanted_path(
         notes.tell(replaced(&source.name(), by));
         return Ok(None);
     }
-    Ok(Some(WantedPath { path, file: source.path().to_path_buf() }))
+    Ok(Some(WantedPath { path, file: source.path.clone() }))
 }
 
 fn replaced(scene: &str, by: &str) -> String {
@@ -55,7 +61,7 @@ fn replaced(scene: &str, by: &str) -> String {
 }
 
 /// Finds which pictures there are.
-pub(super) fn numbers(
+pub(crate) fn numbers(
     source: &mut Source,
     wanted: &Wanted,
     path: Option<&WantedPath>,
@@ -122,4 +128,84 @@ fn open_frames(
 
 fn in_range(range: FrameRange, count: usize, flag: &str) -> Result<Vec<usize>, Failure> {
     range.of(count).map_err(|error| Failure::usage(format!("{flag}: {error}")))
+}
+
+/// What was found in all frames. It is kept in the folder of a job, so that no part reads all of them again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Overview {
+    /// Spheres that reach as far as those of all frames, each x, y, z, radius.
+    pub(crate) spheres: Vec<[f64; 4]>,
+    /// How many of them, at the end, were added to the data.
+    pub(crate) added: usize,
+    pub(crate) colors: JoinedKeys,
+    /// The frame whose kinds have colors that no flag asked for.
+    pub(crate) kinds_from: Option<usize>,
+    /// These colors, if they are known.
+    kinds: Option<ColorBy>,
+}
+
+impl Overview {
+    /// What was found before, without the colors by kind, which are read again from their frame.
+    pub(crate) fn stored(
+        spheres: Vec<[f64; 4]>,
+        added: usize,
+        colors: JoinedKeys,
+        kinds_from: Option<usize>,
+    ) -> Self {
+        Self { spheres, added, colors, kinds_from, kinds: None }
+    }
+
+    /// Reads all frames that the camera frames.
+    pub(crate) fn of(source: &mut Source, numbers: &Numbers) -> Result<Self, Failure> {
+        let framed = numbers.framed.as_ref().unwrap_or(&numbers.all);
+        let (mut union, mut overview) = (Union::default(), Self::default());
+        for (index, &number) in framed.iter().enumerate() {
+            progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
+            let contents = frame(source, number)?;
+            contents.color_key().into_iter().for_each(|key| overview.colors.add(key));
+            if let (None, Some(kinds)) = (&overview.kinds, &contents.found.kinds) {
+                (overview.kinds, overview.kinds_from) = (Some(kinds.clone()), Some(number));
+            }
+            union.add(&contents.scene);
+        }
+        (overview.spheres, overview.added) = union.into_spheres();
+        Ok(overview)
+    }
+
+    /// The colors by kind that no flag asked for.
+    pub(crate) fn kinds(&self, source: &mut Source) -> Result<Option<ColorBy>, Failure> {
+        match (&self.kinds, self.kinds_from) {
+            (None, Some(number)) => Ok(frame(source, number)?.found.kinds),
+            (kinds, _) => Ok(kinds.clone()),
+        }
+    }
+
+    /// The spheres as a scene, which the camera frames.
+    pub(crate) fn scene(&self) -> Result<Scene, SceneError> {
+        scene_of(&self.spheres, self.added)
+    }
+}
+
+/// Notes that were told, each of them once.
+pub(crate) struct Notes {
+    told: HashSet<String>,
+    quiet: bool,
+}
+
+impl Notes {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self { told: HashSet::new(), quiet }
+    }
+
+    pub(crate) fn tell(&mut self, note: String) {
+        if !self.quiet && !self.told.contains(&note) {
+            tell(format_args!("note: {note}"));
+            self.told.insert(note);
+        }
+    }
+}
+
+pub(crate) fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
+    source.options.frame = Some(number);
+    source.contents().map_err(|failure| in_frame(failure, number))
 }

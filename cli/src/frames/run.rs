@@ -4,25 +4,22 @@ use std::cell::RefCell;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use super::names::numbered;
-use super::notes::Notes;
-use super::numbers::{numbers, wanted_path};
-use super::overview::Overview;
-use super::series::{Prepared, Series, frames, still, turntable};
-use super::sink::{Message, STOPPED_BETWEEN, Sink};
-use super::status::Status;
-use super::{Pictures, Wanted};
 use crate::device::Opened;
 use crate::failure::Failure;
+use crate::frames::args::numbered;
+use crate::frames::movie::{Message, STOPPED_BETWEEN, Sink};
+use crate::frames::numbers::{Notes, Overview, numbers, wanted_path};
+use crate::frames::series::{Prepared, Series, frames, still, turntable};
+use crate::frames::{Pictures, Wanted};
 use crate::picture::Outputs;
+use crate::progress::{self, tell};
 use crate::render::{Job, render_joined};
 use crate::render_args::RenderArgs;
-use crate::speak::tell;
 use crate::stop_rule::StopRule;
+use crate::threads;
 use crate::views::Views;
-use crate::{progress, threads};
 use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
@@ -93,7 +90,7 @@ pub(crate) fn ready(
         }
     };
     let (prepared, opened) = device.open_beside(prepare)?;
-    let Prepared { mut input, rest } = prepared;
+    let Prepared { mut input, camera } = prepared;
     for number in &left {
         outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
     }
@@ -109,7 +106,7 @@ pub(crate) fn ready(
     let annotations =
         annotation.for_input(&input, |text| found.borrow_mut().push(text.to_string()))?;
     found.into_inner().into_iter().for_each(|note| notes.tell(note));
-    let outputs = outputs.with_annotations(annotations.clone());
+    let outputs = Outputs { annotations: annotations.clone(), ..outputs };
     let layers = outputs.layers(&encoding);
     let eyes = if input.eyes.is_some() { 2 } else { 1 };
     if stereo.is_some() && eyes == 1 {
@@ -120,7 +117,7 @@ pub(crate) fn ready(
     let size = [eyes * input.film.width(), input.film.height()];
     wanted.target.check(&encoding, size)?;
     let all = numbers.all.clone();
-    let series = Series { source, input, rest, numbers, left, notes };
+    let series = Series { source, input, camera, numbers, left, notes };
     let writing = Writing { encoding, annotations, outputs, layers, size, quiet };
     Ok(Some(Ready { series, opened, stop_rule, writing, overview, all }))
 }
@@ -185,7 +182,7 @@ impl Written<'_> {
     pub(crate) fn send(&mut self, number: usize, image: Image) -> bool {
         let is_sent = self.sender.send(Message::Picture { number, image: Box::new(image) }).is_ok();
         if is_sent {
-            self.status.count();
+            self.status.done += 1;
         }
         is_sent
     }
@@ -229,11 +226,49 @@ impl Writing {
         });
         progress::clear();
         match made {
-            Err(Failure::Stopped) if status.done() > 0 && wanted.target.is_files() => {
+            Err(Failure::Stopped) if status.done > 0 && wanted.target.is_files() => {
                 Err(Failure::StoppedBetween(STOPPED_BETWEEN))
             }
-            Ok(()) => Ok(status.done()),
+            Ok(()) => Ok(status.done),
             Err(failure) => Err(failure),
         }
+    }
+}
+
+/// Time between two lines where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(20);
+
+/// How many frames are done, and since when.
+pub(crate) struct Status {
+    total: usize,
+    done: usize,
+    started: Instant,
+    said: Instant,
+    quiet: bool,
+}
+
+impl Status {
+    pub(crate) fn new(total: usize, quiet: bool) -> Self {
+        let now = Instant::now();
+        Self { total, done: 0, started: now, said: now, quiet }
+    }
+
+    /// Shows that the next frame is at work.
+    pub(crate) fn show(&mut self) {
+        let text = self.text();
+        if !progress::frames(text.clone()) && !self.quiet && self.said.elapsed() >= PAUSE {
+            self.said = Instant::now();
+            tell(text);
+        }
+    }
+
+    fn text(&self) -> String {
+        let Self { total, done, started, .. } = self;
+        let frame = format!("frame {} of {total}", (done + 1).min(*total));
+        if *done == 0 {
+            return frame;
+        }
+        let each = started.elapsed().as_secs_f64() / *done as f64;
+        format!("{frame}, {each:.2} s each, {:.0} s left", each * (total - done) as f64)
     }
 }

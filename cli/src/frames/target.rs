@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::names::{Pattern, has_sign};
 use crate::failure::Failure;
+use crate::frames::args::{Pattern, has_sign};
 use crate::input::extension;
 use crate::output::check_writable;
 use pinhole::image::encoding::{Bits, Encoding};
@@ -12,10 +12,14 @@ use pinhole::image::encoding::{Bits, Encoding};
 /// Where several pictures go.
 #[derive(Debug)]
 pub(super) enum Target {
-    /// A file for each picture.
-    Files { path: PathBuf },
+    Files {
+        path: PathBuf,
+    },
     /// One file.
-    Movie { path: PathBuf, kind: Movie },
+    Movie {
+        path: PathBuf,
+        kind: Movie,
+    },
     /// YUV4MPEG2 on standard output.
     Raw,
 }
@@ -90,7 +94,6 @@ impl Target {
         }
     }
 
-    /// Whether there is a file for each picture.
     pub(super) fn is_files(&self) -> bool {
         matches!(self, Self::Files { .. })
     }

@@ -27,7 +27,6 @@ pub(super) struct Union {
 }
 
 impl Union {
-    /// Adds the spheres of a scene.
     pub(super) fn add(&mut self, scene: &Scene) {
         let origin = scene.origin();
         let (of_data, added) = scene.spheres().split_at(scene.len() - scene.added());

@@ -5,15 +5,13 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
 
-use super::source::{Source, default_color};
-use super::{extension, read};
 use crate::bricks::BrickFile;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
-use crate::input_format::{Format, data_format};
-use crate::kind_color;
-use crate::profile;
-use crate::progress;
+use crate::input::source::{Source, default_color};
+use crate::input::{extension, read};
+use crate::read_file::{Format, data_format};
+use crate::{profile, progress};
 use pinhole::added::Additions;
 use pinhole::camera::film::Film;
 use pinhole::color_by::{ColorBy, ColorKey, Mapping};
@@ -27,29 +25,27 @@ use pinhole::select::{Kept, Selection};
 pub(crate) struct Contents {
     pub(crate) file: Arc<SceneFile>,
     pub(crate) scene: Scene,
-    pub(super) found: Found,
+    pub(crate) found: Found,
 }
 
 /// What was found beside the spheres.
-pub(super) struct Found {
-    pub(super) notes: Vec<String>,
-    pub(super) files: Vec<PathBuf>,
-    /// Path of the image of the sky.
-    pub(super) sky_image: Option<PathBuf>,
-    pub(super) has_atoms: bool,
+#[derive(Default)]
+pub(crate) struct Found {
+    pub(crate) notes: Vec<String>,
+    pub(crate) files: Vec<PathBuf>,
+    pub(crate) sky_image: Option<PathBuf>,
+    pub(crate) has_atoms: bool,
     /// What colors mean, if a column gives them.
-    pub(super) color_key: Option<ColorKey>,
+    pub(crate) color_key: Option<ColorKey>,
     /// The colors by kind that no flag asked for.
-    pub(super) kinds: Option<ColorBy>,
+    pub(crate) kinds: Option<ColorBy>,
     /// Where the size of the picture comes from.
-    pub(super) size_from: String,
-    /// What a selection kept.
-    pub(super) kept: Option<Kept>,
-    /// The number of bonds, if bonds are drawn.
-    pub(super) bonds: Option<usize>,
+    pub(crate) size_from: String,
+    pub(crate) kept: Option<Kept>,
+    pub(crate) bonds: Option<usize>,
     /// The columns of the data that is drawn, if they were asked for.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
-    pub(super) columns: Vec<Column>,
+    pub(crate) columns: Vec<Column>,
 }
 
 /// The data of a scene file.
@@ -69,48 +65,17 @@ struct FoundData {
 }
 
 /// Where the data of a scene file is, and the options for reading it.
-pub(super) struct DataPlace {
-    pub(super) data: Data,
-    pub(super) path: PathBuf,
-    pub(super) format: &'static load::Format,
-    pub(super) options: DataOptions,
+pub(crate) struct DataPlace {
+    pub(crate) data: Data,
+    pub(crate) path: PathBuf,
+    pub(crate) format: &'static load::Format,
+    pub(crate) options: DataOptions,
 }
 
 impl Contents {
-    /// Adds a note for the user.
-    pub(super) fn add_note(&mut self, note: String) {
-        self.found.notes.push(note);
-    }
-
-    /// Returns the notes for the user, which are then empty.
-    pub(crate) fn take_notes(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.found.notes)
-    }
-
-    /// Whether the data names chemical elements.
-    pub(crate) fn has_atoms(&self) -> bool {
-        self.found.has_atoms
-    }
-
     /// What colors mean, if a column gives them.
     pub(crate) fn color_key(&self) -> Option<&ColorKey> {
         self.found.color_key.as_ref()
-    }
-
-    /// What colors mean, which may be changed.
-    pub(crate) fn color_key_mut(&mut self) -> Option<&mut ColorKey> {
-        self.found.color_key.as_mut()
-    }
-
-    /// Takes the columns of the data, if they were asked for; then they are empty.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn take_columns(&mut self) -> Vec<Column> {
-        std::mem::take(&mut self.found.columns)
-    }
-
-    /// The colors by kind that no flag asked for.
-    pub(crate) fn kinds(&self) -> Option<&ColorBy> {
-        self.found.kinds.as_ref()
     }
 }
 
@@ -136,10 +101,10 @@ impl Source {
         loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
         let mut notes = std::mem::take(&mut loaded.notes);
         notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
-        let kinds = self.kinds.clone().or_else(|| kind_color::by_kind(&loaded, &self.options));
+        let kinds = self.kinds.clone().or_else(|| by_kind(&loaded, &self.options));
         let kinds = kinds.filter(|_| mapping.color.is_none());
         if let Some(by) = &kinds {
-            notes.push(format!("{}: {}", path.display(), kind_color::note(by)));
+            notes.push(format!("{}: {}", path.display(), note(by)));
             let mut by = by.clone();
             self.color.join(&mut by);
             mapping.color = Some(by);
@@ -161,18 +126,16 @@ impl Source {
         }
         let file = self.scene_of_data()?;
         let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
-        let size_from = String::new();
         let found = Found {
             notes,
             files,
-            sky_image: None,
             has_atoms,
             color_key,
             kinds,
-            size_from,
             kept,
             bonds,
             columns,
+            ..Found::default()
         };
         self.prepared(file, scene, found)
     }
@@ -193,23 +156,13 @@ impl Source {
             )));
         }
         let scene = bricks.stand_in(self.color_of_all())?;
-        let found = Found {
-            notes: Vec::new(),
-            files: vec![self.path.clone()],
-            sky_image: None,
-            has_atoms: bricks.has_atoms(),
-            color_key: None,
-            kinds: None,
-            size_from: String::new(),
-            kept: None,
-            bonds: None,
-            columns: Vec::new(),
-        };
+        let (files, has_atoms) = (vec![self.path.clone()], bricks.has_atoms());
+        let found = Found { files, has_atoms, ..Found::default() };
         self.prepared(self.scene_of_data()?, scene, found)
     }
 
     /// The color of spheres without one.
-    pub(super) fn color_of_all(&self) -> LinearRgb {
+    pub(crate) fn color_of_all(&self) -> LinearRgb {
         self.options.color.unwrap_or_else(default_color)
     }
 
@@ -329,7 +282,6 @@ impl Source {
         }
     }
 
-    /// Reads the data of a scene file.
     fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
         let Some(DataPlace { data, path, format, options }) = self.data_place(file)? else {
             let flags = &self.options;
@@ -386,7 +338,7 @@ impl Source {
     }
 
     /// Finds the data of a scene file; `None` if it has none.
-    pub(super) fn data_place(&self, file: &SceneFile) -> Result<Option<DataPlace>, Failure> {
+    pub(crate) fn data_place(&self, file: &SceneFile) -> Result<Option<DataPlace>, Failure> {
         let flags = self.options.clone();
         let Some(data) = file.data() else { return Ok(None) };
         let path = self.resolve(&data.file);
@@ -422,4 +374,17 @@ impl Source {
     fn in_scene(&self) -> String {
         format!("{}: `data`", self.path.display())
     }
+}
+
+/// The column that colors the spheres of a data file where neither the file nor a flag does; see [`ColorBy::of_kinds`].
+pub(crate) fn by_kind(loaded: &Loaded, options: &DataOptions) -> Option<ColorBy> {
+    ColorBy::of_kinds(loaded).filter(|_| options.color.is_none())
+}
+
+/// The note about such colors.
+pub(crate) fn note(by: &ColorBy) -> String {
+    let column = &by.column;
+    format!(
+        "there are no colors; the spheres are colored by {column}; --color CSS gives all one color"
+    )
 }

@@ -1,10 +1,18 @@
-//! Reads the input of one picture.
+//! What an input has to say before it is read, such as its frames, its camera path and its name, and the input of one
+//! picture.
+
+use std::sync::{Arc, Mutex};
 
 use super::Input;
 use super::contents::Contents;
 use super::look::Framed;
-use super::source::Source;
+use super::source::{FoundFrames, OpenFrames, Source};
+use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
+use crate::read_file::Format;
+use pinhole::camera::CameraPath;
+use pinhole::glam::DVec3;
+use pinhole::load;
 
 impl Source {
     /// Reads the file, and the data files that it names.
@@ -20,7 +28,7 @@ impl Source {
 
     fn input(&self, mut contents: Contents) -> Result<Input, Failure> {
         if contents.file.camera_path().is_some() {
-            contents.add_note(format!(
+            contents.found.notes.push(format!(
                 "{}: `camera_path` is not used, because this is one picture; for all, write a movie such as -o movie.apng, \
                  or --frames : with -o f%04d.png",
                 self.path.display()
@@ -30,5 +38,60 @@ impl Source {
         let framed = Framed::new(&contents.scene, contents.color_key());
         let look = self.look(&contents.file, framed, sky, None)?;
         self.input_with(contents, look)
+    }
+
+    /// Finds the frames of the file, or of the data of a scene. `Ok(None)` means that there are none, because of the
+    /// format or the place of the data.
+    pub(crate) fn open_frames(&mut self) -> Result<Result<FoundFrames, String>, Failure> {
+        let (path, format, options) = match self.format {
+            Format::Bricks => return Ok(Err("files of bricks have one frame".to_owned())),
+            Format::Data(format) => (self.path.clone(), format, self.options.clone()),
+            Format::Scene => match self.data_place(&self.parsed(&self.text()?)?)? {
+                Some(place) => (place.path, place.format, place.options),
+                None => return Ok(Err("this scene has no `data`".to_owned())),
+            },
+        };
+        if !format.has_frames() {
+            let with_frames = load::Format::extensions_of(load::Format::has_frames);
+            return Ok(Err(format!(
+                "files of the format {} have no frames; those of {with_frames} have",
+                format.name
+            )));
+        }
+        if path.exists() && !path.is_file() || path.as_os_str() == "-" {
+            return Ok(Err("frames are read one by one, which needs a regular file".to_owned()));
+        }
+        let options = DataOptions { frame: None, ..options };
+        let file = data::trajectory(&path, format, &options).map_err(as_usage)?;
+        let count = file.len();
+        let note = file.problem().map(|problem| {
+            format!("{}: after the {count} complete frames: {problem}", path.display())
+        });
+        self.frames = Some(Arc::new(OpenFrames { path, file: Mutex::new(file) }));
+        Ok(Ok(FoundFrames { count, note }))
+    }
+
+    /// Whether a flag chooses one frame of the data.
+    pub(crate) fn has_frame(&self) -> bool {
+        self.options.frame.is_some()
+    }
+
+    /// The path along which the camera of a scene file moves, and whether flags replace that camera.
+    pub(crate) fn camera_path(&self) -> Result<Option<(CameraPath, bool)>, Failure> {
+        if matches!(self.format, Format::Data(_) | Format::Bricks) {
+            return Ok(None);
+        }
+        let file = self.parsed(&self.text()?)?;
+        Ok(file.camera_path().map(|path| (path.clone(), self.has_camera_of_flags())))
+    }
+
+    /// The path, for messages.
+    pub(crate) fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    /// The direction that is up for the flags; `None` if the camera is that of a scene file.
+    pub(crate) fn up(&self) -> Option<DVec3> {
+        self.has_camera_of_flags().then(|| self.camera.up().unwrap_or_else(|| self.default_up()))
     }
 }

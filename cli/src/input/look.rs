@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use anyhow::{Context, Error, Result};
 
-use super::contents::{Contents, Found};
-use super::source::Source;
 use super::{Input, read};
 use crate::failure::Failure;
-use crate::input_format::Format;
+use crate::input::contents::{Contents, Found};
+use crate::input::source::Source;
 use crate::progress;
+use crate::read_file::Format;
 use crate::report::Report;
 use pinhole::camera::{Camera, CameraParameters, Viewpoint};
 use pinhole::color_by::ColorKey;

@@ -1,24 +1,24 @@
 //! An input file with its flags, before it is read.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use super::open_frames::OpenFrames;
+use anyhow::Result;
+
 use crate::annotation::AnnotationFlags;
 #[cfg(feature = "gpu")]
 use crate::args::BenchArgs;
 use crate::args::{InputArgs, ViewArgs};
 use crate::bricks::BrickFile;
 use crate::camera::CameraFlags;
-use crate::color_flags::ColorFlags;
-use crate::data::DataOptions;
+use crate::data::{self, DataOptions};
+use crate::data_flags::{ColorFlags, StructureFlags};
 use crate::failure::Failure;
-use crate::input_format::{Format, data_format, parse_size};
 use crate::light::LightFlags;
-use crate::structure_flags::StructureFlags;
+use crate::read_file::{Format, data_format, parse_size};
 use pinhole::color_by::ColorBy;
 use pinhole::image::color::LinearRgb;
-use pinhole::load;
+use pinhole::load::{self, Loaded, Trajectory};
 use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::style::Style;
 
@@ -45,25 +45,25 @@ pub(crate) fn check_flags(format: Format, options: &DataOptions) -> Result<(), F
 
 /// An input file with its flags, checked as far as is possible before the file is read.
 pub(crate) struct Source {
-    pub(super) path: PathBuf,
-    pub(super) format: Format,
-    pub(super) size: Option<(u32, u32)>,
-    pub(super) options: DataOptions,
-    pub(super) camera: CameraFlags,
-    pub(super) light: LightFlags,
+    pub(crate) path: PathBuf,
+    pub(crate) format: Format,
+    pub(crate) size: Option<(u32, u32)>,
+    pub(crate) options: DataOptions,
+    pub(crate) camera: CameraFlags,
+    pub(crate) light: LightFlags,
     /// The style of data files.
-    pub(super) style: Style,
-    pub(super) color: ColorFlags,
-    pub(super) structure: StructureFlags,
-    pub(super) annotation: AnnotationFlags,
+    pub(crate) style: Style,
+    pub(crate) color: ColorFlags,
+    pub(crate) structure: StructureFlags,
+    pub(crate) annotation: AnnotationFlags,
     /// The colors by kind that all frames of a movie have, although no flag asks for them.
-    pub(super) kinds: Option<ColorBy>,
+    pub(crate) kinds: Option<ColorBy>,
     /// The open file, if several of its frames are read.
-    pub(super) frames: Option<Arc<OpenFrames>>,
+    pub(crate) frames: Option<Arc<OpenFrames>>,
     /// Whether the columns of the data are kept, for the viewer.
-    pub(super) keeps_columns: bool,
+    pub(crate) keeps_columns: bool,
     /// The file of bricks, if the input is one.
-    pub(super) bricks: Option<Arc<BrickFile>>,
+    pub(crate) bricks: Option<Arc<BrickFile>>,
 }
 
 impl Source {
@@ -103,21 +103,6 @@ impl Source {
             None => light.style_of_data(),
         };
         Self { light, style, ..self }
-    }
-
-    /// Returns this source with flags for colors from data.
-    pub(crate) fn with_color(self, color: ColorFlags) -> Self {
-        Self { color, ..self }
-    }
-
-    /// Returns this source with flags that select spheres and add others.
-    pub(crate) fn with_structure(self, structure: StructureFlags) -> Self {
-        Self { structure, ..self }
-    }
-
-    /// Returns this source with flags for annotations, for which the camera leaves room.
-    pub(crate) fn with_annotation(self, annotation: AnnotationFlags) -> Self {
-        Self { annotation, ..self }
     }
 
     /// Makes a source from a scene file without flags.
@@ -175,7 +160,7 @@ impl Source {
     }
 
     /// Returns the data with its keys, over which flags take precedence.
-    pub(super) fn data(
+    pub(crate) fn data(
         &self,
         file: &SceneFile,
         kinds: Option<ColorBy>,
@@ -212,7 +197,6 @@ impl Source {
         Ok(Some(data))
     }
 
-    /// The format of a data file.
     pub(crate) fn data_format(&self) -> Option<&'static load::Format> {
         match self.format {
             Format::Data(format) => Some(format),
@@ -232,11 +216,32 @@ impl Source {
     }
 
     /// Resolves a path that is relative to the folder of the scene file.
-    pub(super) fn resolve(&self, path: &str) -> PathBuf {
+    pub(crate) fn resolve(&self, path: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 }
 
 pub(crate) fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
+}
+
+/// A file whose frames were found.
+pub(crate) struct OpenFrames {
+    pub(crate) path: PathBuf,
+    pub(crate) file: Mutex<Trajectory>,
+}
+
+/// What was found about the frames of a file.
+pub(crate) struct FoundFrames {
+    pub(crate) count: usize,
+    /// What is wrong after the last frame, for the user.
+    pub(crate) note: Option<String>,
+}
+
+impl OpenFrames {
+    /// Reads the frame that the options name, or else the first.
+    pub(crate) fn read(&self, options: &DataOptions) -> Result<Loaded> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        data::read_frame_of(&self.path, &mut file, options)
+    }
 }

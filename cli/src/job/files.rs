@@ -38,7 +38,6 @@ pub(super) fn names(folder: &Path) -> Vec<String> {
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
 }
 
-/// Removes a file, if it is there.
 pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
 }

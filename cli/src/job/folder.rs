@@ -4,18 +4,19 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, anyhow};
-use pinhole::color_by::JoinedKeys;
 use rayon::prelude::*;
 
 use super::files;
-use super::manifest::{Manifest, NAME, StoredOverview};
 use super::part_file::{self, Header, Problem};
 use crate::failure::Failure;
 use crate::frames::Overview;
+use crate::job::manifest::{Manifest, NAME, StoredOverview};
+use pinhole::color_by::JoinedKeys;
 
 /// A job and where it is.
 pub(super) struct Folder {
-    path: PathBuf,
+    /// Does not depend on the current folder.
+    pub(super) path: PathBuf,
     pub(super) manifest: Manifest,
 }
 
@@ -35,16 +36,6 @@ impl Folder {
         Ok(Self { path: absolute, manifest })
     }
 
-    pub(super) fn new(path: PathBuf, manifest: Manifest) -> Self {
-        Self { path, manifest }
-    }
-
-    /// The path, which does not depend on the current folder.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The path of a part.
     pub(super) fn part(&self, unit: usize) -> PathBuf {
         self.path.join(PARTS).join(format!("{unit:06}.part"))
     }

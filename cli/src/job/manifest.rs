@@ -1,4 +1,4 @@
-//! What describes a job: the file `job.json`.
+//! What describes a job, the file `job.json`, and its units: which tile of which picture an index means.
 
 use std::path::Path;
 
@@ -6,70 +6,68 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::files::{self, InputFile};
-use super::units::{Rectangle, tile};
+use crate::failure::Failure;
+use crate::job::files::{self, InputFile};
 use pinhole::image::{Layer, LayerSet};
 
 /// The name of the file in the folder of a job.
-pub(super) const NAME: &str = "job.json";
+pub(crate) const NAME: &str = "job.json";
 
 /// The version of the format. Another one is refused, because bytes depend on it.
 const FORMAT: u32 = 1;
 
 /// This version of the program.
-pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The most units of a job. Each is a file, and all of them are looked at together.
-pub(super) const MOST_UNITS: usize = 1_000_000;
+pub(crate) const MOST_UNITS: usize = 1_000_000;
 
 /// A job. Each unit of work is a tile of a picture, or a group of bricks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Manifest {
+pub(crate) struct Manifest {
     /// The version of this format.
-    pub(super) pinhole_job: u32,
-    /// The version of the program.
-    pub(super) version: String,
+    pub(crate) pinhole_job: u32,
+    pub(crate) version: String,
     /// The digest of this file with an empty text here.
-    pub(super) sha256: String,
+    pub(crate) sha256: String,
     /// What a unit is.
-    pub(super) unit: UnitKind,
+    pub(crate) unit: UnitKind,
     /// How many units there are.
-    pub(super) units: usize,
+    pub(crate) units: usize,
     /// The arguments of the program that split the job.
-    pub(super) arguments: Vec<String>,
+    pub(crate) arguments: Vec<String>,
     /// The folder in which relative paths begin.
-    pub(super) folder: String,
+    pub(crate) folder: String,
     /// The files that were read, the scene or the data first.
-    pub(super) files: Vec<InputFile>,
+    pub(crate) files: Vec<InputFile>,
     /// The numbers of the pictures; `None` for a single picture, which has no number.
-    pub(super) pictures: Option<Vec<usize>>,
+    pub(crate) pictures: Option<Vec<usize>>,
     /// Width and height of the picture of one eye.
-    pub(super) size: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// 2 for a camera with two eyes.
-    pub(super) eyes: u32,
+    pub(crate) eyes: u32,
     /// The bricks of each unit that is a group of them: the first, and the one after the last. Empty for tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) groups: Vec<[usize; 2]>,
+    pub(crate) groups: Vec<[usize; 2]>,
     /// Columns and rows of tiles.
-    pub(super) tiles: [u32; 2],
+    pub(crate) tiles: [u32; 2],
     /// The layers of parts, which may be more than those of the pictures: outlines and denoising are guided by them.
-    pub(super) layers: Vec<String>,
-    /// The layers that can be merged.
-    pub(super) merged_layers: Vec<String>,
-    pub(super) integrator: String,
-    pub(super) samples: u32,
-    pub(super) seed: u32,
+    pub(crate) layers: Vec<String>,
+    pub(crate) merged_layers: Vec<String>,
+    pub(crate) integrator: String,
+    pub(crate) samples: u32,
+    pub(crate) seed: u32,
     /// Whether noise is removed when parts are merged.
-    pub(super) denoised: bool,
+    pub(crate) denoised: bool,
     /// What all frames are together.
-    pub(super) overview: Option<StoredOverview>,
+    pub(crate) overview: Option<StoredOverview>,
 }
 
 /// The kinds of units that this version knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum UnitKind {
+pub(crate) enum UnitKind {
     /// A tile of a picture.
     Tile,
     /// Some bricks, of which every part has what is nearest in all pixels.
@@ -79,22 +77,22 @@ pub(super) enum UnitKind {
 /// What [`Overview`](crate::frames::Overview) holds; its numbers are in the file `overview.bin`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct StoredOverview {
+pub(crate) struct StoredOverview {
     /// The digest of the file.
-    pub(super) sha256: String,
+    pub(crate) sha256: String,
     /// How many spheres there are, and how many of them were added to the data.
-    pub(super) spheres: usize,
-    pub(super) added: usize,
+    pub(crate) spheres: usize,
+    pub(crate) added: usize,
     /// Whether two numbers before the spheres are the range of the colors.
-    pub(super) has_range: bool,
-    pub(super) categories: Vec<String>,
-    pub(super) missing: Option<[u8; 3]>,
-    pub(super) kinds_from: Option<usize>,
+    pub(crate) has_range: bool,
+    pub(crate) categories: Vec<String>,
+    pub(crate) missing: Option<[u8; 3]>,
+    pub(crate) kinds_from: Option<usize>,
 }
 
 impl Manifest {
     /// The text of the file, with the digest.
-    pub(super) fn sealed(mut self) -> Result<(Self, String)> {
+    pub(crate) fn sealed(mut self) -> Result<(Self, String)> {
         self.sha256 = self.digest()?;
         let text = serde_json::to_string_pretty(&self)? + "\n";
         Ok((self, text))
@@ -106,7 +104,7 @@ impl Manifest {
     }
 
     /// Reads the file of a job.
-    pub(super) fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
         let text = files::read_text(path)
             .with_context(|| format!("{}: this is not the folder of a job", place()))?;
@@ -150,12 +148,11 @@ impl Manifest {
     }
 
     /// Whether units are groups of bricks.
-    pub(super) fn is_by_depth(&self) -> bool {
+    pub(crate) fn is_by_depth(&self) -> bool {
         self.unit == UnitKind::Depth
     }
 
-    /// How many units a picture has.
-    pub(super) fn units_of_picture(&self) -> usize {
+    pub(crate) fn units_of_picture(&self) -> usize {
         if self.is_by_depth() {
             return self.units;
         }
@@ -163,7 +160,7 @@ impl Manifest {
     }
 
     /// The place among all pictures, and the tile, of a unit.
-    pub(super) fn unit(&self, index: usize) -> (usize, Rectangle) {
+    pub(crate) fn unit(&self, index: usize) -> (usize, Rectangle) {
         if self.is_by_depth() {
             return (0, ([0, 0], self.size));
         }
@@ -172,29 +169,159 @@ impl Manifest {
     }
 
     /// The number of the picture of a unit; `None` for a single picture.
-    pub(super) fn number(&self, index: usize) -> Option<usize> {
+    pub(crate) fn number(&self, index: usize) -> Option<usize> {
         self.pictures.as_ref()?.get(index / self.units_of_picture()).copied()
     }
 
-    /// The layers of parts.
-    pub(super) fn layer_set(&self) -> LayerSet {
+    pub(crate) fn layer_set(&self) -> LayerSet {
         layer_set(&self.layers)
     }
 }
 
 /// How many units tiles of pictures are; `None` if that is more than [`MOST_UNITS`].
-pub(super) fn units_of_tiles(pictures: usize, tiles: [u32; 2]) -> Option<usize> {
+pub(crate) fn units_of_tiles(pictures: usize, tiles: [u32; 2]) -> Option<usize> {
     let [columns, rows] = tiles.map(|side| side as usize);
     let units = pictures.checked_mul(columns * rows)?;
     (units <= MOST_UNITS).then_some(units)
 }
 
 /// The layers with these names; others are left out.
-pub(super) fn layer_set(names: &[String]) -> LayerSet {
+pub(crate) fn layer_set(names: &[String]) -> LayerSet {
     names.iter().filter_map(|name| name.parse::<Layer>().ok()).collect()
 }
 
-/// The names of layers.
-pub(super) fn layer_names(layers: LayerSet) -> Vec<String> {
+pub(crate) fn layer_names(layers: LayerSet) -> Vec<String> {
     layers.iter().map(|layer| layer.name().to_owned()).collect()
+}
+
+/// A rectangle of a picture: column and row of the first pixel, and width and height.
+pub(crate) type Rectangle = ([u32; 2], [u32; 2]);
+
+/// The tile with a number, counted row by row, of a picture of `size` pixels that is divided into columns and rows.
+pub(crate) fn tile(size: [u32; 2], tiles: [u32; 2], number: usize) -> Rectangle {
+    let columns = tiles[0] as usize;
+    let place = [number % columns, number / columns];
+    let edge = |axis: usize, at: usize| {
+        // At most the side, which fits.
+        (u64::from(size[axis]) * at as u64 / u64::from(tiles[axis])) as u32
+    };
+    let origin = [0, 1].map(|axis| edge(axis, place[axis]));
+    let end = [0, 1].map(|axis| edge(axis, place[axis] + 1));
+    (origin, [end[0] - origin[0], end[1] - origin[1]])
+}
+
+/// Reads columns and rows of tiles, such as `4x4`, for a picture of `size` pixels.
+pub(crate) fn parse_tiles(text: &str, size: [u32; 2]) -> Result<[u32; 2], Failure> {
+    let sides = text.split_once('x').and_then(|(columns, rows)| {
+        Some([columns.trim().parse::<u32>().ok()?, rows.trim().parse::<u32>().ok()?])
+    });
+    let Some(tiles) = sides.filter(|sides| !sides.contains(&0)) else {
+        return Err(Failure::usage(format!(
+            "--tiles {text}: write columns and rows that are at least 1, such as 4x4"
+        )));
+    };
+    if tiles[0] > size[0] || tiles[1] > size[1] {
+        return Err(Failure::usage(format!(
+            "--tiles {text}: a picture of {}x{} pixels has no room for so many tiles; choose fewer",
+            size[0], size[1]
+        )));
+    }
+    Ok(tiles)
+}
+
+/// Reads indices and ranges of indices, such as `0-15,20`, of which a job has `count`.
+pub(crate) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure> {
+    let wrong = || {
+        Failure::usage(format!(
+            "INDEX {text}: write an index, or indices and ranges such as 0-15,20"
+        ))
+    };
+    let mut all = Vec::new();
+    for range in text.split(',') {
+        let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
+        let (first, last) = match range.split_once('-') {
+            Some((first, last)) => (number(first)?, number(last)?),
+            None => (number(range)?, number(range)?),
+        };
+        if last < first {
+            return Err(wrong());
+        }
+        if last >= count {
+            return Err(Failure::usage(format!(
+                "INDEX {last}: this job has {count} unit{}, 0 to {}",
+                if count == 1 { "" } else { "s" },
+                count.saturating_sub(1)
+            )));
+        }
+        all.extend(first..=last);
+    }
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
+}
+
+/// Writes indices, which ascend, as `sbatch --array` and [`parse_list`] read them.
+pub(crate) fn ranges(indices: &[usize]) -> String {
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for &index in indices {
+        match ranges.last_mut() {
+            Some((_, last)) if *last + 1 == index => *last = index,
+            _ => ranges.push((index, index)),
+        }
+    }
+    let words = ranges.into_iter().map(|(first, last)| match last - first {
+        0 => first.to_string(),
+        _ => format!("{first}-{last}"),
+    });
+    words.collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        for (size, tiles) in
+            [([7, 5], [3, 2]), ([1, 1], [1, 1]), ([100, 3], [100, 3]), ([64, 48], [4, 4])]
+        {
+            let mut covered = vec![0; (size[0] * size[1]) as usize];
+            for number in 0..(tiles[0] * tiles[1]) as usize {
+                let ([x, y], [width, height]) = tile(size, tiles, number);
+                assert!(width > 0 && height > 0);
+                for row in y..y + height {
+                    (x..x + width)
+                        .for_each(|column| covered[(row * size[0] + column) as usize] += 1);
+                }
+            }
+            assert!(covered.iter().all(|times| *times == 1), "{size:?} {tiles:?}");
+        }
+        let largest = 1 << 23;
+        assert_eq!(tile([largest; 2], [largest; 2], 0), ([0, 0], [1, 1]));
+    }
+
+    #[test]
+    fn lists_are_read_as_they_are_written() {
+        for list in [vec![], vec![0], vec![0, 1, 2, 5, 7, 8], (0..1000).collect::<Vec<_>>()] {
+            let text = ranges(&list);
+            if !list.is_empty() {
+                assert_eq!(parse_list(&text, 1000).unwrap(), list, "{text}");
+            }
+        }
+        assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2,5,7-8");
+        assert_eq!(parse_list("3, 1-2 ,1", 4).unwrap(), [1, 2, 3]);
+        for wrong in
+            ["", "a", "-1", "2-1", "1,", "1-", "4", "0-4", "1:2", "99999999999999999999999"]
+        {
+            assert!(parse_list(wrong, 4).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn tiles_have_columns_and_rows() {
+        assert_eq!(parse_tiles("4x3", [4, 3]).unwrap(), [4, 3]);
+        for wrong in ["", "4", "4x", "0x1", "1x0", "-1x1", "5x1", "1x4", "4x3x2"] {
+            assert!(parse_tiles(wrong, [4, 3]).is_err(), "{wrong}");
+        }
+    }
 }

@@ -6,20 +6,18 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 
-use super::args::{MergeArgs, SplitArgs};
 use super::files;
 use super::folder::{Folder, PARTS};
-use super::manifest::layer_set;
 use super::part::described;
 use super::part_file::{self, Header, Pictures, Problem};
-use super::recipe::{Recipe, check_same, split_args};
-use super::units::ranges;
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, is_movie, ready};
-use crate::picture::PictureFormat;
+use crate::job::args::{MergeArgs, Recipe, SplitArgs, check_same, split_args};
+use crate::job::manifest::{layer_set, ranges};
+use crate::picture::{Outputs, PictureFormat};
+use crate::progress::tell;
 use crate::render::finish_joined;
-use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
 use pinhole::image::{Image, LayerSet};
@@ -55,7 +53,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
     check_kind(&folder, &args.output)?;
     folder.enter()?;
     let recipe = Recipe::new(render)?;
-    if exr != (recipe.job.outputs.format() == PictureFormat::Exr) {
+    if exr != (recipe.job.outputs.format == PictureFormat::Exr) {
         let (made, other) = if exr { ("EXR", "without --exr") } else { ("PNG", "with --exr") };
         return Err(Failure::usage(format!(
             "{}: this job was split for {made} pictures; for others split it {other}",
@@ -98,7 +96,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         devices.check(&opened)?;
         let (encoding, annotations) = job.finish(&mut input, quietly)?;
         check_same(&folder.manifest, None, &input)?;
-        let outputs = job.outputs.with_annotations(annotations);
+        let outputs = Outputs { annotations, ..job.outputs };
         outputs.check_not_inputs(&input.files)?;
         let layers = outputs.layers(&encoding);
         check_layers(folder, layers)?;
@@ -149,7 +147,7 @@ fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, Failure> {
     let end = Instant::now() + wait;
     loop {
         // Reading the folder makes a network file system look for new files.
-        let _ = files::names(&folder.path().join(PARTS));
+        let _ = files::names(&folder.path.join(PARTS));
         let mut seen = folder.glance().into_iter();
         if Instant::now() >= end || !seen.any(|found| matches!(found, Err(Problem::Missing))) {
             break;
@@ -173,7 +171,7 @@ fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Fail
         let words = problem.words();
         return Err(Failure::Job(anyhow!(
             "{}: parts {parts} are {words}; merge again where they can be read",
-            folder.path().display()
+            folder.path.display()
         )));
     }
     let problems = [Problem::Missing, Problem::Damaged, Problem::Foreign];
@@ -189,7 +187,7 @@ fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Fail
     let bad: Vec<usize> = (0..found.len()).filter(|unit| found[*unit].is_err()).collect();
     Err(Failure::Job(anyhow!(
         "{}: {} of {} parts cannot be merged: {}; render them again with --array={}",
-        folder.path().display(),
+        folder.path.display(),
         bad.len(),
         found.len(),
         words.join(", "),

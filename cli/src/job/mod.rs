@@ -4,6 +4,15 @@
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
+use anyhow::Context;
+
+use self::folder::Folder;
+use super::failure::Failure;
+use super::threads;
+pub(super) use crate::job::args::JobArgs;
+use crate::job::args::{JobCommand, StatusArgs};
+use crate::progress::answer;
+
 mod args;
 mod files;
 mod folder;
@@ -11,18 +20,7 @@ mod manifest;
 mod merge;
 mod part;
 mod part_file;
-mod recipe;
 mod split;
-mod units;
-
-use anyhow::Context;
-
-pub(super) use self::args::JobArgs;
-use self::args::{JobCommand, StatusArgs};
-use self::folder::Folder;
-use super::failure::Failure;
-use super::speak::answer;
-use super::threads;
 
 pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
     match &args.command {

@@ -6,22 +6,19 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
-use super::args::PartArgs;
 use super::folder::{Folder, PARTS};
-use super::manifest::VERSION;
 use super::part_file::{self, Header, Pictures, payload};
-use super::recipe::{Recipe, check_same};
-use super::units::parse_list;
 use crate::bricks::nearest_of;
-use crate::deadline::Deadline;
 use crate::device::Opened;
 use crate::failure::Failure;
 use crate::frames::{Known, Ready, ready};
 use crate::input::Input;
-use crate::interrupt;
+use crate::interrupt::{self, Deadline};
+use crate::job::args::{PartArgs, Recipe, check_same};
+use crate::job::manifest::{VERSION, parse_list};
 use crate::output::{name_all, unnamed_with};
+use crate::progress::tell;
 use crate::render::{check_device, render_part};
-use crate::speak::tell;
 use crate::threads;
 use crate::views::Views;
 
@@ -56,7 +53,7 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     }
     #[cfg(feature = "gpu")]
     if let Some(limit) = limit {
-        crate::deadline::limit_opening(limit);
+        crate::interrupt::limit_opening(limit);
     }
     threads::start()?;
     folder.enter()?;
@@ -76,7 +73,7 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
 impl Work<'_> {
     fn run(&self) -> Result<(), Failure> {
         let manifest = &self.folder.manifest;
-        let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path().join(PARTS), true)?;
+        let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path.join(PARTS), true)?;
         let Recipe { args, wanted, job } = recipe;
         let note = |note: &dyn std::fmt::Display| {
             if !self.quiet {
@@ -105,7 +102,6 @@ impl Work<'_> {
         })
     }
 
-    /// Renders a unit and writes it.
     fn render(&self, unit: usize, input: &mut Input, opened: &Opened) -> Result<(), Failure> {
         let unit_did_not_end = format!("unit {unit} did not end");
         let _deadline = self.limit.map(|limit| Deadline::new(limit, unit_did_not_end));

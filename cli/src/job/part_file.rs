@@ -8,14 +8,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::files;
-use super::manifest::{Manifest, VERSION};
+use crate::job::manifest::{Manifest, VERSION};
 use crate::views::Views;
 use pinhole::image::Image;
 use pinhole::render::Nearest;
 
 const START: &[u8] = b"pinhole part 1\n";
 
-/// The length of a digest.
 const DIGEST: usize = 32;
 
 /// No header is longer.
@@ -25,9 +24,7 @@ const LONGEST_HEADER: u64 = 1 << 16;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
-    /// The version of the program.
     pub(super) version: String,
-    /// The digest of the job.
     pub(super) job: String,
     pub(super) unit: usize,
     /// What rendered: an adapter with its driver, or the CPU.
@@ -84,13 +81,11 @@ pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
 
 /// What a part shows, for each eye.
 pub(super) enum Pictures {
-    /// A tile.
     Tile(Views<Image>),
     /// The whole film, with what is nearest of some bricks.
     Depth(Views<Nearest>),
 }
 
-/// Writes a part.
 pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) -> io::Result<()> {
     let mut digest = Sha256::new();
     let text = serde_json::to_vec(header)?;

@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 
-use super::args::SplitArgs;
 use super::files::{self, InputFile};
 use super::folder::{Folder, OVERVIEW, PARTS, packed};
-use super::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, units_of_tiles};
-use super::recipe::Recipe;
-use super::units::parse_tiles;
 use crate::args::Stereo;
 use crate::failure::Failure;
 use crate::frames::{Known, Overview, Ready, ready};
 use crate::input::Input;
+use crate::job::args::{Recipe, SplitArgs};
+use crate::job::manifest::{
+    MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, parse_tiles, units_of_tiles,
+};
 use crate::output::{name_all, unnamed};
-use crate::speak::tell;
-use crate::{bricks, progress, threads};
+use crate::progress::{self, tell};
+use crate::{bricks, threads};
 use pinhole::image::{Layer, LayerSet};
 
 /// What is known of the pictures when the first was read.
@@ -89,7 +89,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
     };
     let (manifest, text) = manifest.sealed()?;
-    let made = Folder::new(job.clone(), manifest);
+    let made = Folder { path: job.clone(), manifest };
     create(&made, &text, stored.as_ref().map(|(_, bytes)| &bytes[..]))?;
     progress::clear();
     if !args.render.report.quiet {
@@ -209,7 +209,7 @@ fn groups(
 /// The files that parts read, with their digests.
 fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failure> {
     let mut paths: Vec<&Path> = input.files.iter().map(PathBuf::as_path).collect();
-    paths.extend(args.render.frames.camera_path());
+    paths.extend(args.render.frames.camera_path.as_deref());
     let mut files: Vec<InputFile> = Vec::new();
     for path in paths {
         let cannot = || format!("{}: cannot be read", path.display());
@@ -225,7 +225,7 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
 
 /// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
 fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Failure> {
-    let path = folder.path();
+    let path = &folder.path;
     let cannot = || format!("{}: cannot be created", path.display());
     files::create_folder(path).with_context(cannot)?;
     let fill = || {
@@ -251,10 +251,10 @@ fn said(folder: &Folder) {
     };
     tell(format_args!(
         "{}: {} unit{}, {what}; render them with `pinhole job part {} 0-{}`",
-        folder.path().display(),
+        folder.path.display(),
         manifest.units,
         plural(manifest.units),
-        folder.path().display(),
+        folder.path.display(),
         manifest.units.saturating_sub(1)
     ));
 }

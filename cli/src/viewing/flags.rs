@@ -14,8 +14,8 @@ use crate::commands::Arguments;
 use crate::explain::{explain, one_message};
 use crate::render::Job;
 use crate::render_args::{RenderArgs, RenderCommand, RenderLine};
-use crate::render_command;
-use crate::{annotation, camera, light};
+use crate::text::in_quotes;
+use crate::{annotation, camera, light, render_command};
 
 /// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
 ///
@@ -43,9 +43,6 @@ enum Decides {
 impl RenderFlags {
     /// Parses the arguments of this process, which are those of `pinhole view`. Prints the help, the version, or what is
     /// wrong, as `pinhole` does.
-    ///
-    /// # Errors
-    /// The exit code, if there is nothing to show.
     pub fn of_process() -> Result<Self, ExitCode> {
         let words = std::env::args_os().skip(1);
         let mut arguments: Vec<String> = words.map(|word| word.to_string_lossy().into()).collect();
@@ -60,9 +57,6 @@ impl RenderFlags {
     }
 
     /// Parses words: a file and flags, as they stand behind `pinhole view`.
-    ///
-    /// # Errors
-    /// If there is no file, or a flag that `pinhole view` does not have, or one with a wrong value.
     pub fn parse<W: Into<OsString>>(words: impl IntoIterator<Item = W>) -> Result<Self, ViewError> {
         Self::matched(words.into_iter().map(Into::into)).map_err(|error| match error {
             Refusal::Clap(error) => of_clap(&error),
@@ -113,13 +107,11 @@ impl RenderFlags {
     }
 
     /// The path of the file.
-    #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
     /// The value of a flag, which is named without dashes; empty for a flag without a value. `None` if it is not there.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<&str> {
         self.flags.iter().find(|(other, _)| other == name).map(|(_, value)| value.as_str())
     }
@@ -143,7 +135,6 @@ impl RenderFlags {
     }
 
     /// Whether the same spheres in the same colours belong to both, so that only camera, light or film differ.
-    #[must_use]
     pub fn has_data_of(&self, other: &Self) -> bool {
         // Scene files give light to spheres, too.
         let is_scene = self.path.to_ascii_lowercase().ends_with(".toml");
@@ -168,7 +159,6 @@ impl RenderFlags {
     }
 
     /// The words behind `pinhole render`, without the output.
-    #[must_use]
     pub fn words(&self) -> Vec<String> {
         let path =
             if self.path.starts_with('-') { format!("./{}", self.path) } else { self.path.clone() };
@@ -180,17 +170,14 @@ impl RenderFlags {
     }
 
     /// The command that renders what is seen, for a shell.
-    #[must_use]
     pub fn command_line(&self, output: &str) -> String {
         let end = ["-o".to_owned(), output.to_owned()];
-        let words: Vec<String> = self.words().iter().chain(&end).map(|word| quoted(word)).collect();
+        let words: Vec<String> =
+            self.words().iter().chain(&end).map(|word| in_quotes(word)).collect();
         format!("pinhole render {}", words.join(" "))
     }
 
     /// Renders and writes the picture, as `pinhole render` does with the same flags.
-    ///
-    /// # Errors
-    /// The errors of `pinhole render`.
     pub fn save(&self, output: &str) -> Result<(), ViewError> {
         // A name that starts with a dash is a file here, not standard output.
         let output =
@@ -199,9 +186,6 @@ impl RenderFlags {
     }
 
     /// Checks the flags as far as is possible before the file is read.
-    ///
-    /// # Errors
-    /// If a flag has a wrong value, or does not go with another or with the file.
     pub fn check(&self) -> Result<(), ViewError> {
         self.job().map(drop)
     }
@@ -268,15 +252,6 @@ fn decides(name: &str) -> Decides {
 /// Flags without a heading that leave the spheres as they are.
 const PICTURE: [&str; 9] =
     ["size", "bits", "transparent", "exposure", "tone", "backend", "adapter", "limits", "accel"];
-
-/// Quotes a word for a shell, if it needs that.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    if cfg!(windows) { format!("\"{word}\"") } else { format!("'{}'", word.replace('\'', r"'\''")) }
-}
 
 #[cfg(test)]
 mod tests {

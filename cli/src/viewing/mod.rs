@@ -4,21 +4,20 @@
 //! camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
 //! `pinhole render` itself.
 
-mod camera;
-mod camera_flags;
-mod flags;
-mod shown;
-mod still;
-
 use std::fmt;
 use std::process::ExitCode;
 
-use crate::failure::{FAILED, Failure, USAGE};
-
-pub use camera::ViewCamera;
 pub use flags::RenderFlags;
 pub use shown::{Shown, TimeLine};
 pub use still::{StillPicture, StillRenderer};
+
+use crate::failure::{FAILED, Failure, USAGE};
+pub use crate::viewing::camera::ViewCamera;
+
+mod camera;
+mod flags;
+mod shown;
+mod still;
 
 /// Why something cannot be shown: one line for the user, and the exit code of `pinhole`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,19 +28,16 @@ pub struct ViewError {
 
 impl ViewError {
     /// Something that failed; the exit code is 1.
-    #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: FAILED }
     }
 
     /// Wrong usage; the exit code is 2.
-    #[must_use]
     pub fn usage(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: USAGE }
     }
 
     /// The exit code that `pinhole` has in this case.
-    #[must_use]
     pub fn exit_code(&self) -> ExitCode {
         self.code.into()
     }
@@ -64,9 +60,6 @@ impl fmt::Display for ViewError {
 impl std::error::Error for ViewError {}
 
 /// Prepares the process for showing files: starts its threads, and shows no progress on the terminal.
-///
-/// # Errors
-/// If the threads cannot be started.
 pub fn prepare() -> Result<(), ViewError> {
     crate::progress::close();
     Ok(crate::threads::start()?)
@@ -74,16 +67,16 @@ pub fn prepare() -> Result<(), ViewError> {
 
 /// Prints an error as `pinhole` does, on standard error.
 pub fn print_error(error: &dyn fmt::Display) {
-    crate::speak::tell(format_args!("error: {error}"));
+    crate::progress::tell(format_args!("error: {error}"));
 }
 
 /// Prints a line on standard error, with control characters escaped.
 pub fn print_note(line: &str) {
-    crate::speak::tell(line);
+    crate::progress::tell(line);
 }
 
 /// Prints a line on standard output.
 pub fn print_line(line: &str) {
     // Nobody may be listening, which is no error of a window.
-    let _ = crate::speak::answer(format!("{line}\n").as_bytes());
+    let _ = crate::progress::answer(format!("{line}\n").as_bytes());
 }

@@ -15,6 +15,7 @@ use pinhole::scene::Scene;
 use super::{RenderFlags, ViewError};
 use crate::failure::Failure;
 use crate::input::{Framed, Input, OpenFrames, Source};
+use crate::read_file::Format;
 
 /// What [`RenderFlags`] mean: the spheres of a file, seen by a camera with a film, and the settings of the picture.
 pub struct Shown {
@@ -48,24 +49,21 @@ struct FileFrames {
 
 impl Shown {
     /// Reads the file. Frames that were found before in the same file, for `before`, are not searched again.
-    ///
-    /// # Errors
-    /// The errors of `pinhole render`.
     pub fn open(flags: &RenderFlags, before: Option<&Self>) -> Result<Self, ViewError> {
         let job = flags.job()?;
         let before = before.filter(|before| flags.has_file_of(&before.flags));
-        let mut source = job.source.keeping_columns();
+        let mut source = Source { keeps_columns: true, ..job.source };
         let frames = match before {
             Some(before) => before.frames.clone(),
             None => found_frames(&mut source)?,
         };
-        let source = source.with_frames(frames.file.clone());
-        let text = source.is_scene_file().then(|| source.text()).transpose()?;
+        source.frames = frames.file.clone();
+        let text = (source.format == Format::Scene).then(|| source.text()).transpose()?;
         let mut contents = match &text {
             Some(text) => source.contents_of_text(text)?,
             None => source.contents()?,
         };
-        let columns = Arc::new(contents.take_columns());
+        let columns = Arc::new(std::mem::take(&mut contents.found.columns));
         let sky = source.sky(&contents).map_err(Failure::from)?;
         let framed = Framed::new(&contents.scene, contents.color_key());
         let look = source.look(&contents.file, framed, sky.clone(), None)?;
@@ -83,9 +81,6 @@ impl Shown {
     }
 
     /// Changes camera, light and film to those of flags, whose data must be the same; see [`RenderFlags::has_data_of`].
-    ///
-    /// # Errors
-    /// The errors of `pinhole render`. What is shown stays as it is.
     pub fn see(&mut self, flags: &RenderFlags) -> Result<(), ViewError> {
         let job = flags.job()?;
         let source = &job.source;
@@ -110,56 +105,47 @@ impl Shown {
     }
 
     /// The flags that are shown.
-    #[must_use]
     pub fn flags(&self) -> &RenderFlags {
         &self.flags
     }
 
     /// The spheres.
-    #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
         &self.input.scene
     }
 
     /// The columns of the data, with a value for each of its spheres, which are the last ones of the scene apart from
     /// [`Scene::added`]; empty if the data has none.
-    #[must_use]
     pub fn columns(&self) -> &Arc<Vec<Column>> {
         &self.columns
     }
 
     /// The camera; for two eyes, that of the middle between them.
-    #[must_use]
     pub fn camera(&self) -> &dyn Camera {
         self.input.camera.as_ref()
     }
 
     /// The parameters of the camera, with its place.
-    #[must_use]
     pub fn camera_parameters(&self) -> CameraParameters {
         self.input.parameters
     }
 
     /// The settings.
-    #[must_use]
     pub fn settings(&self) -> &RenderSettings {
         &self.input.settings
     }
 
     /// The name of the style, if there is one.
-    #[must_use]
     pub fn style(&self) -> Option<&'static str> {
         self.input.report.style.map(|style| style.name())
     }
 
     /// The column that colours the spheres although no flag asks for it.
-    #[must_use]
     pub fn own_color_by(&self) -> Option<&str> {
         self.input.report.color_by.as_deref()
     }
 
     /// The frames; `None` for a file that has one picture.
-    #[must_use]
     pub fn time_line(&self) -> Option<TimeLine> {
         let count = self.frames.count.filter(|count| *count > 1)?;
         let frame = self.flags.get("frame").and_then(|frame| frame.parse().ok());
@@ -168,7 +154,6 @@ impl Shown {
     }
 
     /// Notes for the user about the file.
-    #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -179,7 +164,7 @@ fn found_frames(source: &mut Source) -> Result<FileFrames, Failure> {
     Ok(match source.open_frames()? {
         Ok(found) => {
             let (count, note) = (Some(found.count), found.note);
-            FileFrames { file: source.frames(), count, note }
+            FileFrames { file: source.frames.clone(), count, note }
         }
         // A file without frames.
         Err(_) => FileFrames::default(),

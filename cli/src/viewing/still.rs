@@ -3,6 +3,13 @@
 use std::sync::Arc;
 
 use anyhow::Context;
+
+use super::{RenderFlags, Shown, ViewError};
+use crate::device::{Opened, explained};
+use crate::failure::Failure;
+use crate::render;
+use crate::views::Views;
+use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
@@ -11,13 +18,6 @@ use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::write::png;
-
-use super::{RenderFlags, Shown, ViewError};
-use crate::device::{Opened, explained};
-use crate::failure::Failure;
-use crate::render;
-use crate::views::Views;
-use crate::with_scene::{upload, with_structures};
 
 /// Renders what is shown, on a device of its own.
 pub struct StillRenderer {
@@ -49,15 +49,11 @@ pub struct StillPicture {
 
 impl StillRenderer {
     /// Opens the device that the flags ask for.
-    ///
-    /// # Errors
-    /// If there is no such adapter, or it fails.
     pub fn open(flags: &RenderFlags) -> Result<Self, ViewError> {
         Ok(Self { opened: flags.job()?.device.open()?, uploaded: None })
     }
 
     /// What is wrong with the device, if something is.
-    #[must_use]
     pub fn warning(&self) -> Option<&str> {
         match &self.opened {
             Opened::Device { warning, .. } => warning.as_deref(),
@@ -70,9 +66,6 @@ impl StillRenderer {
 
     /// Renders the picture, first with few samples and at last with all, and gives each to `show`. Ends early, and
     /// returns false, when `is_wanted` says that the picture is not wanted any more.
-    ///
-    /// # Errors
-    /// The errors of `pinhole render`.
     pub fn render(
         &mut self,
         shown: &Shown,

@@ -15,7 +15,7 @@ use pinhole::gpu::{Headless, HeadlessOptions, SelfTestExtent};
 use tempfile::TempDir;
 
 use crate::harness::trial_unless;
-use crate::program::{command, command_on, succeed};
+use crate::{command, command_on, succeed};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![

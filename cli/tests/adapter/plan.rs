@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
-use crate::program::{command, succeed};
+use crate::{command, succeed};
 use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {

@@ -9,12 +9,13 @@ use pinhole::scene_file::SceneFile;
 use pinhole::write::exr::Remarks;
 use pinhole::{Encoding, LayerSet, write};
 
-use crate::program::{command, command_on, succeed};
 use crate::trial;
 use crate::view::View;
+use crate::{command, command_on, succeed};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
+        trial("profile::the_table_holds_the_passes_of_the_device", table_of_a_profile),
         trial("render::the_demo_renders_on_the_adapter", demo),
         trial("render::layers_come_from_the_adapter", layers),
         trial("render::an_exr_holds_what_the_adapter_rendered", exr),
@@ -123,4 +124,25 @@ fn info(headless: &'static Headless) {
     let output = succeed(&mut command(&folder, "info"));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains(&expected.name) && text.contains("used by `render`"), "{text}");
+}
+
+/// `--profile` changes no picture, and its table holds the passes of the device.
+fn table_of_a_profile(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.toml"), include_str!("../../../examples/studio.toml"))
+        .unwrap();
+    let picture = |arguments: &str| {
+        let arguments = format!("render scene.toml -o out.png --samples 2 --size 90x60{arguments}");
+        let run = succeed(&mut command_on(headless, &folder, &arguments));
+        let picture = std::fs::read(folder.path().join("out.png")).unwrap();
+        (picture, String::from_utf8(run.stderr).unwrap())
+    };
+    let (without, _) = picture("");
+    let (with, text) = picture(" --profile");
+    assert!(with == without, "the picture depends on the profile");
+    let (host, device) = text.split_once("\n  device").unwrap();
+    assert!(device.lines().count() > 1, "{text}");
+    for name in ["open device", "self-test", "plan", "build", "upload", "submit", "wait"] {
+        assert!(host.contains(&format!("\n    {name} ")), "{name}: {text}");
+    }
 }

@@ -7,14 +7,13 @@ use pinhole::gpu::Headless;
 use pinhole::verify::run_file;
 use tempfile::TempDir;
 
-use crate::program::command;
+use crate::command;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("verify::a_recording_of_a_scene_is_legal_again", proved),
         trial("verify::no_sphere_and_one_pixel", small),
-        trial("verify::a_pixel_that_is_wrong_is_named", named),
         trial("verify::paths_are_proved", paths),
         trial("verify::studios_are_proved", studio),
         trial("verify::saved_light_is_legal_again", saved_light),
@@ -53,7 +52,6 @@ fn table(folder: &TempDir, arguments: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The data in a page.
 fn page_of(folder: &TempDir, page: &str) -> serde_json::Value {
     let page = std::fs::read_to_string(folder.path().join(page).join("report.html")).unwrap();
     let (_, data) = page.split_once("type=\"application/json\">").unwrap();
@@ -98,31 +96,6 @@ fn small(_: &'static Headless) {
         let again = replayed(&folder, "verify --replay run", 0);
         assert_eq!(String::from_utf8(again.stdout).unwrap(), found, "{arguments}");
     }
-}
-
-fn named(_: &'static Headless) {
-    let folder = folder();
-    table(&folder, "verify scene.toml --size 80x60 --save run");
-    let path = folder.path().join("run");
-    let mut run = run_file::read(&std::fs::read(&path).unwrap()).unwrap();
-    let pixels = &mut run.recording.pixels;
-    // The first pixel that hits a sphere and is not on a silhouette.
-    let hit = |i: usize, pixels: &[pinhole::verify::TracedPixel]| pixels[i].id != u32::MAX;
-    let wrong = (0..pixels.len() - 80).find(|i| hit(*i, pixels) && hit(*i + 80, pixels)).unwrap();
-    pixels[wrong].t *= 1.001;
-    let mut file = std::fs::File::create(&path).unwrap();
-    run_file::write(&run.scene, &run.recording, &run.provenance, &mut file).unwrap();
-
-    let output = replayed(&folder, "verify --replay run --report page", 3);
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    let pixel = format!("pixel ({}, {}), hit: sphere ", wrong % 80, wrong / 80);
-    let words = format!("error: the picture is not legal: 1 of 4800 pixels; the first is {pixel}");
-    assert!(stderr.starts_with(&words) && stderr.lines().count() == 1, "{stderr}");
-    let stdout = String::from_utf8(output.stdout).unwrap();
-    assert!(stdout.contains(&format!("\nfirst violation: {pixel}")), "{stdout}");
-    assert!(stdout.ends_with("\nNOT legal: 1 violation\n"), "{stdout}");
-    let report = &page_of(&folder, "page")["report"];
-    assert_eq!(report["violations"][0]["pixel"], serde_json::json!([wrong % 80, wrong / 80]));
 }
 
 const PATHS: &str = "integrator = 'path'\n[film]\nwidth = 40\nheight = 30\n[camera.pinhole]\neye = [0, 1, 6]\n\

@@ -140,41 +140,6 @@ fn assert_refused(folder: &Folder, run: &Run, code: i32, says: &str) {
 }
 
 #[test]
-fn what_bricks_cannot_do_is_refused_with_a_reason() {
-    let folder = sorted("a.npy", &f32_array(&spheres(50, [0.0; 3])), "--bricks 4");
-    let cases = [
-        ("render a.bricks -o out.png --style studio", "light needs all spheres in memory"),
-        ("render a.bricks -o out.png --samples 4", "--samples applies only to"),
-        ("render a.bricks -o out.png --integrator path", "choose --style fast, or render the data"),
-        (
-            "job split a.bricks -o job --tiles 2x2 --style studio",
-            "light needs all spheres in memory",
-        ),
-        ("render a.bricks -o out.png --color-by index", "--color-by needs columns"),
-        ("render a.bricks -o out.png --select x>0", "--select needs columns"),
-        ("render a.bricks -o out.png --radius 1", "--radius applies when data is sorted"),
-        ("render a.bricks -o out.png --frame 1", "--frame applies when data is sorted"),
-        ("render a.bricks -o out%d.png --turntable 3", "a series of pictures needs all spheres"),
-        ("render a.bricks -o out.png --certify", "--certify needs all spheres in memory"),
-        ("render a.bricks --print-scene", "--print-scene needs all spheres in memory"),
-        ("verify a.bricks", "`verify` needs all spheres in memory"),
-        #[cfg(feature = "gpu")]
-        ("bench a.bricks", "`bench` needs all spheres in memory"),
-        ("sort a.bricks -o out.bricks", "name a data file"),
-        ("sort a.npy -o out.npy", "extension .bricks"),
-        ("sort a.npy -o a.npy", "extension .bricks"),
-        ("sort a.npy -o out.bricks --brick-bytes 0", "write a number of bytes"),
-        ("sort a.npy -o out.bricks --brick-bytes 12Q", "write a number of bytes"),
-        ("sort a.npy -o out.bricks --radius 1", "remove the radius"),
-    ];
-    for (arguments, says) in cases {
-        let run = folder.run(&format!("{arguments} --backend cpu"));
-        let run = if arguments.starts_with("render") { run } else { folder.run(arguments) };
-        assert_refused(&folder, &run, 2, says);
-    }
-}
-
-#[test]
 fn data_that_are_wrong_are_named_with_their_sphere() {
     for (index, sphere, says) in [
         (7, [0.0, f64::NAN, 0.0, 1.0], "sphere 7: its center"),
@@ -283,18 +248,8 @@ fn a_full_disk_leaves_no_file_of_bricks() {
     let folder = Folder::new();
     std::fs::write(folder.path("a.npy"), f32_array(&spheres(20_000, [0.0; 3]))).unwrap();
     for blocks in [0, 1, 40, 400] {
-        let program = env!("CARGO_BIN_EXE_pinhole");
-        let script = format!("ulimit -f {blocks}; exec {program} sort a.npy -o out.bricks");
-        let mut command = folder.command("");
-        let output = std::process::Command::new("sh")
-            .current_dir(command.get_current_dir().unwrap())
-            .args(["-c", &script])
-            .output();
-        let output = output.unwrap();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        let _ = &mut command;
-        assert_eq!(output.status.code(), Some(1), "{stderr}");
-        assert!(stderr.contains("out.bricks: cannot be written"), "{stderr}");
+        let run = folder.run_with_blocks(blocks, "sort a.npy -o out.bricks");
+        run.refused(1, "out.bricks: cannot be written");
         assert_eq!(folder.files(), ["a.npy"]);
     }
 }

@@ -1,4 +1,5 @@
-//! Tests of several pictures at once: frames of a file, turntables, movies.
+//! Tests of several pictures at once: frames of a file, turntables, cameras that move, movies, and the colours that all
+//! have in common.
 
 use crate::support::{Folder, decode};
 
@@ -21,6 +22,12 @@ fn columns(png: &[u8]) -> Vec<usize> {
     (0..width as usize)
         .filter(|&column| (0..height as usize).any(|row| at(column, row) != background))
         .collect()
+}
+
+/// The first and the last of these columns.
+fn ends(png: &[u8]) -> [usize; 2] {
+    let columns = columns(png);
+    [columns[0], columns[columns.len() - 1]]
 }
 
 #[track_caller]
@@ -87,13 +94,9 @@ fn what_was_written_stays_when_a_later_frame_fails() {
     let text = moving().replace("O 4 0 0", "O 4 x 0");
     let folder = Folder::with(&[("a.xyz", &text)]);
     let run = folder.run(&format!("render a.xyz -o f%d.png --frames : --camera-from 0 {SMALL}"));
-    assert_eq!(run.code, 1, "{}", run.stderr);
-    assert!(run.stderr.starts_with("error: frame 2: a.xyz: "), "{}", run.stderr);
-    assert_eq!(run.stderr.lines().count(), 1);
+    run.refused(1, "error: frame 2: a.xyz: ");
     assert_eq!(folder.files(), ["a.xyz", "f0.png", "f1.png"]);
-    let run = folder.run(&format!("render a.xyz -o m.apng --camera-from 0 {SMALL}"));
-    assert_eq!(run.code, 1, "{}", run.stderr);
-    assert_eq!(folder.files(), ["a.xyz", "f0.png", "f1.png"]);
+    folder.refuses(&format!("render a.xyz -o m.apng --camera-from 0 {SMALL}"), 1, "");
 }
 
 #[test]
@@ -153,27 +156,12 @@ fn a_turntable_goes_once_around() {
     let folder = Folder::with(&[("rod.xyz", "2\nrod\nO -4 0 0\nO 4 0 0\n")]);
     folder.run(&format!("render rod.xyz -o t%d.png --turntable 4 {SMALL}")).succeeded();
     assert_eq!(folder.files(), ["rod.xyz", "t0.png", "t1.png", "t2.png", "t3.png"]);
-    let extent = |name: &str| {
-        let columns = columns(&folder.read(name));
-        columns[columns.len() - 1] - columns[0]
-    };
-    let [a, b, c, d] = ["t0.png", "t1.png", "t2.png", "t3.png"].map(extent);
+    let [a, b, c, d] = ["t0.png", "t1.png", "t2.png", "t3.png"].map(|name| {
+        let [first, last] = ends(&folder.read(name));
+        last - first
+    });
     assert!(a > 2 * b && a.abs_diff(c) <= 1 && b.abs_diff(d) <= 1, "{a} {b} {c} {d}");
     folder.run(&format!("render rod.xyz -o t.apng --turntable 3 {SMALL}")).succeeded();
-}
-
-/// Colors of a column mean the same in all frames.
-#[test]
-fn colors_have_one_scale() {
-    let head = "Properties=species:S:1:pos:R:3:charge:R:1";
-    let text =
-        format!("2\n{head}\nO 0 0 0 0.5\nO 4 0 0 1.5\n2\n{head}\nO 0 0 0 1.5\nO 4 0 0 10.5\n");
-    let folder = Folder::with(&[("a.xyz", &text)]);
-    let rest =
-        format!("--color-by charge --integrator primary {SMALL}").replace("--style fast ", "");
-    folder.run(&format!("render a.xyz -o f%d.png --frames : {rest}")).succeeded();
-    folder.run(&format!("render a.xyz -o one.png --frame 0 --range 0.5,10.5 {rest}")).succeeded();
-    assert_same(&folder, ["f0.png", "one.png"]);
 }
 
 #[test]
@@ -186,61 +174,14 @@ fn frames_of_the_data_of_a_scene() {
     assert_eq!(folder.files(), ["a.xyz", "f3.png", "f4.png", "one.png", "s.toml"]);
 }
 
-/// Each is one line, exit code 2, and no file.
-#[test]
-fn wrong_usage_is_one_line() {
-    let scene = "[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n";
-    let folder =
-        Folder::with(&[("a.xyz", &moving()), ("s.toml", scene), ("a.csv", "x,y,z\n0,0,0\n")]);
-    let before = folder.files();
-    for (arguments, expected) in [
-        ("a.xyz -o f%d.png", "a % stands for the number of a frame; add --frames RANGE"),
-        ("a.xyz -o f.png --frames :", "every frame needs a name of its own"),
-        ("a.xyz -o f%s.png --frames :", "the % in this name is not that of a number"),
-        (
-            "a.xyz -o f%d.png --frames 9",
-            "--frames: there is no frame 9; the file has 5 frames, 0 to 4",
-        ),
-        ("a.xyz -o f%d.png --frames 9:", "--frames: no frame lies in this range"),
-        ("a.xyz -o f%d.png --frames a", "write START:END"),
-        ("a.xyz -o f%d.png --frames : --camera-from 7", "--camera-from: there is no frame 7"),
-        ("a.csv -o f%d.png --frames :", "have no frames"),
-        ("a.csv -o m.gif", "make a movie of one frame"),
-        ("s.toml -o f%d.png --frames :", "this scene has no `data`"),
-        ("a.xyz -o - --frames :", "add --raw y4m"),
-        ("a.xyz -o m.gif --raw y4m", "replace -o m.gif by -o -"),
-        (
-            "a.xyz -o f%d.png --frames : --layer depth=d.npy",
-            "d.npy: every frame needs a name of its own",
-        ),
-        ("a.xyz -o m.gif --layer depth=d.npy", "a movie has no layers"),
-        ("a.xyz -o m.gif --transparent", "only .apng may be transparent"),
-        ("a.xyz -o m.gif --resume", "--resume applies only to a file for each frame"),
-        ("a.xyz -o f.png --resume", "--resume applies only to several pictures"),
-        ("a.xyz -o f%d.png --frames : --fps 5", "--fps applies only to movies"),
-        ("a.xyz -o m.gif --frame 1", "a movie needs several"),
-        ("a.xyz -o m%d.gif", "a movie is one file"),
-        ("a.xyz -o f%d.png --frames : --keep-partial", "--keep-partial applies to one picture"),
-    ] {
-        let run = folder.run(&format!("render {arguments} --backend cpu"));
-        assert_eq!(run.code, 2, "{arguments}: {}", run.stderr);
-        assert!(
-            run.stderr.starts_with("error: ") && run.stderr.contains(expected),
-            "{arguments}: {}",
-            run.stderr
-        );
-        assert_eq!(run.stderr.lines().count(), 1, "{arguments}: {}", run.stderr);
-        assert_eq!(folder.files(), before, "{arguments}");
-    }
-}
-
 #[cfg(unix)]
 mod with_a_program {
     use std::os::unix::fs::PermissionsExt;
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
     use std::time::{Duration, Instant};
 
     use super::*;
+    use crate::support::send;
 
     /// Runs with a program `ffmpeg` that is this script.
     fn run_with(folder: &Folder, script: &str, arguments: &str) -> (i32, String) {
@@ -308,8 +249,7 @@ mod with_a_program {
             assert!(started.elapsed() < Duration::from_secs(60), "no frame was written");
             std::thread::sleep(Duration::from_millis(5));
         }
-        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-        assert!(sent.success());
+        send("-INT", &child);
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(130), "{stderr}");
@@ -324,4 +264,183 @@ mod with_a_program {
             assert_eq!(decode(&folder.read(name)).0, 160);
         }
     }
+}
+
+const MOVED: &str = "--backend cpu --size 40x20 --style fast -q";
+
+/// One sphere, seen from the right, from the front and from the left.
+const PATH: &str = "ease = false\n\
+    [[keys]]\nframe = 0\neye = [-4, 0, 20]\nlook_at = [-4, 0, 0]\n\
+    [[keys]]\nframe = 2\neye = [4, 0, 20]\nlook_at = [4, 0, 0]\n";
+
+const SPHERE: &str = "[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n";
+
+#[test]
+fn one_scene_has_the_pictures_up_to_the_last_key() {
+    let folder = Folder::with(&[("s.toml", SPHERE), ("p.toml", PATH)]);
+    folder.run(&format!("render s.toml -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
+    assert_eq!(folder.files(), ["f0.png", "f1.png", "f2.png", "p.toml", "s.toml"]);
+    let [a, b, c] = ["f0.png", "f1.png", "f2.png"].map(|name| ends(&folder.read(name)));
+    // The camera goes to the right, so the sphere goes to the left, through the middle of the picture.
+    assert!(a[0] > b[1] && b[0] > c[1], "{a:?} {b:?} {c:?}");
+    assert_eq!([b[0] + b[1], a[0] + c[1]], [39; 2]);
+    // At a key, the camera is the one that flags give.
+    let flags = "--eye 4,0,20 --look-at 4,0,0";
+    folder.run(&format!("render s.toml -o one.png {flags} {MOVED}")).succeeded();
+    assert!(decode(&folder.read("one.png")) == decode(&folder.read("f2.png")));
+    // --frames chooses some pictures, which stay as they are.
+    folder
+        .run(&format!("render s.toml -o g%d.png --camera-path p.toml --frames 1: {MOVED}"))
+        .succeeded();
+    assert!(decode(&folder.read("g1.png")) == decode(&folder.read("f1.png")));
+    assert!(!folder.files().contains(&"g0.png".to_owned()));
+}
+
+#[test]
+fn a_scene_file_has_its_own_path() {
+    let keys = PATH.replace("[[keys]]", "[[camera_path.keys]]");
+    let scene = format!("{SPHERE}[camera_path]\n{keys}");
+    let folder = Folder::with(&[("s.toml", &scene), ("p.toml", PATH), ("bare.toml", SPHERE)]);
+    folder.run(&format!("render s.toml -o m.apng {MOVED}")).succeeded();
+    folder.run(&format!("render bare.toml -o n.apng --camera-path p.toml {MOVED}")).succeeded();
+    assert!(folder.read("m.apng") == folder.read("n.apng"));
+    let loud = MOVED.replace(" -q", "");
+    for (command, note) in [
+        ("-o one.png", "`camera_path` is not used, because this is one picture"),
+        ("-o t%d.png --turntable 2", "--turntable replaced `camera_path`"),
+        ("-o u%d.png --camera-path p.toml", "--camera-path replaced `camera_path`"),
+    ] {
+        let run = folder.run(&format!("render s.toml {command} {loud}")).succeeded();
+        assert!(run.stderr.contains(note), "{command}: {}", run.stderr);
+    }
+}
+
+/// Each frame of a trajectory is seen from its place on the path.
+#[test]
+fn a_trajectory_is_seen_from_a_moving_camera() {
+    // The atom goes with the camera.
+    let frames: String = (0..3).map(|i| format!("1\n\nO {} 0 0\n", 4 * i - 4)).collect();
+    let folder = Folder::with(&[("a.xyz", &frames), ("p.toml", PATH)]);
+    folder.run(&format!("render a.xyz -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
+    let all = ["f0.png", "f1.png", "f2.png"].map(|name| ends(&folder.read(name)));
+    assert!(all.iter().all(|[first, last]| first + last == 39), "{all:?}");
+    // Of one frame, the camera sees a sphere that stands still.
+    let rest = format!("--camera-path p.toml --frame 1 {MOVED}");
+    folder.run(&format!("render a.xyz -o g%d.png {rest}")).succeeded();
+    let [a, b, c] = ["g0.png", "g1.png", "g2.png"].map(|name| ends(&folder.read(name)));
+    assert!(a[0] > b[1] && b[0] > c[1], "{a:?} {b:?} {c:?}");
+}
+
+/// Seconds are multiplied by the pictures of each second.
+#[test]
+fn times_are_seconds_of_the_movie() {
+    let path = PATH.replace("frame = 2", "time = 0.5").replace("frame", "time");
+    let folder = Folder::with(&[("s.toml", SPHERE), ("p.toml", &path), ("q.toml", PATH)]);
+    let rest = format!("--camera-path p.toml --fps 4 {MOVED}");
+    folder.run(&format!("render s.toml -o f%d.png {rest}")).succeeded();
+    folder.run(&format!("render s.toml -o g%d.png --camera-path q.toml {MOVED}")).succeeded();
+    for number in 0..3 {
+        let [a, b] = ["f", "g"].map(|name| folder.read(&format!("{name}{number}.png")));
+        assert!(decode(&a) == decode(&b), "{number}");
+    }
+    assert!(!folder.files().contains(&"f3.png".to_owned()));
+}
+
+/// Two atoms at the ends of a rod: from the side the rod is long, from its end short, and it always fits.
+#[test]
+fn views_go_around_the_scene() {
+    let path = "[[keys]]\nframe = 0\nview = '0,0'\nzoom = 1\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
+    let rod = "2\nrod\nO -4 0 0\nO 4 0 0\n";
+    let folder = Folder::with(&[("rod.xyz", rod), ("p.toml", path)]);
+    folder.run(&format!("render rod.xyz -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
+    let [a, b, c] = ["f0.png", "f1.png", "f2.png"].map(|name| {
+        let [first, last] = ends(&folder.read(name));
+        assert!(first > 0 && last < 39 && first + last == 39, "{name}: {first} {last}");
+        last - first
+    });
+    assert!(a > 2 * b && a.abs_diff(2 * c) <= 2, "{a} {b} {c}");
+}
+
+/// A scene whose spheres lie in the middle rows, so that a legend at the top covers none.
+const FLAT: &str = "data = 'a.xyz'\nshading = 'flat'\n[film]\nwidth = 80\nheight = 80\n\
+                     [camera.orthographic]\neye = [3, 0, 9]\nlook_at = [3, 0, 0]\nhalf_extent = [4, 4]\n";
+
+/// A frame of spheres at x = 0, 2, 4, 6, each with a value of the column `v`.
+fn frame(kind: char, values: &[&str]) -> String {
+    let head = format!("{}\nProperties=species:S:1:pos:R:3:radius:R:1:v:{kind}:1\n", values.len());
+    let rows = values.iter().enumerate().map(|(i, value)| format!("C {} 0 0 1 {value}\n", 2 * i));
+    head + &rows.collect::<String>()
+}
+
+/// Renders frames; returns the colours of the middles of the spheres, and what lies above them.
+fn colors_of(kind: char, frames: &[&[&str]], flags: &str) -> (Vec<Vec<[u8; 3]>>, Vec<Vec<u8>>) {
+    let text: String = frames.iter().map(|values| frame(kind, values)).collect();
+    let folder = Folder::with(&[("a.xyz", &text), ("scene.toml", FLAT)]);
+    let legend = "--legend=top --text-scale 0.5";
+    let frames_flag =
+        format!("-o f%d.png --frames : --color-by v -q --backend cpu {legend} {flags}");
+    folder.run(&format!("render scene.toml {frames_flag}")).succeeded();
+    let pictures = frames.iter().enumerate().map(|(number, values)| {
+        let (_, _, rgb) = decode(&folder.read(&format!("f{number}.png")));
+        let middle = |sphere: usize| {
+            let start = 3 * (40 * 80 + 10 + 20 * sphere);
+            [rgb[start], rgb[start + 1], rgb[start + 2]]
+        };
+        ((0..values.len()).map(middle).collect(), rgb[..3 * 80 * 29].to_vec())
+    });
+    pictures.unzip()
+}
+
+#[test]
+fn a_category_has_the_same_color_in_all_frames() {
+    let (colors, legends) = colors_of('S', &[&["c", "a"], &["b", "c"], &["c"]], "");
+    assert_eq!([colors[0][0]; 2], [colors[1][1], colors[2][0]]);
+    let different = [colors[0][0], colors[0][1], colors[1][0]];
+    assert!(different[0] != different[1] && different[1] != different[2], "{different:?}");
+    assert!(different[0] != different[2], "{different:?}");
+    let background = legends[0][..3].to_vec();
+    assert!(legends[0].chunks_exact(3).any(|pixel| pixel != background), "there is no legend");
+    assert!(legends.iter().all(|legend| *legend == legends[0]));
+}
+
+#[test]
+fn numbers_have_one_scale_in_all_frames() {
+    // The first and the last frame alone have so few whole numbers that these are categories.
+    let (colors, legends) = colors_of('R', &[&["0", "7"], &["0.5", "3", "0"], &["7"]], "");
+    assert_eq!(colors[0][0], [0x44, 0x01, 0x54]);
+    assert_eq!(colors[0][1], [0xfd, 0xe7, 0x25]);
+    assert_eq!([colors[1][2], colors[2][0]], [colors[0][0], colors[0][1]]);
+    assert!(legends.iter().all(|legend| *legend == legends[0]));
+}
+
+#[test]
+fn what_the_frame_of_the_camera_lacks_has_the_color_of_missing_values() {
+    let (colors, legends) = colors_of('S', &[&["b", "a"], &["c", "b"]], "--camera-from 0");
+    assert_eq!(colors[1][0], [0x80; 3]);
+    assert_eq!(colors[1][1], colors[0][0]);
+    assert!(legends.iter().all(|legend| *legend == legends[0]));
+}
+
+/// Types of a dump color the spheres without a flag, also in a frame with one type.
+#[test]
+fn colors_by_kind_are_those_of_all_frames() {
+    let frame = |types: &[u8]| {
+        let rows = types.iter().enumerate().map(|(i, kind)| format!("{i} {kind} {} 0 0\n", 3 * i));
+        format!(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n\
+             ITEM: ATOMS id type x y z\n{}",
+            types.len(),
+            rows.collect::<String>()
+        )
+    };
+    let folder = Folder::with(&[("a.lammpstrj", &(frame(&[2, 2]) + &frame(&[1, 2])))]);
+    let flags = "--backend cpu --size 80x40 --style fast --view z --radius 1 -q";
+    folder.run(&format!("render a.lammpstrj -o f%d.png --frames : {flags}")).succeeded();
+    let right = ["f0.png", "f1.png"].map(|name| {
+        let (_, _, rgb) = decode(&folder.read(name));
+        let last = (0..80).rev().find(|x| rgb[3 * (20 * 80 + x)..][..3] != rgb[..3]).unwrap();
+        let start = 3 * (20 * 80 + last - 6);
+        [rgb[start], rgb[start + 1], rgb[start + 2]]
+    });
+    assert_eq!(right[0], right[1]);
 }

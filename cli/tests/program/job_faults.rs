@@ -1,13 +1,14 @@
 //! Jobs survive what happens to processes, disks and clocks: submitted again they are completed, with the same bytes.
 
 use std::fs::{self, File};
+use std::os::unix::fs::PermissionsExt;
 use std::process::Stdio;
 use std::time::{Duration, Instant, SystemTime};
 
 use sha2::{Digest, Sha256};
 
-use crate::job::{folder, missing, part, through_parts};
-use crate::support::Folder;
+use crate::jobs::{folder, missing, part, through_parts};
+use crate::support::{Folder, send};
 
 const SPLIT: &str = "a.xyz --frames :4 --tiles 2x2 --size 120x90 --samples 6";
 
@@ -18,7 +19,7 @@ fn rendered(folder: &Folder) -> Vec<Vec<u8>> {
     (0..4).map(|frame| folder.read(&format!("r{frame}.png"))).collect()
 }
 
-fn split(folder: &Folder) {
+fn split_frames(folder: &Folder) {
     folder.run(&format!("job split {SPLIT} --backend cpu -o job -q")).succeeded();
 }
 
@@ -37,7 +38,7 @@ fn assert_completed(folder: &Folder, wanted: &[Vec<u8>]) {
 fn killed_parts_are_rendered_again() {
     let folder = folder();
     let wanted = rendered(&folder);
-    split(&folder);
+    split_frames(&folder);
     let mut random = 7_u64;
     for _ in 0..100 {
         random =
@@ -67,20 +68,14 @@ fn a_full_disk_leaves_no_part() {
     let folder = folder();
     let wanted = rendered(&folder);
     let limited = |blocks: u32, arguments: &str| {
-        let program = env!("CARGO_BIN_EXE_pinhole");
-        let script = format!("ulimit -f {blocks}; exec {program} {arguments}");
-        let mut shell = std::process::Command::new("sh");
-        let output = shell.args(["-c", &script]).current_dir(folder.path(".")).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(1), "{blocks}: {said}");
-        assert!(said.starts_with("error: ") && said.lines().count() == 1, "{blocks}: {said}");
+        folder.run_with_blocks(blocks, arguments).refused(1, "");
     };
     // A job is split as a whole or not at all.
     for blocks in [0, 1] {
         limited(blocks, &format!("job split {SPLIT} --backend cpu -o job -q"));
         assert!(!folder.path("job").exists());
     }
-    split(&folder);
+    split_frames(&folder);
     // A part has 3,600 bytes for each number of a pixel; files may have this many blocks of 512 or 1024 bytes.
     for blocks in [0, 1, 2, 4, 8, 16, 24] {
         limited(blocks, "job part job 0 -q");
@@ -95,7 +90,7 @@ fn a_full_disk_leaves_no_part() {
 fn two_at_once_write_the_same_part() {
     let folder = folder();
     let wanted = rendered(&folder);
-    split(&folder);
+    split_frames(&folder);
     let start = |_| folder.command("job part job 0-15 -q").spawn().unwrap();
     let mut both: Vec<_> = (0..3).map(start).collect();
     assert!(both.iter_mut().all(|child| child.wait().unwrap().success()));
@@ -107,13 +102,12 @@ fn two_at_once_write_the_same_part() {
 fn merge_waits_for_parts_that_are_not_seen_yet() {
     let folder = folder();
     let wanted = rendered(&folder);
-    split(&folder);
+    split_frames(&folder);
     folder.run("job part job 0-15 -q").succeeded();
     let (seen, hidden) = (part(&folder, 5), folder.path("hidden"));
     fs::rename(&seen, &hidden).unwrap();
     let started = Instant::now();
-    let run = folder.run("job merge job -o m%d.png --wait 0.3");
-    assert_eq!(run.code, 1, "{}", run.stderr);
+    folder.refuses("job merge job -o m%d.png --wait 0.3", 1, "missing 5");
     assert!(started.elapsed() >= Duration::from_millis(300));
     let child = folder.command("job merge job -o m%d.png --wait 60 -q").spawn().unwrap();
     std::thread::sleep(Duration::from_millis(700));
@@ -125,7 +119,7 @@ fn merge_waits_for_parts_that_are_not_seen_yet() {
 #[test]
 fn clocks_that_differ_do_no_harm() {
     let folder = folder();
-    split(&folder);
+    split_frames(&folder);
     let day = Duration::from_secs(86_400);
     // What a process left that was killed long ago is removed.
     let [old, new] = ["old", "new"].map(|name| folder.path(&format!("job/parts/.pinhole-{name}")));
@@ -146,12 +140,8 @@ fn a_part_that_hangs_ends_with_a_code_of_its_own() {
     folder
         .run("job split many.npy --backend cpu --size 3000x3000 --samples 99 -o job -q")
         .succeeded();
-    let run = folder.run("job part job 0 --timeout 0.5 -q");
-    assert_eq!(run.code, 5, "{}", run.stderr);
-    assert_eq!(
-        run.stderr,
-        "error: unit 0 did not end within 0.5 s; the device may hang: try again\n"
-    );
+    let words = "error: unit 0 did not end within 0.5 s; the device may hang: try again\n";
+    folder.refuses("job part job 0 --timeout 0.5 -q", 5, words);
     assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
 }
 
@@ -164,8 +154,7 @@ fn a_signal_leaves_whole_parts_alone() {
         .succeeded();
     let child = folder.command("job part job 0").stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(700));
-    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
-    assert!(kill.unwrap().success());
+    send("-TERM", &child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
     let said = String::from_utf8(output.stderr).unwrap();
@@ -197,10 +186,79 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     through_parts(&folder, SPLIT, "-o good%d.png");
     set_device(&folder, 3, "Another GPU (driver 1.2)");
     let run = folder.run("job merge job -o m%d.png");
-    assert_eq!(run.code, 1, "{}", run.stderr);
-    assert!(run.stderr.contains("Another GPU (driver 1.2) 3, CPU ("), "{}", run.stderr);
-    assert!(run.stderr.ends_with("add --allow-mixed-adapters\n"), "{}", run.stderr);
+    run.refused(1, "Another GPU (driver 1.2) 3, CPU (");
+    run.refused(1, "add --allow-mixed-adapters\n");
     assert!(!folder.path("m0.png").exists());
     folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
     assert!(folder.read("m0.png") == folder.read("good0.png"));
+}
+
+/// An `sbatch` that notes its arguments and runs the script at once, for an array every task of it.
+const SBATCH: &str = r#"#!/bin/bash
+echo "$@" >>log
+array=
+for word; do case $word in --array=*) array=${word#--array=};; esac; done
+if [ -n "$array" ]; then
+    range=${array%\%*}
+    for task in $(seq "${range%-*}" "${range#*-}"); do SLURM_ARRAY_TASK_ID=$task bash "${!#}"; done
+else
+    bash -c "${!#}"
+fi
+echo 17
+"#;
+
+/// A folder with a job, the scripts of the page, and `sbatch`.
+fn with_scripts() -> Folder {
+    let folder = folder();
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/scale.md");
+    let page = fs::read_to_string(page).unwrap().replace("\r\n", "\n");
+    for name in ["part.sh", "submit.sh"] {
+        let (_, script) = page.split_once(&format!("```bash\n# {name}: ")).unwrap();
+        let (script, _) = script.split_once("```").unwrap();
+        fs::write(folder.path(name), format!("#!/bin/bash\n# {script}")).unwrap();
+    }
+    fs::create_dir(folder.path("bin")).unwrap();
+    fs::write(folder.path("bin/sbatch"), SBATCH).unwrap();
+    fs::set_permissions(folder.path("bin/sbatch"), fs::Permissions::from_mode(0o755)).unwrap();
+    folder
+        .run("job split a.xyz --frames : --tiles 2x1 --backend cpu --size 40x30 -o JOB -q")
+        .succeeded();
+    fs::rename(folder.path("JOB"), folder.path("job")).unwrap();
+    std::os::unix::fs::symlink("job", folder.path("JOB")).unwrap();
+    folder
+}
+
+/// Runs the script, and returns the lines of arguments that `sbatch` had.
+fn submit(folder: &Folder) -> Vec<String> {
+    let _ = fs::remove_file(folder.path("log"));
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let path = format!("{}:{}:{path}", folder.path("bin").display(), program.display());
+    let mut script = std::process::Command::new("bash");
+    let script = script.arg("submit.sh").current_dir(folder.path(".")).env("PATH", path);
+    let output = script.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let log = String::from_utf8(folder.read("log")).unwrap();
+    log.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn an_array_and_a_merge_are_submitted_and_again_for_what_is_missing() {
+    let folder = with_scripts();
+    let lines = submit(&folder);
+    assert!(lines[0].contains("--array=1-2%"), "{lines:?}");
+    assert!(lines[1].contains("--dependency=afterok:17 --kill-on-invalid-dep=yes"), "{lines:?}");
+    assert_eq!(missing(&folder), [0_usize; 0]);
+    folder.run("render a.xyz --frames : --backend cpu --size 40x30 -o r.apng -q").succeeded();
+    assert!(folder.read("movie.apng") == folder.read("r.apng"));
+    // Only what is missing is submitted again.
+    fs::remove_file(part(&folder, 4)).unwrap();
+    fs::write(part(&folder, 7), "x").unwrap();
+    let lines = submit(&folder);
+    assert!(lines[0].contains("--array=1-1%") && lines.len() == 2, "{lines:?}");
+    assert_eq!(folder.read("job/units.txt"), b"4,7\n");
+    assert_eq!(missing(&folder), [0_usize; 0]);
+    // Only the merge is left.
+    let lines = submit(&folder);
+    assert!(lines.len() == 1 && !lines[0].contains("--dependency"), "{lines:?}");
 }

@@ -8,37 +8,17 @@ mod cases;
 #[path = "../../../tests/support/arrays.rs"]
 mod npy_files;
 
-mod arrays;
-mod bad_input;
 mod bricks;
-mod camera_path;
 mod certified;
 mod certify;
-mod colors;
-mod file_info;
+mod data;
 mod frames;
-mod generate;
-mod good_input;
+mod input;
 mod interrupt;
-mod job;
-mod job_depth;
 #[cfg(unix)]
 mod job_faults;
-mod job_input;
-#[cfg(target_os = "linux")]
-mod job_recipes;
-mod legend_room;
-mod light;
-mod looks;
-mod movie_colors;
+mod jobs;
 mod pictures;
-#[cfg(feature = "gpu")]
-mod profile;
-#[cfg(feature = "gpu")]
-mod shaders;
 mod snapshots;
-mod stereo;
-mod stop_rules;
-mod structure;
 mod support;
 mod verify;

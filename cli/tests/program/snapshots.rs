@@ -16,6 +16,7 @@ use std::path::Path;
 use similar::TextDiff;
 
 use crate::cases::{Case, answered};
+use crate::support::Folder;
 
 mod files;
 
@@ -64,7 +65,7 @@ fn compare(
 #[test]
 #[cfg_attr(not(feature = "gpu"), ignore = "without the feature `gpu` there are fewer commands")]
 fn help() {
-    let folder = crate::support::Folder::new();
+    let folder = Folder::new();
     compare(
         SNAPSHOTS,
         |name| name.starts_with("help"),
@@ -97,7 +98,7 @@ fn refused_files() {
 
 /// Runs a command in a new folder and returns its exit code and its error.
 fn refused(Case { files, arguments }: &Case<'_>) -> String {
-    let folder = files::folder();
+    let folder = files::folder(arguments);
     for (name, contents) in files {
         std::fs::write(folder.path(name), contents).unwrap();
     }
@@ -107,5 +108,48 @@ fn refused(Case { files, arguments }: &Case<'_>) -> String {
     assert!(run.stderr.starts_with("error: "), "{arguments}: {}", run.stderr);
     assert!(run.stdout.is_empty(), "{arguments}: something on standard output");
     assert_eq!(folder.files(), before, "{arguments}");
-    format!("exit code {}\n{}", run.code, run.stderr)
+    let stderr = run.stderr.replace(&*folder.path("").to_string_lossy(), "");
+    format!("exit code {}\n{stderr}", run.code)
+}
+
+/// A line for each kernel, without an adapter. Rewritten with `PINHOLE_UPDATE_SNAPSHOTS=1`.
+#[cfg(feature = "gpu")]
+const KERNELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/program/snapshots/kernels.txt");
+
+#[test]
+#[cfg(feature = "gpu")]
+fn every_kernel_is_written() {
+    let folder = Folder::new();
+    let run = folder.run_without_drivers("info --dump-shaders kernels").succeeded();
+    let names: Vec<String> = std::fs::read_dir(folder.path("kernels"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let pipelines = String::from_utf8(folder.read("kernels/pipelines.txt")).unwrap();
+    let mut sorted = names.clone();
+    sorted.sort();
+    let list = sorted.join("\n") + "\n";
+    if std::env::var_os(UPDATE).is_some() {
+        std::fs::write(KERNELS, &list).unwrap();
+    }
+    let expected = std::fs::read_to_string(KERNELS).unwrap();
+    assert_eq!(
+        list, expected,
+        "PINHOLE_UPDATE_SNAPSHOTS=1 rewrites tests/program/snapshots/kernels.txt"
+    );
+    let text = String::from_utf8(run.stdout).unwrap();
+    let (kernels, of) = (names.len() - 1, pipelines.lines().count());
+    let expected = format!(
+        "kernels: {kernels} kernels, and pipelines.txt with the constants of {of} pipelines\n"
+    );
+    assert_eq!(text, expected);
+    for name in names.into_iter().filter(|name| name != "pipelines.txt") {
+        assert!(pipelines.lines().any(|line| line.split(' ').next() == Some(&name)), "{name}");
+        let source = String::from_utf8(folder.read(&format!("kernels/{name}"))).unwrap();
+        let entry_point = name.split(['-', '.']).next().unwrap();
+        assert!(source.contains(&format!("fn {entry_point}(")), "{name}");
+        assert!(source.starts_with("//// "), "{name}");
+    }
+    // Once more into the folder that is there now.
+    folder.run("info --dump-shaders kernels").succeeded();
 }

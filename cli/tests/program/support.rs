@@ -80,6 +80,15 @@ impl Folder {
         Run::new(command.output().unwrap())
     }
 
+    /// Runs `pinhole` while files may have this number of blocks, of 512 or 1024 bytes, as on a full disk.
+    #[cfg(unix)]
+    pub(crate) fn run_with_blocks(&self, blocks: u32, arguments: &str) -> Run {
+        let program = env!("CARGO_BIN_EXE_pinhole");
+        let script = format!("ulimit -f {blocks}; exec {program} {arguments}");
+        let mut shell = Command::new("sh");
+        Run::new(shell.args(["-c", &script]).current_dir(self.path("")).output().unwrap())
+    }
+
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
@@ -111,11 +120,12 @@ impl Run {
 
     /// Checks that the run ended with this exit code and one line that has these words.
     #[track_caller]
-    pub(crate) fn refused(&self, code: i32, words: &str) {
+    pub(crate) fn refused(&self, code: i32, words: &str) -> &Self {
         let said = &self.stderr;
         assert_eq!(self.code, code, "{said}");
         assert!(said.starts_with("error: ") && said.contains(words), "{said} lacks {words}");
         assert_eq!(said.lines().count(), 1, "{said}");
+        self
     }
 
     #[track_caller]
@@ -123,6 +133,13 @@ impl Run {
         assert_eq!(self.code, 0, "{}", self.stderr);
         self
     }
+}
+
+/// Sends a signal to a process.
+#[cfg(unix)]
+pub(crate) fn send(signal: &str, to: &std::process::Child) {
+    let status = Command::new("kill").args([signal, &to.id().to_string()]).status().unwrap();
+    assert!(status.success());
 }
 
 /// Width, height and RGB bytes of a PNG.

@@ -102,7 +102,6 @@ fn a_replay_needs_no_adapter() {
     }
 }
 
-/// The data in a page.
 fn data_of(page: &str) -> serde_json::Value {
     let (_, data) = page.split_once("type=\"application/json\">").unwrap();
     serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
@@ -152,108 +151,10 @@ fn a_violation_gives_exit_code_3_and_all_files() {
     assert_eq!(data_of(&page)["verdict"], "NOT legal: 600 violations");
 
     let run = folder.run("verify --replay other-view --json b.json --report b");
-    assert_eq!(run.code, 3, "{}", run.stderr);
-    let words = "error: the picture is not legal: the camera's vector right is [1.5, 0.0, 0.0] on the device";
-    assert!(run.stderr.starts_with(words), "{}", run.stderr);
+    run.refused(3, "not legal: the camera's vector right is [1.5, 0.0, 0.0] on the device");
     let json: serde_json::Value = serde_json::from_slice(&folder.read("b.json")).unwrap();
     assert!(json["upload"].as_str().unwrap().contains("vector right"));
     let page = String::from_utf8(folder.read("b/report.html")).unwrap();
     let data = data_of(&page);
     assert_eq!((&data["report"], &data["pictures"]["verdicts"]), (&json, &().into()));
-}
-
-#[track_caller]
-fn refused(folder: &Folder, arguments: &str, code: i32, words: &str) {
-    let before = folder.files();
-    let run = folder.run_without_drivers(arguments);
-    assert_eq!((run.code, run.stderr.lines().count()), (code, 1), "{arguments}: {}", run.stderr);
-    let expected = format!("error: {words}");
-    assert!(run.stderr.starts_with(&expected), "{arguments}: {}", run.stderr);
-    assert!(run.stdout.is_empty(), "{arguments}");
-    assert_eq!(folder.files(), before, "{arguments}");
-}
-
-#[test]
-fn runs_that_are_damaged() {
-    let folder = folder();
-    let whole = folder.read("run");
-    let mut altered = whole.clone();
-    *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"5\"").unwrap();
-    // The number of the version is replaced by another of the same length.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"5\""));
-    let mut other = whole.clone();
-    other[version + 15] = b'7';
-    for (name, contents, words) in [
-        ("cut", &whole[..whole.len() - 1], "cut: the run file is cut off: it has "),
-        ("altered", &altered, "altered: the run file was altered after it was written"),
-        (
-            "other",
-            &other,
-            "other: run file of version 7; this program reads version 5; record it again with `verify --save`",
-        ),
-        (
-            "none",
-            b"PK\x03\x04 something else",
-            "none: this is not a run file; `pinhole verify --save`",
-        ),
-        ("empty", b"", "empty: this is not a run file"),
-    ] {
-        std::fs::write(folder.path(name), contents).unwrap();
-        refused(&folder, &format!("verify --replay {name} --json a.json --report a"), 1, words);
-    }
-    refused(&folder, "verify --replay no", 1, "no: cannot be read");
-}
-
-#[test]
-fn wrong_usage() {
-    let folder = folder();
-    let conflict = "the argument '--replay <RUN>' cannot be used with";
-    for flags in [
-        "scene.toml",
-        "--save b",
-        "--size 3x3",
-        "--radius 1",
-        "--camera pinhole",
-        "--eye 0,0,1",
-        "--adapter x",
-        "--limits webgpu",
-        "--accel grid",
-    ] {
-        refused(&folder, &format!("verify --replay run {flags}"), 2, conflict);
-    }
-    refused(&folder, "verify", 2, "the following required arguments were not provided: <SCENE");
-    for (flags, words) in [
-        ("--json run", "run: this output is also an input"),
-        ("--json no/a.json", "no/a.json: the folder no does not exist"),
-        ("--report scene.toml", "scene.toml: this is a file; name a folder"),
-        ("--report no/a", "no/a: the folder no does not exist"),
-        ("--json a --report a", "a: two outputs have this file"),
-    ] {
-        refused(&folder, &format!("verify --replay run {flags}"), 2, words);
-    }
-}
-
-#[test]
-#[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
-fn outputs_that_are_refused() {
-    let folder = folder();
-    refused(&folder, "verify scene.toml --save a --json ./a", 2, "a: two outputs have this file");
-    refused(
-        &folder,
-        "verify scene.toml --save scene.toml",
-        2,
-        "scene.toml: this output is also an input",
-    );
-}
-
-/// The CPU reference never replaces an adapter in a check.
-#[test]
-#[cfg_attr(
-    not(all(target_os = "linux", feature = "gpu")),
-    ignore = "needs the feature `gpu`, and only a Vulkan loader can be told that there are no drivers"
-)]
-fn without_an_adapter_there_is_nothing_to_verify() {
-    let words = "no Vulkan, Metal or DX12 adapter was found";
-    refused(&folder(), "verify scene.toml --json a.json --save b", 1, words);
 }

@@ -3,11 +3,26 @@
 use crate::npy_files::{npy, zip};
 use crate::support::{Folder, SCENE, WATER};
 
-/// A folder with all files that command lines name.
-pub(super) fn folder() -> Folder {
+/// A file of one sphere in each frame.
+const MOVING: &str = "1\n\nO 0 0 0\n1\n\nO 2 0 0\n1\n\nO 4 0 0\n1\n\nO 6 0 0\n1\n\nO 8 0 0\n";
+
+/// Spheres in a row, with a number and a text each, and a cell.
+const ROW: &str = "4\nLattice=\"8 0 0 0 2 0 0 0 2\" Properties=species:S:1:pos:R:3:radius:R:1:charge:R:1:site:S:1\n\
+                   C 0 0 0 1 -1 a\nC 2 0 0 1 0 b\nC 4 0 0 1 0.5 a\nC 6 0 0 1 3 c\n";
+
+/// One sphere is seen from the right, from the front and from the left.
+const PATH: &str = "[[keys]]\nframe = 0\neye = [-4, 0, 20]\nlook_at = [-4, 0, 0]\n\
+                    [[keys]]\nframe = 2\neye = [4, 0, 20]\nlook_at = [4, 0, 0]\n";
+
+/// A folder with all files that these arguments may name.
+pub(super) fn folder(arguments: &str) -> Folder {
     let folder = Folder::with(&[
         ("scene.toml", SCENE),
         ("water.xyz", WATER),
+        ("moving.xyz", MOVING),
+        ("row.xyz", ROW),
+        ("path.toml", PATH),
+        ("text.bricks", "x,y,z\n1,2,3\n"),
         ("unknown.doc", "Hello\n"),
         ("missing-data.toml", "data = 'no.xyz'\n"),
         ("trajectory.toml", "data = 'water.xyz'\nframe = 5\n"),
@@ -60,6 +75,14 @@ pub(super) fn folder() -> Folder {
     }
     for (name, contents) in arrays_to_certify() {
         std::fs::write(folder.path(name), contents).unwrap();
+    }
+    let is_named = |name| arguments.split(' ').any(|word| word == name);
+    if is_named("a.bricks") {
+        folder.run("sort spheres.npy -o a.bricks -q --bricks 2").succeeded();
+    }
+    if is_named("made") {
+        let flags = "--frames :2 --tiles 2x1 --size 40x30 --samples 2 --backend cpu -q";
+        folder.run(&format!("job split moving.xyz -o made {flags}")).succeeded();
     }
     folder
 }

@@ -1,0 +1,128 @@
+//! `pinhole verify`: checks whether a picture is legal that an adapter renders now, or that was recorded before.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+
+use crate::args::VerifyArgs;
+use crate::failure::Failure;
+use crate::progress::{self, answer};
+use crate::threads;
+use crate::verify::output::{Recorded, VerifyOutputs};
+use crate::verify::report::{Report, open_pixels};
+use pinhole::verify::denoised::DenoiseCertificate;
+use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
+
+mod output;
+mod page;
+mod picture;
+#[cfg(feature = "gpu")]
+mod record;
+pub(crate) mod report;
+
+pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
+        return picture::run(args, picture, scene);
+    }
+    let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
+        (Some(path), _) => replayed(path, args)?,
+        #[cfg(feature = "gpu")]
+        (None, Some(path)) => record::recorded(path, args)?,
+        #[cfg(not(feature = "gpu"))]
+        (None, Some(_)) => {
+            return Err(Failure::usage(
+                "this program was built without the feature `gpu`, so it can only check recordings: \
+                 `pinhole verify --replay RUN`",
+            ));
+        }
+        (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
+    };
+    progress::stage("checking");
+    let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
+    let certificate = checker.certify(&run.recording);
+    let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
+    report.open = open_pixels(&checker, &run.recording, &certificate);
+    drop(checker);
+    progress::clear();
+    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    outputs.write(&run, &certificate, &report, &kept)?;
+    let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
+    let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
+    worse(worse(verdict(&certificate), of_light), of_denoiser)
+}
+
+/// The first failure, but a violation says more than what is undecided.
+fn worse(first: Result<(), Failure>, second: Result<(), Failure>) -> Result<(), Failure> {
+    match (first, second) {
+        (Err(Failure::Undecided(_)), Err(worse @ Failure::CheckFailed(_))) => Err(worse),
+        (first, second) => first.and(second),
+    }
+}
+
+/// Reads a saved recording, and checks its light.
+fn replayed(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
+    let outputs = VerifyOutputs::new(args)?;
+    outputs.check_not_inputs(&[path.to_path_buf()])?;
+    threads::start()?;
+    Ok(output::replay(path, outputs)?)
+}
+
+fn verdict(certificate: &Certificate) -> Result<(), Failure> {
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::CheckFailed(anyhow!("the picture is not legal: {error}")));
+    }
+    if certificate.outcome() == Outcome::Undecided {
+        let (count, all) = (certificate.undecided(), certificate.verdicts.len());
+        return Err(undecided(&format!("{count} of {all} pixels have several legal answers")));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
+            "the picture is not legal: {} of {} pixels; the first is {first}",
+            certificate.count(Verdict::Violation),
+            certificate.verdicts.len()
+        ))),
+    }
+}
+
+/// The failure of a check that says too little.
+fn undecided(what: &str) -> Failure {
+    let percent = 100.0 * MOST_UNDECIDED;
+    Failure::Undecided(anyhow!("no violation was found, but {what}; at most {percent} % may"))
+}
+
+fn verdict_of_light(certificate: &LitCertificate) -> Result<(), Failure> {
+    let what = if certificate.is_studio { "the studio is" } else { "the paths are" };
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::CheckFailed(anyhow!("{what} not legal: {error}")));
+    }
+    if certificate.outcome() == Outcome::Undecided {
+        let stages = certificate.stages();
+        return Err(undecided(&format!(
+            "the bounds of {} of {} stages of light are so wide that they say little",
+            stages.undecided, stages.checked
+        )));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
+            "{what} not legal: {} of {} stages; the first is {first}",
+            certificate.violation_count,
+            certificate.stages().checked
+        ))),
+    }
+}
+
+fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> {
+    let DenoiseCertificate { pixels, undecided: vague, violation_count, .. } = *certificate;
+    if certificate.outcome() == Outcome::Undecided {
+        let what = format!("the bounds of {vague} of {pixels} denoised pixels say little");
+        return Err(undecided(&what));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
+            "the denoised picture is not legal: {violation_count} of {pixels} pixels; the first is {first}"
+        ))),
+    }
+}
