@@ -8,9 +8,10 @@ use glam::Vec3;
 use super::divide::divide;
 use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
-use super::plan::{AccelPlan, BrickKind, Primitive, Structure};
+use super::plan::AccelPlan;
 use super::split::Item;
 use super::statistics::Margins;
+use super::structure::{BrickKind, Primitive, Structure};
 use super::wide_tree::WideTree;
 #[cfg(feature = "gpu")]
 use crate::parallel::map_chunks;

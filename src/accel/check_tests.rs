@@ -9,7 +9,8 @@ use super::ball::{BALLS_PER_VECTOR, PartInCell};
 use super::bricks::{Brick, Index};
 use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, word};
 use super::grid_build::{BuiltGrid, build_grid};
-use super::plan::{AccelPlan, Structure};
+use super::plan::AccelPlan;
+use super::structure::Structure;
 use super::wide_tree::{Slot, WIDE_LEAF, WIDE_LEVELS, WideTree};
 use super::wide_tree_build::levels_by_halves;
 

@@ -19,6 +19,7 @@ mod plan;
 pub(crate) mod slab;
 mod split;
 mod statistics;
+mod structure;
 pub(crate) mod wide_tree;
 mod wide_tree_build;
 pub(crate) mod wide_tree_visit;
@@ -28,10 +29,11 @@ pub(crate) use bricks::BrickBounds;
 pub use bricks::{Accel, Brick, Bricks, Index, QueryBoxes};
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
-pub use plan::{AccelChoice, AccelPlan, BrickKind, PlannedBuffer, Primitive, Structure};
+pub use plan::{AccelPlan, PlannedBuffer};
 #[cfg(feature = "gpu")]
 pub(crate) use statistics::margin_of;
 pub use statistics::{Crowd, SceneStatistics};
+pub use structure::{AccelChoice, BrickKind, Primitive, Structure};
 
 /// Constants that kernels share, for the test that compares both.
 #[cfg(all(test, feature = "gpu"))]

@@ -19,7 +19,10 @@ mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
 mod path;
+mod path_curve;
 mod pinhole;
+#[cfg(feature = "scene-file")]
+mod placement;
 mod pose;
 pub mod sampling;
 mod thin_lens;

@@ -16,6 +16,7 @@ use crate::scene::sphere_array::SphereArray;
 use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 
 mod appearance;
+mod color_map;
 mod duplicates;
 mod error;
 mod frame;
@@ -27,7 +28,8 @@ mod update;
 pub(crate) use appearance::SceneAppearance;
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
-pub use appearance::{Appearance, ColorMap, ColorMapError, Colors};
+pub use appearance::{Appearance, Colors};
+pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
 pub use frame::Whole;

@@ -1,0 +1,154 @@
+//! The names of structures and of shapes, as users choose them and as kernels distinguish them.
+
+use std::fmt;
+
+/// The structure that a user chooses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum AccelChoice {
+    /// The structure that suits the scene.
+    #[default]
+    Auto,
+    /// A grid with one or two levels of cells.
+    Grid,
+    /// A tree with eight children for each node.
+    Tree,
+    /// No structure: every sphere is tested. Slow; serves as the reference for the others.
+    List,
+    /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
+    /// have them and are opened for it.
+    RayQuery,
+}
+
+impl fmt::Display for AccelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Grid => "grid",
+            Self::Tree => "tree",
+            Self::List => "list",
+            Self::RayQuery => "query",
+        })
+    }
+}
+
+/// The acceleration structures, as kernels distinguish them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Structure {
+    /// No structure: every sphere is tested.
+    List,
+    /// One level of grid cells.
+    Grid,
+    /// Two levels of grid cells: crowded cells have grids of their own.
+    NestedGrid,
+    /// A compressed tree with eight children for each node.
+    WideTree,
+    /// A structure that the driver builds from boxes, and searches by ray queries; not all devices have these.
+    RayQuery,
+}
+
+impl Structure {
+    /// All structures for which there are kernels; the last needs more than any device has.
+    pub(crate) const WITH_KERNELS: &'static [Self] =
+        &[Self::List, Self::Grid, Self::NestedGrid, Self::WideTree, Self::RayQuery];
+
+    /// All structures that any device can search: not [`Structure::RayQuery`]. [`AccelChoice::Auto`] chooses among them.
+    pub const ALL: &'static [Self] = match Self::WITH_KERNELS {
+        [any @ .., Self::RayQuery] => any,
+        all => all,
+    };
+
+    /// The same structure, with nested grids if it is a grid and `is_nested`.
+    pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
+        match self {
+            Self::Grid if is_nested => Self::NestedGrid,
+            other => other,
+        }
+    }
+
+    /// The choice of a user that leads to this structure.
+    #[must_use]
+    pub const fn choice(self) -> AccelChoice {
+        match self {
+            Self::List => AccelChoice::List,
+            Self::Grid | Self::NestedGrid => AccelChoice::Grid,
+            Self::WideTree => AccelChoice::Tree,
+            Self::RayQuery => AccelChoice::RayQuery,
+        }
+    }
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::List => "list",
+            Self::Grid => "grid",
+            Self::NestedGrid => "nested grids",
+            Self::WideTree => "8-wide tree",
+            Self::RayQuery => "ray query",
+        }
+    }
+
+    /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
+    /// spheres; `None` for the list, which always terminates.
+    pub(crate) const fn instead(self) -> Option<AccelChoice> {
+        match self {
+            Self::List => None,
+            Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
+            Self::WideTree => Some(AccelChoice::List),
+            Self::RayQuery => Some(AccelChoice::Tree),
+        }
+    }
+}
+
+/// The kind of shapes in a brick. All shapes of a brick have the same kind, so that each kernel handles a single kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Primitive {
+    /// A sphere: a centre and a radius.
+    #[default]
+    Sphere,
+}
+
+impl Primitive {
+    /// All primitives.
+    pub const ALL: &'static [Self] = &[Self::Sphere];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+        }
+    }
+}
+
+/// The kind of brick for which a kernel is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BrickKind {
+    /// The acceleration structure.
+    pub structure: Structure,
+    /// The kind of shapes.
+    pub primitive: Primitive,
+}
+
+impl BrickKind {
+    /// All combinations of the given structures and primitives that are supported.
+    pub(crate) fn of<'a>(
+        structures: &'a [Structure],
+        primitives: &'a [Primitive],
+    ) -> impl Iterator<Item = Self> + 'a {
+        let kinds = primitives.iter().flat_map(|&primitive| {
+            structures.iter().map(move |&structure| Self { structure, primitive })
+        });
+        kinds.filter(|kind| kind.exists())
+    }
+
+    /// Whether the structure supports the primitive.
+    const fn exists(self) -> bool {
+        match self.primitive {
+            Primitive::Sphere => true,
+        }
+    }
+}

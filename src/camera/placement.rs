@@ -1,0 +1,82 @@
+//! Where a camera stands, as a scene file gives it.
+
+use glam::DVec3;
+
+use super::{CameraError, Pose};
+use crate::exact::List;
+
+/// Eye, target and up, which the tables of all cameras have. Without an eye the camera is placed so that it sees the whole
+/// scene.
+pub(super) struct PoseParameters {
+    /// Position of the camera.
+    pub(super) eye: Option<List<3>>,
+    /// The point at which the camera looks.
+    pub(super) look_at: Option<List<3>>,
+    /// The direction in which the camera looks, instead of `look_at`.
+    pub(super) direction: Option<List<3>>,
+    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
+    pub(super) up: Option<List<3>>,
+}
+
+/// The pose that [`PoseParameters`] describe.
+pub(super) struct Placement {
+    pub(super) pose: Pose,
+    /// Whether the position follows from what the camera must see; the pose has only the orientation then.
+    pub(super) is_framed: bool,
+    pub(super) direction: Option<List<3>>,
+    pub(super) up: Option<List<3>>,
+}
+
+impl PoseParameters {
+    pub(super) fn placement(&self) -> Result<Placement, CameraError> {
+        let Self { eye, look_at, direction, .. } = *self;
+        let (eye, toward) = match (eye, look_at, direction) {
+            (Some(List(eye)), Some(List(look_at)), None) => {
+                let toward = DVec3::from(look_at) - DVec3::from(eye);
+                let at = |up: [f64; 3]| Pose::looking_at(eye, look_at, up);
+                return self.upright(toward, at, direction, false);
+            }
+            (Some(List(eye)), None, Some(List(direction))) => (Some(eye), direction),
+            (Some(_), None, None) => {
+                return refused("an `eye` needs a `look_at` point or a `direction`");
+            }
+            (_, Some(_), Some(_)) => {
+                return refused("`look_at` and `direction` exclude each other; keep one");
+            }
+            (None, Some(_), None) => {
+                return refused(
+                    "`look_at` needs an `eye`; to frame the whole scene give a `direction`",
+                );
+            }
+            (None, None, direction) => {
+                (None, direction.map_or(Pose::DEFAULT_DIRECTION, |direction| direction.0))
+            }
+        };
+        let along = |up: [f64; 3]| Pose::looking_along(eye.unwrap_or_default(), toward, up);
+        self.upright(toward.into(), along, Some(List(toward)), eye.is_none())
+    }
+
+    /// Makes a pose with the direction that is up. If none was given, it is +y, or for a view straight down or up the
+    /// horizontal direction that [`Viewpoint::axes`](super::Viewpoint::axes) chooses.
+    fn upright(
+        &self,
+        toward: DVec3,
+        pose: impl Fn([f64; 3]) -> Result<Pose, CameraError>,
+        direction: Option<List<3>>,
+        is_framed: bool,
+    ) -> Result<Placement, CameraError> {
+        let up = self.up.map_or([0.0, 1.0, 0.0], |up| up.0);
+        let (pose, up) = match pose(up) {
+            Err(CameraError::UpParallelToView { .. }) if self.up.is_none() => {
+                let up = [0.0, 0.0, if toward.y < 0.0 { -1.0 } else { 1.0 }];
+                (pose(up)?, up)
+            }
+            pose => (pose?, up),
+        };
+        Ok(Placement { pose, is_framed, direction, up: Some(List(up)) })
+    }
+}
+
+pub(super) fn refused<T>(message: &'static str) -> Result<T, CameraError> {
+    Err(CameraError::Parameters { message })
+}
