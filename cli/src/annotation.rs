@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-use crate::args::one_of;
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::picture::PictureFormat;
+use crate::text::one_of;
 use pinhole::LinearRgb;
 use pinhole::annotate::{
     AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,

@@ -3,13 +3,13 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
 use crate::camera::CameraArgs;
 use crate::data::format_parser;
 #[cfg(feature = "gpu")]
 use crate::light::LightArgs;
+use crate::text::one_of;
 use pinhole::accel::AccelChoice;
 use pinhole::load::Format;
 
@@ -123,20 +123,6 @@ const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
         AccelChoice::RayQuery,
     ),
 ];
-
-/// A parser of names, each with its help, or none if that is empty, and the value that it stands for.
-pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
-    all: &'static [(&'static str, &'static str, T)],
-) -> impl TypedValueParser<Value = T> {
-    let names = all.iter().map(|(name, help, _)| match *help {
-        "" => PossibleValue::new(*name),
-        help => PossibleValue::new(*name).help(help),
-    });
-    PossibleValuesParser::new(names).try_map(|name| {
-        let found = all.iter().find(|(other, ..)| *other == name);
-        found.map(|(.., value)| *value).ok_or("this name has no meaning here")
-    })
-}
 
 #[derive(Debug, Args)]
 #[command(after_help = AFTER_HELP)]

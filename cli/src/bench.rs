@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 
 use crate::args::BenchArgs;
-use crate::bench_report::{BenchReport, RunReport, SceneReport, Spread};
+use crate::bench_report::{BenchReport, BenchScene, RunReport, SceneReport, Spread};
 use crate::device::{AdapterReport, DEVICE_CLOCK, WantedAdapter, explained};
 use crate::failure::Failure;
 use crate::input::{Input, Source};
@@ -223,15 +223,6 @@ pub(crate) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standar
 pub(crate) enum BenchSource {
     Standard(Standard),
     File(PathBuf, Box<Source>),
-}
-
-/// A scene that was generated or read.
-pub(crate) struct BenchScene {
-    pub(crate) name: String,
-    pub(crate) scene: Scene,
-    pub(crate) camera: Box<dyn Camera>,
-    pub(crate) film: Film,
-    pub(crate) load: Duration,
 }
 
 impl BenchSource {

@@ -4,10 +4,21 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::bench::BenchScene;
 use super::device::{AdapterReport, DEVICE_CLOCK};
 use super::memory::readable;
 use crate::text::table;
+use pinhole::camera::Camera;
+use pinhole::camera::film::Film;
+use pinhole::scene::Scene;
+
+/// A scene that was generated or read.
+pub(crate) struct BenchScene {
+    pub(crate) name: String,
+    pub(crate) scene: Scene,
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) film: Film,
+    pub(crate) load: Duration,
+}
 
 /// The JSON document.
 #[derive(Serialize)]

@@ -57,10 +57,8 @@ pub(super) struct Written {
 pub(super) enum Judged {
     /// About each sample.
     Intervals(WrittenCertificate),
-    /// About the means of its samples.
-    Means(Means),
-    /// About the means of light before it was denoised, and about what was made of it.
-    Denoised(Means, DenoiseCertificate),
+    /// About the means of its samples; or of light before it was denoised, and about what was made of it.
+    Means(Means, Option<DenoiseCertificate>),
 }
 
 impl Written {
@@ -149,7 +147,7 @@ pub(super) fn judge(
     })?;
     let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
     let found = written.colors(encoding)?;
-    Ok(Judged::Means(means(input, (per_pixel, reach), &found, &reference)?))
+    Ok(Judged::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
 }
 
 /// Judges the light of a picture that is neither denoised nor finished otherwise.
@@ -203,15 +201,17 @@ impl Judged {
     pub(super) fn by(&self) -> JudgedBy {
         match self {
             Self::Intervals(_) => JudgedBy::Intervals,
-            Self::Means(_) | Self::Denoised(..) => JudgedBy::Means,
+            Self::Means(..) => JudgedBy::Means,
         }
     }
 
     pub(super) fn outcome(&self) -> Outcome {
         match self {
             Self::Intervals(certificate) => certificate.outcome(),
-            Self::Means(means) => means.outcome(),
-            Self::Denoised(means, denoiser) => means.outcome().max(denoiser.outcome()),
+            Self::Means(means, denoiser) => {
+                let of_denoiser = denoiser.as_ref().map(DenoiseCertificate::outcome);
+                means.outcome().max(of_denoiser.unwrap_or(Outcome::Proved))
+            }
         }
     }
 
@@ -223,10 +223,8 @@ impl Judged {
                 certificate.undecided() as u64,
                 certificate.count(Verdict::Violation) as u64,
             ],
-            Self::Means(means) | Self::Denoised(means, _) => {
-                [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
-                    .map(|outcome| means.count(outcome) as u64)
-            }
+            Self::Means(means, _) => [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
+                .map(|outcome| means.count(outcome) as u64),
         }
     }
 
@@ -234,12 +232,9 @@ impl Judged {
     pub(super) fn violation(&self) -> Option<String> {
         match self {
             Self::Intervals(certificate) => certificate.violations.first().map(ToString::to_string),
-            Self::Means(means) | Self::Denoised(means, _) => {
+            Self::Means(means, denoiser) => {
                 let worst = means.worst().filter(|worst| worst.outcome == Outcome::Violated);
-                let denoiser = match self {
-                    Self::Denoised(_, denoiser) => denoiser.violations.first(),
-                    _ => None,
-                };
+                let denoiser = denoiser.as_ref().and_then(|denoiser| denoiser.violations.first());
                 worst.map(ToString::to_string).or(denoiser.map(ToString::to_string))
             }
         }
@@ -249,7 +244,7 @@ impl Judged {
     fn unit(&self) -> &'static str {
         match self {
             Self::Intervals(_) => "pixels",
-            Self::Means(_) | Self::Denoised(..) => "means of regions",
+            Self::Means(..) => "means of regions",
         }
     }
 
@@ -262,7 +257,7 @@ impl Judged {
             let percent = 100.0 * count as f64 / all;
             table += &format!("{name:<12}{count:>12}  {percent:8.4} %  of {}\n", self.unit());
         }
-        if let Self::Means(means) = self {
+        if let Self::Means(means, None) = self {
             let worst = means.worst().map_or(0.0, pinhole::verify::means::RegionMean::fraction);
             table += &format!("{:<12}{worst:>12.4}  of its bound\n", "worst mean");
             table += &format!("{:<12}{:>12.4}  of white\n", "widest bound", means.widest());
@@ -280,7 +275,7 @@ impl Judged {
                 "no violation was found, but {undecided} {unit} are undecided; at most {}",
                 match self {
                     Self::Intervals(_) => format!("{} % may be", 100.0 * MOST_UNDECIDED),
-                    Self::Means(_) | Self::Denoised(..) =>
+                    Self::Means(..) =>
                         "half of them may be; more samples, a larger picture or --denoise=false decide more".to_owned(),
                 }
             ))),

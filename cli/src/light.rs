@@ -3,8 +3,8 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::args::one_of;
 use super::failure::Failure;
+use super::text::one_of;
 use pinhole::LinearRgb;
 use pinhole::camera::filter::PixelFilter;
 use pinhole::range::RangeError;

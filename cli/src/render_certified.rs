@@ -92,7 +92,7 @@ impl Making<'_> {
         let image = self.finish(quiet, &with_lines, layers)?;
         let written = self.written(&image)?;
         let means = certified::means_of_light(input, &noisy, GUIDES)?;
-        Ok(Made { image, written, judged: Judged::Denoised(means, denoiser) })
+        Ok(Made { image, written, judged: Judged::Means(means, Some(denoiser)) })
     }
 
     fn finish(

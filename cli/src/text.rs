@@ -1,4 +1,6 @@
-//! Tables for people, and words of command lines for shells, so that people and scripts can give them again.
+//! Tables for people, words of command lines for shells, so that people and scripts can give them again, and names of values.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// Formats rows under a heading, indented by two spaces.
 #[cfg(feature = "gpu")]
@@ -20,6 +22,20 @@ pub(crate) fn table<const N: usize>(heading: [&str; N], rows: &[[String; N]]) ->
         text += &format!("  {}\n", line.trim_end());
     }
     text
+}
+
+/// A parser of names, each with its help, or none if that is empty, and the value that it stands for.
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
+    all: &'static [(&'static str, &'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    let names = all.iter().map(|(name, help, _)| match *help {
+        "" => PossibleValue::new(*name),
+        help => PossibleValue::new(*name).help(help),
+    });
+    PossibleValuesParser::new(names).try_map(|name| {
+        let found = all.iter().find(|(other, ..)| *other == name);
+        found.map(|(.., value)| *value).ok_or("this name has no meaning here")
+    })
 }
 
 /// A word for a shell, which is left as it is if no character has a meaning of its own there.
