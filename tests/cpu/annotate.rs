@@ -1,7 +1,5 @@
 //! Legends, scale bars and labels, as pictures have them.
 
-use std::io::Cursor;
-
 use pinhole::annotate::{
     Anchor, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend, LegendPlan, Panel,
     Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
@@ -14,6 +12,8 @@ use pinhole::load::{Column, ColumnValues, Labels};
 use pinhole::scene_file::SceneFile;
 use pinhole::write::png as png_file;
 use pinhole::{Encoding, Film, Image, SphereArray, ToneCurve, View};
+
+use crate::pictures::{plain, read_png};
 
 /// A key of categories.
 fn categories(names: &[&str]) -> ColorKey {
@@ -37,17 +37,7 @@ fn scale(values: &[f64], is_log: bool) -> ColorKey {
 
 /// A picture of one colour.
 fn flat([width, height]: [u32; 2], level: f32) -> Image {
-    let pixels = (width * height) as usize;
-    let (zeros, vectors) = (vec![0.0; pixels], vec![[0.0; 3]; pixels]);
-    Image::from_layers([width, height], vec![[level; 3]; pixels], zeros, vectors, vec![0; pixels])
-        .unwrap()
-}
-
-fn decoded(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
-    let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
-    let mut samples = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut samples).unwrap();
-    (reader.info().clone(), samples)
+    plain([width, height], vec![[level; 3]; (width * height) as usize])
 }
 
 /// Neither exposure nor a tone curve changes annotations, whatever they do to the picture.
@@ -60,9 +50,9 @@ fn exposure_and_tone_leave_annotations_alone() {
     for (encoding, step) in
         [(Encoding::default(), 1), (strong, 1), (strong.with_bits(Bits::Sixteen), 2)]
     {
-        let plain = decoded(&png_file::encode(&image, &encoding).unwrap()).1;
+        let plain = read_png(&png_file::encode(&image, &encoding).unwrap()).1;
         let file = png_file::encode_annotated(&image, &encoding, &annotations).unwrap();
-        let drawn = decoded(&file).1;
+        let drawn = read_png(&file).1;
         assert_eq!(plain.len(), drawn.len());
         for color in [[0xe6, 0x9f, 0x00], [0x56, 0xb4, 0xe9], [0x00, 0x9e, 0x73]] {
             let pixel: Vec<u8> = color.iter().flat_map(|byte| vec![*byte; step]).collect();
@@ -82,7 +72,7 @@ fn text_is_black_on_light_and_white_on_dark() {
             .with(Label { text: "MMMM".to_owned(), position: Position::TOP_LEFT });
         let image = flat([800, 900], level);
         let file = png_file::encode_annotated(&image, &Encoding::default(), &annotations).unwrap();
-        let drawn = decoded(&file).1;
+        let drawn = read_png(&file).1;
         assert!(drawn.contains(&ink), "{level}");
         assert_eq!(drawn.contains(&(255 - ink)), level == 0.0 || level == 1.0, "{level}");
     }
@@ -203,10 +193,10 @@ fn a_scale_bar_is_as_long_as_its_length() {
 fn dots_per_inch_are_written_in_metres() {
     let image = flat([2, 2], 0.5);
     let encoding = Encoding::default().with_dots_per_inch(Some(300.0)).unwrap();
-    let (info, _) = decoded(&png_file::encode(&image, &encoding).unwrap());
+    let (info, _) = read_png(&png_file::encode(&image, &encoding).unwrap());
     let dims = info.pixel_dims.unwrap();
     assert_eq!((dims.xppu, dims.yppu, dims.unit), (11811, 11811, png::Unit::Meter));
-    let (info, _) = decoded(&png_file::encode(&image, &Encoding::default()).unwrap());
+    let (info, _) = read_png(&png_file::encode(&image, &Encoding::default()).unwrap());
     assert!(info.pixel_dims.is_none());
     for bad in [0.0, -1.0, f32::NAN, 1e9] {
         assert!(Encoding::default().with_dots_per_inch(Some(bad)).is_err());

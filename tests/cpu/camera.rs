@@ -270,19 +270,6 @@ fn parallel_lines_along_the_view_plane_stay_parallel() {
     }
 }
 
-#[test]
-fn a_point_on_a_ray_is_seen_where_the_ray_comes_from() {
-    let cameras: [&dyn Camera; 2] = [&perspective(), &parallel()];
-    let mut random = fastrand::Rng::with_seed(11);
-    for camera in cameras {
-        for _ in 0..1000 {
-            let location = DVec2::new(random.f64(), random.f64()) * 2.0 - 1.0;
-            let point = camera.ray_in_world(location).at(random.f64() * 100.0 + 0.1);
-            assert!((camera.location_of(point).unwrap() - location).length() < 1e-12);
-        }
-    }
-}
-
 /// A vector of random direction, and of a length between 10⁻¹⁰⁰ and 10¹⁰⁰.
 fn random_vector(random: &mut fastrand::Rng) -> DVec3 {
     let direction = DVec3::from([0; 3].map(|_| random.f64() * 2.0 - 1.0));

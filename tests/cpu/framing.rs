@@ -14,15 +14,17 @@ fn scene(spheres: Vec<[f64; 4]>) -> Scene {
     SphereArray::F64(spheres).scene(LinearRgb::WHITE).unwrap()
 }
 
-/// A cloud of spheres that is longer along one axis.
-fn cloud(random: &mut fastrand::Rng, count: usize) -> Scene {
+/// A cloud of spheres that is longer along one axis, and a pose in any direction.
+fn cloud(random: &mut fastrand::Rng, count: usize) -> (Scene, Pose) {
     let place = DVec3::from([0; 3].map(|_| random.f64() * 200.0 - 100.0));
     let size = DVec3::from([0; 3].map(|_| 10_f64.powf(random.f64() * 2.0)));
     let sphere = |_| {
         let center = place + size * DVec3::from([0; 3].map(|_| random.f64() - 0.5));
         [center.x, center.y, center.z, 0.05 + 2.0 * random.f64().powi(4)]
     };
-    scene((0..count).map(sphere).collect())
+    let scene = scene((0..count).map(sphere).collect());
+    let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5));
+    (scene, Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap())
 }
 
 /// The silhouettes of all spheres in the picture: the smallest and the largest relative location. They are computed
@@ -55,9 +57,7 @@ fn silhouettes(camera: &dyn Camera, scene: &Scene) -> [DVec2; 2] {
 fn silhouettes_fill_the_tighter_side_and_lie_in_the_middle() {
     let mut random = fastrand::Rng::with_seed(11);
     for round in 0..200 {
-        let scene = cloud(&mut random, 1 + round % 40);
-        let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5));
-        let pose = Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap();
+        let (scene, pose) = cloud(&mut random, 1 + round % 40);
         let aspect = [0.3, 0.5625, 0.707, 1.0, 4.0 / 3.0, 16.0 / 9.0, 3.0][round % 7];
         let (fov, margin) = (0.1 + 2.0 * random.f64(), 0.4 * random.f64());
         let pinhole = PinholeCamera::framing(scene.subject(), pose, fov, aspect, margin).unwrap();
@@ -133,9 +133,7 @@ fn flat_data_is_recognized() {
 fn free_sides_stay_free() {
     let mut random = fastrand::Rng::with_seed(12);
     for round in 0..200 {
-        let scene = cloud(&mut random, 1 + round % 40);
-        let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5));
-        let pose = Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap();
+        let (scene, pose) = cloud(&mut random, 1 + round % 40);
         let (aspect, fov) = (0.3 + 3.0 * random.f64(), 0.1 + 1.5 * random.f64());
         let sides = [(); 4].map(|()| (0.9 * random.f64() - 0.45).max(0.0));
         let subject = scene.subject().with_free_sides(sides);

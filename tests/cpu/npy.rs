@@ -1,4 +1,4 @@
-//! Tests of reading arrays of spheres from .npy, .npz and raw files: good files, bad files and noise.
+//! Arrays of spheres from .npy, .npz and raw files; those that are refused are in `tests/files/refused`.
 
 use pinhole::SphereArray;
 use pinhole::load::npy as reader;
@@ -6,7 +6,8 @@ use pinhole::load::{ColumnValues, LoadError, Loaded, npz, raw};
 use pinhole::write;
 use pinhole::write::npy::write_spheres;
 
-use crate::arrays::{npy, structured, zip};
+use crate::arrays::{npy, zip};
+use crate::seeds::structured;
 
 /// Two spheres: x, y, z, radius.
 const ROWS: [[f32; 4]; 2] = [[1.0, 2.0, 3.0, 0.5], [4.0, -5.0, 6.5, 0.25]];

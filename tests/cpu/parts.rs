@@ -201,11 +201,7 @@ const FILM: [u32; 2] = [37, 29];
 const TALL: [u32; 2] = [37, 1601];
 
 /// Calls `test` with a picture of paths and one of a studio.
-fn with_lit(samples: u32, test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings)) {
-    with_lit_of(FILM, samples, test);
-}
-
-fn with_lit_of(
+fn with_lit(
     [width, height]: [u32; 2],
     samples: u32,
     test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings),
@@ -234,7 +230,7 @@ fn whole(
 #[test]
 fn batches_give_the_picture_of_all_samples_at_once() {
     for samples in [1, 2, 7, 40] {
-        with_lit(samples, |tree, view, settings| {
+        with_lit(FILM, samples, |tree, view, settings| {
             for is_denoised in [false, true] {
                 let settings = RenderSettings { is_denoised, ..settings.clone() };
                 let watch = &mut |_: &Progress| Decision::MeasureNoise;
@@ -250,7 +246,7 @@ fn batches_give_the_picture_of_all_samples_at_once() {
 /// What is told rises to the end, and each batch is told of.
 #[test]
 fn the_caller_is_told_of_every_batch() {
-    with_lit(9, |tree, view, settings| {
+    with_lit(FILM, 9, |tree, view, settings| {
         for settings in [settings, &RenderSettings::default()] {
             let mut told = Vec::new();
             let watch = &mut |progress: &Progress| {
@@ -272,7 +268,7 @@ fn the_caller_is_told_of_every_batch() {
 
 #[test]
 fn a_level_of_noise_ends_a_picture() {
-    with_lit(1000, |tree, view, settings| {
+    with_lit(FILM, 1000, |tree, view, settings| {
         let mut noises = Vec::new();
         let watch = &mut |progress: &Progress| {
             noises.extend(progress.noise.map(|noise| (progress.samples, noise)));
@@ -298,7 +294,7 @@ fn a_level_of_noise_ends_a_picture() {
 /// A picture that is finished within a batch keeps what the batch has done.
 #[test]
 fn every_pixel_has_the_samples_that_the_layer_says() {
-    with_lit_of(TALL, 4000, |tree, view, settings| {
+    with_lit(TALL, 4000, |tree, view, settings| {
         let is_within = |progress: &Progress| {
             let samples = f64::from(progress.samples);
             progress.samples > 0 && progress.part * f64::from(progress.total) > samples + 0.5
@@ -323,7 +319,7 @@ fn every_pixel_has_the_samples_that_the_layer_says() {
 
 #[test]
 fn the_caller_may_stop() {
-    with_lit(9, |tree, view, settings| {
+    with_lit(FILM, 9, |tree, view, settings| {
         for settings in [settings, &RenderSettings::default()] {
             let stop = &mut |_: &Progress| Decision::Stop;
             let done = cpu::render_watched(tree, view, settings, LayerSet::ALL, stop);

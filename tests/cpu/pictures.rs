@@ -26,18 +26,28 @@ fn picture() -> Image {
 
 /// A row of colours and nothing else.
 fn row(colors: &[[f32; 3]]) -> Image {
-    let pixels = colors.len();
-    let (zeros, vectors) = (vec![0.0; pixels], vec![[0.0; 3]; pixels]);
-    let size = [pixels as u32, 1];
-    Image::from_layers(size, colors.to_vec(), zeros, vectors, vec![0; pixels]).unwrap()
+    plain([colors.len() as u32, 1], colors.to_vec())
+}
+
+/// Colours and nothing else.
+pub(crate) fn plain(size: [u32; 2], colors: Vec<[f32; 3]>) -> Image {
+    let count = colors.len();
+    let (zeros, vectors) = (vec![0.0; count], vec![[0.0; 3]; count]);
+    Image::from_layers(size, colors, zeros, vectors, vec![0; count]).unwrap()
+}
+
+/// What a file says of itself, and the samples.
+pub(crate) fn read_png(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
+    let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
+    assert!(reader.info().srgb.is_some(), "it says that it is sRGB");
+    let mut samples = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut samples).unwrap();
+    (reader.info().clone(), samples)
 }
 
 /// Colour type and depth in words, and the samples.
 fn decoded(file: &[u8]) -> (String, Vec<u8>) {
-    let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
-    assert!(reader.info().srgb.is_some(), "it says that it is sRGB");
-    let mut samples = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut samples).unwrap();
+    let (info, samples) = read_png(file);
     (format!("{:?} {:?}", info.color_type, info.bit_depth), samples)
 }
 

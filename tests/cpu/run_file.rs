@@ -13,7 +13,7 @@ use pinhole::verify::run_file::{
 };
 use pinhole::verify::{
     Checker, LitCertificate, LitRecording, Outcome, PathRecording, Recording, Rendered,
-    RequestedCamera, TracedPixel, TracedRay, UploadedView,
+    RequestedCamera, TracedPixel, TracedRay,
 };
 use pinhole::{
     Appearance, Colors, Film, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading,
@@ -22,6 +22,7 @@ use pinhole::{
 use sha2::{Digest, Sha256};
 
 use crate::support::shaded;
+use crate::verify::uploaded;
 
 /// A recording by hand: the numbers are of no device, and every kind of number is there.
 pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
@@ -38,16 +39,7 @@ pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording 
     let vectors = camera.vectors();
     Recording {
         camera: RequestedCamera { kind: camera.kind(), vectors },
-        uploaded: UploadedView {
-            origin: (vectors.origin - scene.origin()).as_vec3().to_array(),
-            advance: 0.0,
-            right: vectors.right.as_vec3().to_array(),
-            up: vectors.up.as_vec3().to_array(),
-            forward: vectors.forward.as_vec3().to_array(),
-            numbers: vectors.numbers.map(|number| number as f32),
-            scene_min: [-1e3; 3],
-            scene_max: [1e3; 3],
-        },
+        uploaded: uploaded(&vectors, vectors.origin - scene.origin(), 0.0, [[-1e3; 3], [1e3; 3]]),
         film,
         primary: settings.primary().unwrap(),
         pixels: pixels.collect(),

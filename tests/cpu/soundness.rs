@@ -19,6 +19,7 @@ use pinhole::{LinearRgb, Scene};
 use crate::legal_device::{Habit, LegalDevice};
 use crate::support::effort::tries;
 use crate::support::hosts::{Convention, view};
+use crate::verify;
 
 /// How many cases there are if all run.
 const CASES: u32 = 1_000_000;
@@ -290,17 +291,7 @@ fn uploaded(camera: &dyn Camera, random: &mut fastrand::Rng) -> UploadedView {
         && vectors.numbers[1] != 1.0;
     let advance =
         if can_advance && random.bool() { decades(random, -3.0, 3.0) as f32 } else { 0.0 };
-    let narrow = |v: DVec3| v.as_vec3().to_array();
-    UploadedView {
-        origin: narrow(vectors.origin + f64::from(advance) * vectors.forward),
-        advance,
-        right: narrow(vectors.right),
-        up: narrow(vectors.up),
-        forward: narrow(vectors.forward),
-        numbers: vectors.numbers.map(|number| number as f32),
-        scene_min: [0.0; 3],
-        scene_max: [0.0; 3],
-    }
+    verify::uploaded(&vectors, vectors.origin, advance, [[0.0; 3]; 2])
 }
 
 /// In the whole square, in its corners, on its diagonals and in the very middle.

@@ -2,7 +2,7 @@
 //! planted in a recording.
 
 use pinhole::camera::film::YAxis;
-use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{Camera, CameraVectors, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::internals::NO_HIT;
@@ -17,6 +17,26 @@ use crate::legal_device::{Habit, LegalDevice};
 use crate::scene::{colored, spheres_of};
 use crate::support::spheres::{self, Spheres};
 use crate::written::assert_is_not_accused;
+
+/// What a device is given of a camera, whose origin is moved up by `advance`, and of the corners of a scene's box.
+pub(crate) fn uploaded(
+    vectors: &CameraVectors,
+    origin: DVec3,
+    advance: f32,
+    [scene_min, scene_max]: [[f32; 3]; 2],
+) -> UploadedView {
+    let narrow = |v: DVec3| v.as_vec3().to_array();
+    UploadedView {
+        origin: narrow(origin + f64::from(advance) * vectors.forward),
+        advance,
+        right: narrow(vectors.right),
+        up: narrow(vectors.up),
+        forward: narrow(vectors.forward),
+        numbers: vectors.numbers.map(|number| number as f32),
+        scene_min,
+        scene_max,
+    }
+}
 
 /// What a device is given; it has made nothing of it yet.
 pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
@@ -38,19 +58,10 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
     let advance = nearest as f32;
-    let narrow = |v: DVec3| v.as_vec3().to_array();
+    let corners = [low, high].map(|corner| corner.as_vec3().to_array());
     Recording {
         camera: RequestedCamera { kind: camera.kind(), vectors },
-        uploaded: UploadedView {
-            origin: narrow(origin + f64::from(advance) * forward),
-            advance,
-            right: narrow(vectors.right),
-            up: narrow(vectors.up),
-            forward: narrow(forward),
-            numbers: vectors.numbers.map(|number| number as f32),
-            scene_min: narrow(low),
-            scene_max: narrow(high),
-        },
+        uploaded: uploaded(&vectors, origin, advance, corners),
         film,
         primary: PrimarySettings::default(),
         pixels: Vec::new(),

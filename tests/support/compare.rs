@@ -4,6 +4,8 @@
 //! Depth, normal, position and headlight colour must lie within the bounds that follow from one number, how much
 //! the rounding of the kernel can displace a ray; flat colours, albedo and misses must be equal to the bit.
 
+use std::fmt::Debug;
+
 use glam::DVec3;
 use pinhole::camera::CameraKind;
 use pinhole::image::{NO_ID, Pixel};
@@ -51,22 +53,28 @@ pub(crate) struct Comparison {
 }
 
 /// One thing that is wrong.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Violation {
-    Size,
-    Id { pixel: [u32; 2], reference: u32, result: u32 },
-    Depth { pixel: [u32; 2], reference: f32, result: f32 },
-    Normal { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
-    Position { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
-    Albedo { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
-    Color { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
+#[derive(Debug)]
+#[allow(dead_code, reason = "some tests print it alone")]
+pub(crate) struct Violation {
+    /// `size`, or the name of a layer.
+    pub(crate) layer: &'static str,
+    pub(crate) pixel: [u32; 2],
+    /// The reference's value and the result's.
+    pub(crate) values: [String; 2],
+}
+
+impl Violation {
+    fn new(layer: &'static str, pixel: [u32; 2], values: [&dyn Debug; 2]) -> Self {
+        Self { layer, pixel, values: values.map(|value| format!("{value:?}")) }
+    }
 }
 
 /// Compares all layers of a result with those of the reference's picture of the same view.
 pub(crate) fn compare(view: &View, reference: &Picture, result: &Picture) -> Comparison {
     let mut comparison = Comparison::default();
     if reference.size != result.size {
-        comparison.violations.push(Violation::Size);
+        let sizes: [&dyn Debug; 2] = [&reference.size, &result.size];
+        comparison.violations.push(Violation::new("size", [0; 2], sizes));
         return comparison;
     }
     let [width, height] = reference.size;
@@ -79,25 +87,16 @@ pub(crate) fn compare(view: &View, reference: &Picture, result: &Picture) -> Com
             } else if nudged_ids(view, i, j).contains(&found.id) {
                 comparison.ambiguous += 1;
             } else {
-                comparison.violations.push(Violation::Id {
-                    pixel: [i, j],
-                    reference: expected.id,
-                    result: found.id,
-                });
+                let ids: [&dyn Debug; 2] = [&expected.id, &found.id];
+                comparison.violations.push(Violation::new("id", [i, j], ids));
             }
         }
     }
     comparison
 }
 
-fn differences(
-    view: &View,
-    pixel: [u32; 2],
-    reference: &Pixel,
-    result: &Pixel,
-) -> impl Iterator<Item = Violation> {
-    let bounds = bounds(view, pixel, reference);
-    let (a, b) = (reference, result);
+fn differences(view: &View, pixel: [u32; 2], a: &Pixel, b: &Pixel) -> Vec<Violation> {
+    let bounds = bounds(view, pixel, a);
     // Two misses are equal, although the difference of two infinities is not a number.
     let same_depth = a.depth.to_bits() == b.depth.to_bits()
         || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
@@ -105,15 +104,15 @@ fn differences(
     let same_position = distance(a.position, b.position) <= bounds.position;
     let same_albedo = a.albedo.map(f32::to_bits) == b.albedo.map(f32::to_bits);
     let same_color = distance(a.color, b.color) <= bounds.color;
-    [
-        (same_depth, Violation::Depth { pixel, reference: a.depth, result: b.depth }),
-        (same_normal, Violation::Normal { pixel, reference: a.normal, result: b.normal }),
-        (same_position, Violation::Position { pixel, reference: a.position, result: b.position }),
-        (same_albedo, Violation::Albedo { pixel, reference: a.albedo, result: b.albedo }),
-        (same_color, Violation::Color { pixel, reference: a.color, result: b.color }),
-    ]
-    .into_iter()
-    .filter_map(|(same, violation)| (!same).then_some(violation))
+    let layers: [(bool, &'static str, [&dyn Debug; 2]); 5] = [
+        (same_depth, "depth", [&a.depth, &b.depth]),
+        (same_normal, "normal", [&a.normal, &b.normal]),
+        (same_position, "position", [&a.position, &b.position]),
+        (same_albedo, "albedo", [&a.albedo, &b.albedo]),
+        (same_color, "color", [&a.color, &b.color]),
+    ];
+    let different = layers.into_iter().filter(|(is_same, ..)| !is_same);
+    different.map(|(_, layer, values)| Violation::new(layer, pixel, values)).collect()
 }
 
 /// How far each layer may be from the reference.

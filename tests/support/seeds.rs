@@ -204,8 +204,28 @@ fn npy() -> Vec<Seed> {
             files::npy(">f8", true, "(2, 3)", &big[..48]),
             Options::default().with_radius(1.0),
         ),
-        Seed::new(files::structured()),
+        Seed::new(structured()),
     ]
+}
+
+/// Two structures with positions, colours, opacities, text and what is not used.
+pub(crate) fn structured() -> Vec<u8> {
+    let header = "{'descr': [('pos', '<f4', (3,)), ('', '|V2'), ('diameter', '>f8'), ('rgba', '|u1', (4,)), \
+                  ('kind', '<U2'), ('phase', '<c8'), ('alive', '|b1')], 'fortran_order': False, 'shape': (2,)}";
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((header.len() as u16).to_le_bytes());
+    file.extend(header.as_bytes());
+    for (x, kind) in [(1.0_f32, "Ab"), (2.0, "z")] {
+        file.extend([x, 10.0 * x, 0.0].map(f32::to_le_bytes).as_flattened());
+        file.extend([9, 9]);
+        file.extend(f64::from(x).to_be_bytes());
+        file.extend([255, 0, 51, 51 * x as u8]);
+        let codes: Vec<u32> = kind.chars().map(u32::from).chain([0; 2]).take(2).collect();
+        file.extend(codes.into_iter().flat_map(u32::to_le_bytes));
+        file.extend([0; 8]);
+        file.push(u8::from(x > 1.5));
+    }
+    file
 }
 
 fn npz() -> Vec<Seed> {
@@ -215,7 +235,7 @@ fn npz() -> Vec<Seed> {
         Seed::new(files::zip(&[("other.npy", &spheres), ("spheres.npy", &spheres)], false)),
         Seed::new(files::zip(&[("arr_0.npy", &spheres)], true)),
         Seed::with_options(files::zip(&[("a.npy", &positions.bytes)], true), radius),
-        Seed::new(files::zip(&[("a.npy", &files::structured())], false)),
+        Seed::new(files::zip(&[("a.npy", &structured())], false)),
     ]
 }
 

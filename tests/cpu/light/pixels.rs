@@ -8,7 +8,7 @@ use pinhole::camera::{FisheyeCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::light::{Ground, LightKind, Sky, SkyLight};
-use pinhole::render::{Integrator, LightSampling, PathTracing, SettingsError, Studio};
+use pinhole::render::{Integrator, LightSampling, PathTracing, Studio};
 use pinhole::{
     Environment, Film, Image, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu,
 };
@@ -80,18 +80,6 @@ fn one_sample_is_that_of_the_picture() {
         (0..16).map(|s| shot.picture(&lighting).sample([0, 0], s).alpha).collect::<Vec<_>>(),
         (0..16).map(|s| shot.picture(&other).sample([0, 0], s).alpha).collect::<Vec<_>>(),
     );
-}
-
-#[test]
-fn what_is_refused_is_refused() {
-    let bright = Sphere::new([0.0; 3], 1.0, gray(1.5));
-    let shot = Shot::new(&[bright], [0.0; 3], 1.2, 4);
-    let Shot { scene, camera, film } = &shot;
-    let error =
-        cpu::render(scene, &View::new(camera.as_ref(), *film), &furnace(1), LayerSet::COLOR);
-    let Err(cpu::RenderError::Settings(SettingsError::Albedo { .. })) = error else {
-        panic!("{error:?}")
-    };
 }
 
 /// The part of a pixel beside an edge that a sphere as large as a plane covers.
