@@ -6,12 +6,13 @@ use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
 use pinhole::gpu::{
-    ColorTarget, Decision, Frame, GpuError, Headless, PictureRequest, RenderPlan, Renderer,
-    RendererOptions, SceneBuffers, StructurePlans, Targets, UploadProgress, UploadStep, wgpu,
+    ColorTarget, Decision, GpuError, Headless, PictureRequest, RenderPlan, RendererOptions,
+    SceneBuffers, StructurePlans, UploadProgress, UploadStep, wgpu,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, View};
 
-use crate::embedding::{Host, size_of_film, view_of};
+use crate::embedding::size_of_film;
+use crate::host_program::{Drawing, Host};
 use crate::support::spheres;
 use crate::trial;
 
@@ -111,21 +112,17 @@ fn bands(_: &'static Headless) {
         structures: vec![accels[0].structure()],
         ..RendererOptions::default()
     };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
     let film = Film::new(150, 100).unwrap();
-    let color = host.texture(size_of_film(&film), ColorTarget::Linear32.texture_format());
-    let targets = Targets { color: &view_of(&color), data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let mut drawing = Drawing::new(&host, &options, size_of_film(&film));
     let uploaded = accels.each_ref().map(|accel| {
-        SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &scene, accel).unwrap()
+        let Host { device, queue } = &host;
+        SceneBuffers::with_accel(&drawing.renderer, device, queue, &scene, accel).unwrap()
     });
     for camera in cameras() {
         let pictures = uploaded.each_ref().map(|scene| {
-            let view = View::new(camera.as_ref(), film);
-            frame.set_view(&host.queue, scene, &view, &RenderSettings::default()).unwrap();
-            let mut encoder = host.encoder();
-            renderer.record(&mut encoder, scene, &frame).unwrap();
-            host.submit_and_read(encoder, &color)
+            let (view, settings) = (View::new(camera.as_ref(), film), RenderSettings::default());
+            let encoder = drawing.record(&host, scene, &view, &settings);
+            host.submit_and_read::<u8>(encoder, &drawing.layers.color)
         });
         assert!(pictures[0] == pictures[1], "{:?}", camera.kind());
     }

@@ -1,14 +1,25 @@
-//! Tests of choosing a device, and of failures of devices.
+//! Tests of choosing a device, of its properties and failures, of plans and profiles, and that pictures do not depend on what
+//! is chosen by the type of device: the order of rows, and the sizes of tiles and submissions.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Picture, Progress, wgpu};
-use pinhole::{Film, LayerSet};
+use pinhole::camera::PinholeCamera;
+use pinhole::generate::Kind;
+use pinhole::gpu::wgpu::DeviceType;
+use pinhole::gpu::{
+    Decision, GpuError, Headless, HeadlessOptions, Picture, Profile, ProfileTrack, Progress,
+    SelfTestExtent, TestedProperty, wgpu,
+};
+use pinhole::internals::ShaderEdit;
+use pinhole::scene::{NewColors, SceneUpdate};
+use pinhole::{Colors, Film, LayerSet, LinearRgb, RenderSettings, Scene};
 
 use crate::support::View;
-use crate::trial;
+use crate::support::appearances::kinds;
+use crate::{lit_scenes, scenes, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
@@ -20,6 +31,15 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("device::a_device_that_does_not_finish_in_time", too_slow),
         trial("device::a_render_that_is_stopped_leaves_the_device_usable", stopped),
         trial("device::what_cannot_be_allocated_is_an_error", no_memory),
+        trial("profile::every_pass_and_phase_is_named", named_passes),
+        trial("profile::updates_of_colors_are_passes", recolored),
+        trial("plan::it_bounds_what_is_built", bounds),
+        trial("self_test::the_adapter_has_all_properties", full),
+        trial("self_test::a_part_is_quick", quick),
+        trial("self_test::fences_that_a_driver_sees_through_are_found", seen_through),
+        trial("device::pictures_do_not_depend_on_how_it_is_opened", opened_otherwise),
+        trial("device_shape::a_picture_of_other_tiles_is_the_same", large),
+        trial("device_shape::a_lit_picture_of_other_tiles_is_the_same", large_and_lit),
     ]
 }
 
@@ -63,7 +83,7 @@ fn callers_fault(_: &'static Headless) {
         mapped_at_creation: false,
     });
     let view = View::three_spheres();
-    headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
+    view.picture(&headless, LayerSet::COLOR);
 }
 
 /// Renders a picture in several submissions. `watch` is called after each of them except the last.
@@ -71,17 +91,9 @@ fn render_watched(
     headless: &Headless,
     mut watch: impl FnMut(&Progress) -> Decision,
 ) -> Result<Picture, GpuError> {
-    let View { scene, camera, settings, .. } = View::three_spheres();
-    let film = Film::new(2400, 1800).unwrap();
-    let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
-    let scene = headless.upload(&scene, &accel.into())?;
-    headless.render_uploaded(
-        &scene,
-        &pinhole::View::new(camera.as_ref(), film),
-        &settings,
-        LayerSet::COLOR,
-        &mut watch,
-    )
+    let view = View { film: Film::new(2400, 1800).unwrap(), ..View::three_spheres() };
+    let scene = headless.upload(&view.scene, &view.planned(headless, AccelChoice::Auto))?;
+    view.watched(headless, &scene, LayerSet::COLOR, &mut watch)
 }
 
 fn lost_midway(_: &'static Headless) {
@@ -127,4 +139,177 @@ fn no_memory(headless: &'static Headless) {
     let view = View { film, ..View::three_spheres() };
     let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR);
     assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
+}
+
+/// A device that is treated as one of this type.
+fn treated_as(device_type: DeviceType) -> Headless {
+    let options = HeadlessOptions { device_type: Some(device_type), ..HeadlessOptions::default() };
+    let headless = Headless::open(&options).unwrap();
+    assert_eq!(headless.adapter_info().device_type, device_type);
+    headless
+}
+
+/// However a device is opened, it makes the same pictures.
+fn opened_otherwise(headless: &'static Headless) {
+    let types = [DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::DiscreteGpu];
+    let mut others = Vec::from(types.map(|kind| (format!("{kind:?}"), treated_as(kind))));
+    let direct = HeadlessOptions { indirect: false, ..HeadlessOptions::default() };
+    others.push(("no indirect dispatch".to_owned(), Headless::open(&direct).unwrap()));
+    others.push(("a profile".to_owned(), profiled().0));
+    let lit = lit_scenes::all().map(|(name, mut view)| {
+        view.settings.sampling.samples = 6;
+        (name, view)
+    });
+    let primary = scenes::all().into_iter().map(|(name, view)| (name.to_owned(), view));
+    for (name, view) in primary.chain(lit) {
+        let expected = view.picture(headless, LayerSet::ALL);
+        for (how, other) in &others {
+            assert_eq!(view.picture(other, LayerSet::ALL), expected, "{name}, {how}");
+        }
+    }
+}
+
+/// Numbers of tiles on devices that are treated as software and as a GPU, whose pictures must be the same.
+fn tiles(mut view: View, size: [u32; 2], layers: LayerSet) -> [u64; 2] {
+    view.film = Film::new(size[0], size[1]).unwrap();
+    let pictures = [DeviceType::Cpu, DeviceType::DiscreteGpu].map(|device_type| {
+        let device = treated_as(device_type);
+        let (scene, settings) = (&view.scene, &view.settings);
+        let plan = device.plan(scene, &view.seen(), settings, layers, AccelChoice::Auto, 0);
+        (plan.tile_count, view.picture(&device, layers))
+    });
+    let [(software, expected), (gpu, picture)] = pictures;
+    assert!(picture == expected, "{size:?}");
+    [software, gpu]
+}
+
+fn large(_: &'static Headless) {
+    assert_eq!(tiles(View::three_spheres(), [1400, 1300], LayerSet::DATA), [2, 1]);
+}
+
+fn large_and_lit(_: &'static Headless) {
+    for name in ["path_lobes_and_metals", "studio_opacity"] {
+        let [software, gpu] = tiles(lit_scenes::sampled(name, 5), [700, 500], LayerSet::COLOR);
+        assert!(gpu < software, "{name}: {gpu} tiles instead of {software}");
+    }
+}
+
+const QUICK: &[&str] = &["fence", "add_multiply", "divide", "sqrt", "inverse_sqrt", "dot"];
+
+fn full(headless: &'static Headless) {
+    let report = headless.self_test(SelfTestExtent::Full).unwrap();
+    let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
+    let rest = ["subnormals", "comparison_and_conversion", "loops", "fence_in_trace"];
+    assert_eq!(names, [QUICK, &rest].concat());
+    assert!(report.passed(), "{:?}", report.first_failure());
+}
+
+fn quick(headless: &'static Headless) {
+    let report = headless.self_test(SelfTestExtent::Quick).unwrap();
+    let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
+    assert_eq!(names, QUICK);
+    assert!(report.passed(), "{:?}", report.first_failure());
+}
+
+fn fences_in_trace(headless: &Headless) -> TestedProperty {
+    let report = headless.self_test(SelfTestExtent::Full).unwrap();
+    report.properties().iter().find(|property| property.name == "fence_in_trace").unwrap().clone()
+}
+
+/// A driver that knows that the zero of fences is one, in kernels that trace rays only.
+fn seen_through(headless: &'static Headless) {
+    let sound = fences_in_trace(headless);
+    println!("{sound}");
+    let (_, rewritten) =
+        sound.figures.iter().find(|(name, _)| *name == "unfenced_rewritten_percent").unwrap();
+    let edit = ShaderEdit {
+        file: "scene/frame.wgsl".to_owned(),
+        find: "frame.iteration_limit ^ frame.iteration_limit_again".to_owned(),
+        replace: "0u".to_owned(),
+    };
+    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+    let known = fences_in_trace(&Headless::open(&options).unwrap());
+    println!("{known}");
+    // Some drivers rewrite nothing.
+    assert_eq!(known.passed(), *rewritten < 1.0, "{known}");
+}
+
+fn bounds(headless: &'static Headless) {
+    let grey = LinearRgb::from_srgb8([128, 128, 128]);
+    let film = Film::new(64, 48).unwrap();
+    for kind in [Kind::Random, Kind::Clusters] {
+        let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
+        let camera =
+            PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
+        let view = pinhole::View::new(&camera, film);
+        for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
+            let settings = RenderSettings::default();
+            let plan = headless.plan(&scene, &view, &settings, LayerSet::DATA, choice, 0);
+            let structures = plan.build(&scene);
+            let buffers = headless.upload(&scene, &structures).unwrap();
+            // The plan does not count the record of a brick, and the single appearance word.
+            let small = 200 * structures.accel.bricks().len() as u64;
+            let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
+            assert!(buffers.bytes() <= planned + small, "{kind:?}, {choice}");
+            assert!(plan.check(&headless.device().limits(), None).is_ok());
+        }
+    }
+}
+
+/// A device that fills in a profile, and the profile.
+fn profiled() -> (Headless, Profile) {
+    let profile = Profile::default();
+    let options = HeadlessOptions { profile: Some(profile.clone()), ..HeadlessOptions::default() };
+    (Headless::open(&options).unwrap(), profile)
+}
+
+/// How often each pass ran, or each phase, by its name.
+fn calls(profile: &Profile, track: ProfileTrack) -> BTreeMap<&'static str, u64> {
+    let totals = profile.totals().into_iter().filter(|total| total.track == track);
+    totals.map(|total| (total.name, total.calls)).collect()
+}
+
+fn named_passes(_: &'static Headless) {
+    let common = ["start", "extend", "advance", "accumulate"];
+    let by_one_ray = ["trace", "shade"];
+    let of_studio = ["surface", "shadow", "illuminate", "ambient", "gather"];
+    for (name, wanted) in [
+        ("path_sky_image", [&common[..], &["scatter", "occlude"]].concat()),
+        ("studio_opacity", [&common[..], &of_studio].concat()),
+        ("studio_key_and_fill", vec!["one_pass"]),
+        ("path_emissive_both", vec!["whole_paths"]),
+    ] {
+        let (device, profile) = profiled();
+        let mut view = lit_scenes::sampled(name, 2);
+        view.settings.is_denoised = true;
+        view.picture(&device, LayerSet::COLOR);
+
+        let named_passes = calls(&profile, ProfileTrack::Device);
+        let mut wanted: Vec<_> = wanted.iter().chain(&by_one_ray).chain(&["denoise"]).collect();
+        wanted.sort();
+        assert_eq!(named_passes.keys().collect::<Vec<_>>(), wanted, "{name}");
+        assert!(named_passes.values().all(|count| *count > 0));
+        let phases = calls(&profile, ProfileTrack::Host);
+        for phase in ["build", "upload", "create pipelines", "submit", "wait", "read back"] {
+            assert!(phases.contains_key(phase), "{name}: no phase {phase}");
+        }
+    }
+}
+
+fn scene_of_rgba() -> Scene {
+    let is_rgba = |scene: &Scene| matches!(scene.appearance().colors(), Colors::Rgba8(_));
+    kinds().into_iter().map(|kind| kind.scene).find(is_rgba).unwrap()
+}
+
+fn recolored(_: &'static Headless) {
+    let (device, profile) = profiled();
+    let mut scene = scene_of_rgba();
+    let plan = device.plan_accel(&scene, pinhole::accel::AccelChoice::Auto);
+    let structures = plan.build(scene.spheres()).into();
+    let mut buffers = device.upload(&scene, &structures).unwrap();
+    let colors = Some(NewColors::Rgba8(&[[9, 99, 199, 255]]));
+    let update = SceneUpdate { colors, ..SceneUpdate::default() };
+    scene.apply(&update).unwrap();
+    device.update(&mut buffers, &scene, &update).unwrap();
+    assert_eq!(calls(&profile, ProfileTrack::Device).get("recolor"), Some(&1));
 }

@@ -1,22 +1,30 @@
-//! Tests of recording into the encoder and the textures of another application's device.
+//! Tests of recording into the encoder and the textures of another application's device, and of the async forms, which make
+//! the pictures of the blocking forms and return while the device works.
 
+use std::pin::{Pin, pin};
 use std::sync::{Arc, Mutex};
+use std::task::Poll;
 
 use libtest_mimic::Trial;
-use pinhole::accel::{AccelChoice, AccelPlan, BrickKind, Primitive, Structure};
+use pinhole::accel::{AccelChoice, BrickKind, Primitive, Structure};
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::gpu::{
-    ColorTarget, DataTargets, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers,
-    Targets, adapter, wgpu,
+    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets,
+    adapter, wgpu,
 };
 use pinhole::image::NO_ID;
-use pinhole::{LinearRgb, RenderSettings, Scene};
+use pinhole::{LayerSet, LinearRgb, RenderSettings, Scene};
 
+use crate::host_program::{Drawing, Host, view_of};
 use crate::support::{View, spheres};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
+    [own(), async_forms()].into_iter().flatten().collect()
+}
+
+fn own() -> Vec<Trial> {
     vec![
         trial("embedding::a_foreign_encoder_gets_the_spheres_in_its_texture", foreign_frame),
         trial("embedding::a_picture_larger_than_one_band", several_bands),
@@ -30,12 +38,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// An application with its own device, which has the default limits of WebGPU.
-pub(crate) struct Host {
-    pub(crate) device: wgpu::Device,
-    pub(crate) queue: wgpu::Queue,
-}
-
+/// With the default limits of WebGPU.
 impl Host {
     pub(crate) fn new() -> Self {
         Self::with_limits(wgpu::Limits::default())
@@ -48,82 +51,6 @@ impl Host {
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
         Self { device, queue }
     }
-
-    pub(crate) fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("host"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        })
-    }
-
-    pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
-        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
-    }
-
-    /// Runs the encoder and returns the word in a buffer.
-    fn submit_and_read_word(&self, mut encoder: wgpu::CommandEncoder, word: &wgpu::Buffer) -> u32 {
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: 4,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        encoder.copy_buffer_to_buffer(word, 0, &buffer, 0, 4);
-        self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
-        self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-        let bytes = buffer.get_mapped_range(..).unwrap();
-        u32::from_ne_bytes(bytes[..].try_into().unwrap())
-    }
-
-    /// Runs the encoder and returns the bytes of a texture.
-    pub(crate) fn submit_and_read(
-        &self,
-        mut encoder: wgpu::CommandEncoder,
-        texture: &wgpu::Texture,
-    ) -> Vec<u8> {
-        let used = texture.width() * texture.format().block_copy_size(None).unwrap();
-        let row = used.next_multiple_of(256);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(row * texture.height()),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: None,
-                },
-            },
-            texture.size(),
-        );
-        self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
-        self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-        let bytes = buffer.get_mapped_range(..).unwrap();
-        bytes.chunks(row as usize).flat_map(|row| row[..used as usize].to_vec()).collect()
-    }
-}
-
-pub(crate) fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-fn three_spheres() -> View {
-    View::three_spheres()
 }
 
 pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
@@ -162,21 +89,18 @@ fn clear(encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
 
 fn foreign_frame(_: &'static Headless) {
     let host = Host::new();
-    let view = three_spheres();
+    let view = View::three_spheres();
     let size = size_of_film(&view.film);
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let Drawing { renderer, layers, mut frame } =
+        Drawing::new(&host, &RendererOptions::default(), size);
     let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
-    let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
-    let target_view = view_of(&target);
-    let targets = Targets { color: &target_view, data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
 
     // The application records its own commands for the same texture in the same encoder: a clear before, a copy after.
     let mut encoder = host.encoder();
-    clear(&mut encoder, &target_view);
+    clear(&mut encoder, &view_of(&layers.color));
     renderer.record(&mut encoder, &scene, &frame).unwrap();
-    let bytes = host.submit_and_read(encoder, &target);
+    let bytes: Vec<u8> = host.submit_and_read(encoder, &layers.color);
 
     assert_eq!(bytes.len(), size[0] as usize * size[1] as usize * 4);
     assert!(bytes == expected_bytes(&view), "the texture differs from the reference");
@@ -187,15 +111,10 @@ fn several_bands(_: &'static Headless) {
     let host = Host::new();
     let mut view = View::three_spheres();
     view.film = Film::new(2400, 1900).unwrap().with_y_axis(view.film.y_axis());
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
-    let target = host.texture(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
-    let targets = Targets { color: &view_of(&target), data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
-    let mut encoder = host.encoder();
-    renderer.record(&mut encoder, &scene, &frame).unwrap();
-    let bytes = host.submit_and_read(encoder, &target);
+    let mut drawing = Drawing::new(&host, &RendererOptions::default(), size_of_film(&view.film));
+    let scene = drawing.scene(&host, &view.scene);
+    let encoder = drawing.record(&host, &scene, &view.seen(), &view.settings);
+    let bytes: Vec<u8> = host.submit_and_read(encoder, &drawing.layers.color);
     // In a picture this large, some pixels are so close to a silhouette that both colours are correct.
     let expected = expected_bytes(&view);
     let pixels = bytes.chunks(4).zip(expected.chunks(4));
@@ -206,61 +125,38 @@ fn several_bands(_: &'static Headless) {
 fn several_views(_: &'static Headless) {
     let host = Host::new();
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
-    let views = [three_spheres(), View::three_spheres_orthographic()];
+    let views = [View::three_spheres(), View::three_spheres_orthographic()];
     // Two frames of the same scene are recorded in one submission.
     let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).unwrap();
     let mut encoder = host.encoder();
-    let textures: Vec<wgpu::Texture> = views
-        .iter()
-        .map(|view| {
-            let size = size_of_film(&view.film);
-            let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
-            let targets = Targets { color: &view_of(&target), data: None };
-            let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-            let View { camera, film, settings, .. } = view;
-            frame
-                .set_view(
-                    &host.queue,
-                    &scene,
-                    &pinhole::View::new(camera.as_ref(), *film),
-                    settings,
-                )
-                .unwrap();
-            renderer.record(&mut encoder, &scene, &frame).unwrap();
-            target
-        })
-        .collect();
-    let first = host.submit_and_read(encoder, &textures[0]);
-    let second = host.submit_and_read(host.encoder(), &textures[1]);
-    assert!(first == expected_bytes(&views[0]), "pinhole");
-    assert!(second == expected_bytes(&views[1]), "orthographic");
+    let textures = views.each_ref().map(|view| {
+        let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
+        let frame = layers.with(false, |targets| Frame::new(&renderer, &host.device, targets));
+        let mut frame = frame.unwrap();
+        frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
+        renderer.record(&mut encoder, &scene, &frame).unwrap();
+        layers.color
+    });
+    host.submit(encoder);
+    for (view, texture) in views.iter().zip(&textures) {
+        let found: Vec<u8> = host.read(texture);
+        assert!(found == expected_bytes(view), "{:?}", view.camera.kind());
+    }
 }
 
 /// A kernel that reaches the iteration limit sets the status of the frame, until the application clears it.
 fn given_up(_: &'static Headless) {
     let host = Host::new();
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
-    let target = host.texture([24, 16], wgpu::TextureFormat::Rgba8Unorm);
-    let targets = Targets { color: &view_of(&target), data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let Drawing { renderer, mut frame, .. } =
+        Drawing::new(&host, &RendererOptions::default(), [24, 16]);
     let is_software = host.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
     for (count, expected) in [(10, 0), (30_000, u32::from(is_software)), (10, 0)] {
         let spheres = spheres::nearly_coincident(count);
         let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
         let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
-        let film = Film::new(24, 16).unwrap();
-        let accel = AccelPlan::new(scene.spheres(), AccelChoice::Grid, 1 << 27);
-        let accel = accel.build(scene.spheres());
-        let buffers =
-            SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &scene, &accel).unwrap();
-        frame
-            .set_view(
-                &host.queue,
-                &buffers,
-                &pinhole::View::new(&camera, film),
-                &RenderSettings::default(),
-            )
-            .unwrap();
+        let buffers = host.scene(&renderer, &scene, AccelChoice::Grid, 1 << 27);
+        let view = pinhole::View::new(&camera, Film::new(24, 16).unwrap());
+        frame.set_view(&host.queue, &buffers, &view, &RenderSettings::default()).unwrap();
         let mut encoder = host.encoder();
         encoder.clear_buffer(frame.status(), 0, None);
         renderer.record(&mut encoder, &buffers, &frame).unwrap();
@@ -292,31 +188,18 @@ fn unfit_targets(_: &'static Headless) {
 fn data_layers(_: &'static Headless) {
     let host = Host::new();
     let view = View::three_spheres();
-    let size = size_of_film(&view.film);
     let options = RendererOptions {
         color: ColorTarget::Linear16,
         data_layers: true,
         ..RendererOptions::default()
     };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
-    let color = host.texture(size, wgpu::TextureFormat::Rgba16Float);
-    let depth = host.texture(size, wgpu::TextureFormat::R32Float);
-    let normal = host.texture(size, wgpu::TextureFormat::Rgba32Float);
-    let id = host.texture(size, wgpu::TextureFormat::R32Uint);
-    let data =
-        DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
-    let targets = Targets { color: &view_of(&color), data: Some(data) };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
-    let mut encoder = host.encoder();
-    renderer.record(&mut encoder, &scene, &frame).unwrap();
-    let ids = host.submit_and_read(encoder, &id);
-    let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&ids);
+    let mut drawing = Drawing::new(&host, &options, size_of_film(&view.film));
+    let scene = drawing.scene(&host, &view.scene);
+    let encoder = drawing.record(&host, &scene, &view.seen(), &view.settings);
+    let ids: Vec<u32> = host.submit_and_read(encoder, &drawing.layers.id);
     let reference = view.reference();
     assert!(ids == reference.id().unwrap(), "ids");
-    let depths = host.submit_and_read(host.encoder(), &depth);
-    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    let depths: Vec<f32> = host.read(&drawing.layers.depth);
     for (found, expected) in depths.iter().zip(reference.depth().unwrap()) {
         if expected.is_finite() {
             assert!((found - expected).abs() < 1e-4, "{found} is not {expected}");
@@ -325,8 +208,7 @@ fn data_layers(_: &'static Headless) {
         }
     }
     // The red of the background is 0.4342 in linear light, rounded to the eleven bits of a half float.
-    let colors = host.submit_and_read(host.encoder(), &color);
-    let red = u16::from_le_bytes([colors[0], colors[1]]);
+    let red = host.read::<u16>(&drawing.layers.color)[0];
     assert_eq!((red >> 10, red & 0x3ff), (13, 754), "{red:#x}");
 }
 
@@ -353,13 +235,11 @@ fn hosts_handler(_: &'static Headless) {
 /// Frames support primary rays only. Other settings are an error, and nothing is recorded.
 fn lit_frame(_: &'static Headless) {
     let host = Host::new();
-    let view = three_spheres();
+    let view = View::three_spheres();
     let size = size_of_film(&view.film);
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let Drawing { renderer, mut frame, .. } =
+        Drawing::new(&host, &RendererOptions::default(), size);
     let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
-    let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
-    let targets = Targets { color: &view_of(&target), data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
         let refused = frame.set_view(&host.queue, &scene, &view.seen(), &settings);
         let integrator = settings.integrator.name();
@@ -373,23 +253,16 @@ fn not_ready(_: &'static Headless) {
     let host = Host::new();
     let options =
         RendererOptions { cameras: vec![CameraKind::Orthographic], ..RendererOptions::default() };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
-    let view = three_spheres();
+    let Drawing { renderer, mut frame, .. } = Drawing::new(&host, &options, [8, 8]);
+    let view = View::three_spheres();
     let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
-    let small = host.texture([8, 8], wgpu::TextureFormat::Rgba8Unorm);
-    let targets = Targets { color: &view_of(&small), data: None };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     let mut encoder = host.encoder();
     assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
     let again = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
 
     let mut set_view = |film: &Film| {
-        frame.set_view(
-            &host.queue,
-            &scene,
-            &pinhole::View::new(view.camera.as_ref(), *film),
-            &view.settings,
-        )
+        let view_of_film = pinhole::View::new(view.camera.as_ref(), *film);
+        frame.set_view(&host.queue, &scene, &view_of_film, &view.settings)
     };
     assert!(matches!(set_view(&view.film), Err(GpuError::Target { .. })));
     set_view(&Film::new(8, 8).unwrap()).unwrap();
@@ -406,4 +279,119 @@ fn not_ready(_: &'static Headless) {
     assert_eq!(linear.record(&mut encoder, &scene, &frame), Err(GpuError::OtherRenderer));
     // The encoder can still be used.
     host.queue.submit([encoder.finish()]);
+}
+
+fn async_forms() -> Vec<Trial> {
+    vec![
+        trial("async_forms::they_make_the_pictures_of_the_blocking_forms", same_pictures),
+        trial("async_forms::two_renders_on_one_thread_take_turns", turns),
+        trial("async_forms::a_render_that_is_given_up_blocks_nobody", dropped),
+        trial("async_forms::a_renderer_built_in_pieces_draws_the_spheres", pieces),
+    ]
+}
+
+fn all_settings() -> [RenderSettings; 3] {
+    let mut studio = RenderSettings::studio();
+    studio.sampling.samples = 3;
+    let mut path = RenderSettings::path();
+    path.sampling.samples = 3;
+    path.is_denoised = true;
+    [RenderSettings::default(), studio, path]
+}
+
+/// Runs a future by an executor that knows nothing of devices, and returns how often the future returned unfinished.
+fn run<T>(future: impl Future<Output = T>) -> (u32, T) {
+    let mut future = pin!(future);
+    let mut unfinished = 0;
+    let result = pollster::block_on(std::future::poll_fn(|context| {
+        let polled = future.as_mut().poll(context);
+        unfinished += u32::from(polled.is_pending());
+        polled
+    }));
+    (unfinished, result)
+}
+
+fn same_pictures(headless: &'static Headless) {
+    let view = View::three_spheres();
+    for settings in all_settings() {
+        let expected =
+            headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).unwrap();
+        let seen = view.seen();
+        // How often it returned unfinished depends on how fast the device is.
+        let (_, found) = run(headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL));
+        assert!(found.unwrap() == expected, "{}", settings.integrator.name());
+    }
+}
+
+fn turns(headless: &'static Headless) {
+    let view = View::three_spheres();
+    let seen = view.seen();
+    let [first, second, _] = all_settings();
+    let expected = [&first, &second]
+        .map(|settings| headless.render(&view.scene, &seen, settings, LayerSet::COLOR).unwrap());
+    type Render<'a> = Pin<Box<dyn Future<Output = Result<pinhole::Image, GpuError>> + 'a>>;
+    let mut renders: [Option<Render<'_>>; 2] = [&first, &second].map(|settings| {
+        let render = headless.render_async(&view.scene, &seen, settings, LayerSet::COLOR);
+        Some(Box::pin(render) as Render<'_>)
+    });
+    let mut found = [None, None];
+    pollster::block_on(std::future::poll_fn(|context| {
+        for (render, found) in renders.iter_mut().zip(&mut found) {
+            if let Some(Poll::Ready(image)) = render.as_mut().map(|f| f.as_mut().poll(context)) {
+                *found = Some(image.unwrap());
+                *render = None;
+            }
+        }
+        if renders.iter().all(Option::is_none) { Poll::Ready(()) } else { Poll::Pending }
+    }));
+    assert!(found == expected.map(Some));
+}
+
+/// A render that was begun and dropped, while it waited for any of its submissions, neither holds the device nor lets
+/// the next render fail.
+fn dropped(headless: &'static Headless) {
+    let view = View::three_spheres();
+    let seen = view.seen();
+    let [primary, studio, _] = all_settings();
+    for settings in [primary, studio] {
+        let render = || headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL);
+        let (submissions, expected) = run(render());
+        let expected = expected.unwrap();
+        for waited in 1..=submissions {
+            let mut begun = Box::pin(render());
+            let mut unfinished = 0;
+            pollster::block_on(std::future::poll_fn(|context| {
+                // The number of submissions adapts to the device, so this render may need fewer.
+                if begun.as_mut().poll(context).is_ready() {
+                    return Poll::Ready(());
+                }
+                unfinished += 1;
+                if unfinished == waited { Poll::Ready(()) } else { Poll::Pending }
+            }));
+            drop(begun);
+            let again = headless.render(&view.scene, &seen, &settings, LayerSet::ALL);
+            assert!(again.unwrap() == expected, "given up at wait {waited}");
+        }
+    }
+}
+
+fn pieces(_: &'static Headless) {
+    let host = Host::new();
+    let view = View::three_spheres();
+    let (device, queue) = (&host.device, &host.queue);
+    let mut renderer = Renderer::begin(device, &RendererOptions::default());
+    let scene = SceneBuffers::new(&renderer, device, queue, &view.scene).unwrap();
+    let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
+    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets));
+    let mut frame = frame.unwrap();
+    frame.set_view(queue, &scene, &view.seen(), &view.settings).unwrap();
+    let mut encoder = host.encoder();
+    let mut refused = 0;
+    while let Err(error) = renderer.record(&mut encoder, &scene, &frame) {
+        assert!(matches!(error, GpuError::NotReady { .. }), "{error}");
+        refused += 1;
+        renderer.build_next(device).unwrap();
+    }
+    assert!(refused > 0);
+    assert!(host.submit_and_read::<u8>(encoder, &layers.color) == expected_bytes(&view));
 }

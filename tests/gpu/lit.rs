@@ -1,23 +1,209 @@
-//! What tests of certificates of paths and of studios share.
+//! Tests that the checker accepts the paths and the studios of this device, and finds faults that are inserted. What it
+//! judges is also written into a run file and read again, as on a machine without a device.
 
-use libtest_mimic::Failed;
-use pinhole::gpu::Headless;
-use pinhole::verify::{LitCertificate, Outcome};
+use std::io::Cursor;
 
-use crate::light::scenes::LitView;
-use crate::planted::{Fault, named};
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
+use pinhole::camera::OrthographicCamera;
+use pinhole::gpu::{Decision, GpuError, Headless, Structures};
+use pinhole::image::NO_ID;
+use pinhole::render::PrimarySettings;
+use pinhole::verify::run_file::{Extras, LitSamples, Provenance, RunFile, write_with};
+use pinhole::verify::{
+    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PathRecording, Recording,
+    Rendered, StudioRecording, TracedPixel,
+};
+use pinhole::{Film, Image, Integrator, LayerSet, Scene};
 
-/// Makes a view.
-type Make = fn() -> LitView;
+use crate::lit_inputs::{self, Change};
+use crate::lit_scenes;
+use crate::planted::{self, Fault, planted};
+use crate::support::View;
+use crate::support::effort::tries;
+use crate::support::random_light;
+use crate::{headless, trial};
+
+/// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
+const SMALL_BINDING: u64 = 16 * 100;
+
+/// The suites, and how many random scenes each has if all run, with one test for each. For more scenes, run
+/// `cargo bench --bench verify -- lit-campaign 500`, or `studio-campaign 500`.
+const SUITES: [(&str, u32); 2] = [("paths", 36), ("studio", 48)];
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (suite, seeds) in SUITES {
+        for name in lit_scenes::judged(suite) {
+            let full = format!("{suite}::legal::{name}");
+            trials.push(Trial::test(full, move || legal(&lit_scenes::view(suite, &name))));
+        }
+        let choices = [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree];
+        let structures = choices.map(|choice| (format!("a_{choice:?}"), choice, 1 << 27));
+        let bricks = ("bricks".to_owned(), AccelChoice::List, SMALL_BINDING);
+        for (name, choice, binding_bytes) in structures.into_iter().chain([bricks]) {
+            let name = format!("{suite}::legal::in_{name}").to_lowercase();
+            trials.push(Trial::test(name, move || legal_in(suite, choice, binding_bytes)));
+        }
+        for seed in 0..u64::from(tries(seeds)) {
+            let name = format!("{suite}::random::seed_{seed}");
+            trials.push(Trial::test(name, move || random(suite, seed)));
+        }
+        let find = move |fault: &Fault| is_found(fault, suite, chosen);
+        trials.extend(planted::trials(&format!("{suite}::faults::"), planted(suite), find));
+    }
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
+        let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
+        trials.push(Trial::test(name, move || {
+            let view = lit_scenes::view("paths", "thrice");
+            is_legal(&certify(
+                &view,
+                &record(headless()?, &view, &in_bricks(&view, choice).into())?,
+            ))
+        }));
+    }
+    trials.extend(planted::trials("paths::faults::", planted("paths_by_id"), |fault| {
+        is_found(fault, "paths", |_, view| in_bricks(view, AccelChoice::Tree).into())
+    }));
+    for (suite, name, change) in lit_inputs::all() {
+        let name = format!("{suite}::faults::input_{name}");
+        trials.push(Trial::test(name, move || input_fault_is_found(suite, change)));
+    }
+    trials.push(Trial::test("paths::faults::film_of_one_pixel_more", part_of_a_large_film));
+    trials.push(trial("paths::stops_when_told", stops_when_told));
+    trials
+}
+
+/// All recorded samples of a picture.
+pub(crate) enum Samples {
+    Paths(PathRecording),
+    Studio(StudioRecording),
+}
+
+impl Samples {
+    fn as_ref(&self) -> LitRecording<'_> {
+        match self {
+            Self::Paths(paths) => LitRecording::Paths(paths),
+            Self::Studio(studio) => LitRecording::Studio(studio),
+        }
+    }
+
+    fn given(&mut self) -> &mut LitInputs {
+        match self {
+            Self::Paths(paths) => &mut paths.given,
+            Self::Studio(studio) => &mut studio.given,
+        }
+    }
+}
+
+/// The structures that a device chooses.
+fn chosen(device: &Headless, view: &View) -> Structures {
+    view.planned(device, AccelChoice::Auto)
+}
+
+/// Records some samples: of studios the first, one in between, and the last of a picture of many.
+fn record(device: &Headless, view: &View, structures: &Structures) -> Result<Samples, GpuError> {
+    let buffers = device.upload(&view.scene, structures)?;
+    let samples = match view.settings.integrator {
+        Integrator::Studio(_) => &[0, 37, 63][..],
+        _ => &[0, 1],
+    };
+    let mut all = None;
+    let each = &mut |one: LitRecording<'_>| match (&mut all, one) {
+        (None, LitRecording::Paths(one)) => all = Some(Samples::Paths(one.clone())),
+        (None, LitRecording::Studio(one)) => all = Some(Samples::Studio(one.clone())),
+        (Some(Samples::Paths(all)), LitRecording::Paths(one)) => {
+            all.samples.extend_from_slice(&one.samples);
+        }
+        (Some(Samples::Studio(all)), LitRecording::Studio(one)) => {
+            all.samples.extend_from_slice(&one.samples);
+        }
+        _ => panic!("paths and studios"),
+    };
+    let go_on = &mut |_: &_| Decision::GoOn;
+    device.record_lit(&buffers, &view.seen(), &view.settings, samples, (each, go_on))?;
+    Ok(all.unwrap())
+}
+
+fn certify(view: &View, samples: &Samples) -> LitCertificate {
+    let certificate = Checker::new(&view.scene).unwrap().certify_lit(samples.as_ref());
+    replay(&view.scene, samples.as_ref(), &certificate);
+    certificate
+}
+
+fn recorded(device: &Headless, view: &View) -> Result<Samples, GpuError> {
+    record(device, view, &chosen(device, view))
+}
+
+/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
+fn is_legal(certificate: &LitCertificate) -> Result<(), Failed> {
+    let stages = certificate.stages();
+    let is_telling = stages.checked > 10_000
+        && stages.decided + stages.open > stages.checked / 1000 * 999
+        && stages.open < stages.checked / 20;
+    println!("{certificate}");
+    if certificate.is_legal() && is_telling {
+        Ok(())
+    } else {
+        Err(format!("{certificate}\n{:#?}\n{certificate:#?}", certificate.named()).into())
+    }
+}
+
+fn legal(view: &View) -> Result<(), Failed> {
+    is_legal(&certify(view, &recorded(headless()?, view)?))
+}
+
+/// Recordings are legal with every structure.
+fn legal_in(suite: &str, choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
+    let view = lit_scenes::view(suite, "many");
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
+    is_legal(&certify(&view, &record(headless()?, &view, &accel.into())?))
+}
+
+/// Several bricks between which equal spheres are divided.
+fn in_bricks(view: &View, choice: AccelChoice) -> Accel {
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::new(spheres, choice, SMALL_BINDING).build(spheres);
+    let brick_of = |sphere: &[f32; 4]| {
+        let place = |brick: &Brick| brick.spheres.iter().any(|other| other[..3] == sphere[..3]);
+        accel.bricks().iter().filter(|brick| place(brick)).count()
+    };
+    assert!(spheres.iter().any(|sphere| brick_of(sphere) > 1), "none is in several");
+    accel
+}
+
+/// Random scenes with random light are legal.
+fn random(suite: &str, seed: u64) -> Result<(), Failed> {
+    let of = if suite == "paths" { random_light::view } else { random_light::studio };
+    let random = of(seed);
+    let name = random.name.clone();
+    let view = View::from(random);
+    let certificate = certify(&view, &recorded(headless()?, &view)?);
+    let stages = certificate.stages();
+    println!("seed {seed}: {name}: {certificate}");
+    let said = stages.decided + stages.open;
+    let is_good = match suite {
+        // The checks of some scenes, such as those with mirrors, say little, but not those of most scenes.
+        "paths" => certificate.outcome() != Outcome::Violated && said > stages.checked / 2,
+        _ => certificate.is_legal() && said > stages.checked / 10 * 9,
+    };
+    if is_good {
+        Ok(())
+    } else {
+        Err(format!("seed {seed}: {name}: {certificate}\n{:#?}", certificate.named()).into())
+    }
+}
 
 /// Asserts that the fault is found in the stage in which it was inserted.
-pub(crate) fn is_found(
+fn is_found(
     fault: &Fault,
-    views: &[(&str, Make)],
-    certify: impl Fn(&Headless, &LitView) -> Result<LitCertificate, Failed>,
+    suite: &str,
+    structures: impl Fn(&Headless, &View) -> Structures,
 ) -> Result<(), Failed> {
     let [view, stage] = fault.setup();
-    let certificate = certify(&fault.device()?, &named(views, view)())?;
+    let (device, view) = (fault.device()?, lit_scenes::view(suite, view));
+    let certificate = certify(&view, &record(&device, &view, &structures(&device, &view))?);
     println!("{certificate}");
     match certificate.violations.first() {
         None => Err(format!("the fault was not found: {certificate}").into()),
@@ -29,23 +215,92 @@ pub(crate) fn is_found(
 }
 
 /// Asserts that a certificate is violated, and not only undecided.
-pub(crate) fn is_violated(certificate: &LitCertificate) -> Result<(), Failed> {
+fn is_violated(certificate: &LitCertificate) -> Result<(), Failed> {
     match certificate.outcome() {
         Outcome::Violated => Ok(()),
         _ => Err(format!("the fault was not found: {certificate}").into()),
     }
 }
 
-/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
-pub(crate) fn is_legal(certificate: &LitCertificate) -> Result<(), Failed> {
-    let stages = certificate.stages();
-    let is_telling = stages.checked > 10_000
-        && stages.decided + stages.open > stages.checked / 1000 * 999
-        && stages.open < stages.checked / 20;
-    println!("{certificate}");
-    if certificate.is_legal() && is_telling {
-        Ok(())
-    } else {
-        Err(format!("{certificate}\n{:#?}\n{certificate:#?}", certificate.named()).into())
+/// The device was given other inputs than the requested ones, or the recording is damaged.
+fn input_fault_is_found(suite: &str, change: Change) -> Result<(), Failed> {
+    let view = lit_inputs::view(suite);
+    let mut given = lit_inputs::view(suite);
+    if let Change::View(change) = change {
+        change(&mut given);
     }
+    let mut samples = recorded(headless()?, &given)?;
+    samples.given().settings = view.settings.clone();
+    match (change, &mut samples) {
+        (Change::View(_), _) => {}
+        (Change::Paths(change), Samples::Paths(paths)) => change(paths),
+        (Change::Studio(change), Samples::Studio(studio)) => change(studio),
+        _ => return Err("another kind of recording".into()),
+    }
+    is_violated(&certify(&view, &samples))
+}
+
+/// For a large film the rectangle in the middle is recorded. Its paths are not legal for another rectangle.
+fn part_of_a_large_film() -> Result<(), Failed> {
+    let pose = pinhole::camera::Pose::looking_at([0.5, 1.5, 7.0], [0.0; 3], [0.1, 1.0, 0.0])?;
+    let camera = Box::new(OrthographicCamera::new(pose, [5.0, 4.5])?);
+    let view = View { camera, film: Film::new(300, 270)?, ..lit_scenes::view("paths", "matt") };
+    let mut samples = recorded(headless()?, &view)?;
+    let given = samples.given();
+    if given.origin != [38, 23] || given.size != [224, 224] {
+        return Err(format!("{:?}, {:?}", given.origin, given.size).into());
+    }
+    is_legal(&certify(&view, &samples))?;
+    samples.given().origin[0] += 1;
+    is_violated(&certify(&view, &samples))
+}
+
+fn stops_when_told(headless: &'static Headless) {
+    let view = lit_scenes::view("paths", "matt");
+    let buffers = headless.upload(&view.scene, &chosen(headless, &view)).unwrap();
+    let stop = &mut |_: &_| Decision::Stop;
+    let each = &mut |_: LitRecording<'_>| {};
+    let stopped = headless.record_lit(&buffers, &view.seen(), &view.settings, &[0], (each, stop));
+    assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
+}
+
+/// A recording of the same view by one ray for each pixel, which hits nothing.
+fn nothing(given: &LitInputs) -> Recording {
+    let size = [given.film.width(), given.film.height()];
+    let pixel = TracedPixel { ray: None, t: NO_HIT, id: NO_ID, shading_ray: None };
+    Recording {
+        camera: given.camera,
+        uploaded: given.uploaded,
+        film: given.film,
+        primary: PrimarySettings::default(),
+        pixels: vec![pixel; given.film.pixel_count() as usize],
+        image: Image::new(size[0], size[1], LayerSet::DATA).unwrap(),
+        rendered: Rendered::None,
+    }
+}
+
+/// Asserts that a recording leads to the same certificate, to the bit, after it was saved.
+fn replay(scene: &Scene, recording: LitRecording<'_>, certificate: &LitCertificate) {
+    let given = match recording {
+        LitRecording::Paths(paths) => &paths.given,
+        LitRecording::Studio(studio) => &studio.given,
+        _ => panic!("another kind of recording"),
+    };
+    let mut samples = LitSamples::new(Box::new(Cursor::new(Vec::new())));
+    if samples.add(recording).is_err() {
+        // Lists of another size cannot be saved, and are not legal.
+        assert!(certificate.upload.is_some(), "{certificate}");
+        return;
+    }
+    let extras = Extras { light: Some(&samples), ..Extras::default() };
+    let mut bytes = Vec::new();
+    write_with(scene, &nothing(given), &Provenance::default(), extras, &mut bytes).unwrap();
+    let mut source = Cursor::new(&bytes);
+    let file = RunFile::open(&mut source).unwrap();
+    let run = file.run().unwrap();
+    let checker = Checker::new(&run.scene).unwrap();
+    let mut again = LitCertificate::default();
+    assert!(file.light(&run, &mut |one| again.join(checker.certify_lit(one))).unwrap());
+    // Every number and text; no number is NaN.
+    assert_eq!(&again, certificate);
 }

@@ -6,11 +6,12 @@ use libtest_mimic::Trial;
 use pinhole::PixelFilter;
 use pinhole::camera::{filter, sampling};
 use pinhole::glam::DVec3;
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, wgpu};
 use pinhole::light::environment::Environment;
+use wgpu::util::DeviceExt;
 
 use crate::support::maps::{AS_IT_IS, direction, random_map};
-use crate::{compute, trial};
+use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
@@ -57,7 +58,7 @@ fn questions(count: usize) -> Vec<[u32; 4]> {
 fn check(headless: &Headless, answer: &str, expected: impl Fn([u32; 4]) -> [u32; 4]) {
     let questions = questions(1 << 18);
     let source = format!("fn answer(q: vec4u) -> vec4u {{ return {answer}; }}");
-    let answers = compute::answers(headless, &[SAMPLING, &source], &[], &questions);
+    let answers = answers(headless, &[SAMPLING, &source], &[], &questions);
     for (question, answer) in questions.into_iter().zip(answers) {
         assert_eq!(answer, expected(question), "{question:x?}");
     }
@@ -99,7 +100,7 @@ fn filter_offsets(headless: &'static Headless) {
 fn filter_table(index: u32) -> f32 { return table[index >> 2u][index & 3u]; }
 fn answer(q: vec4u) -> vec4u { return vec4u(bitcast<vec2u>(filter_offset(q.xy)), 0u, 0u); }";
         let parts = [FILTER, FENCE, RUNTIME_ZERO, source];
-        let answers = compute::answers(headless, &parts, &[(0, 2, &words)], &questions);
+        let answers = answers(headless, &parts, &[(0, 2, &words)], &questions);
         for (question, answer) in questions.iter().zip(answers) {
             for axis in 0..2 {
                 let u = question[axis];
@@ -143,8 +144,7 @@ fn sines(headless: &'static Headless) {
     let source = "fn answer(q: vec4u) -> vec4u {
     return vec4u(bitcast<vec2u>(sin_cos_turns(bitcast<f32>(q.x))), 0u, 0u);
 }";
-    let answers =
-        compute::answers(headless, &[TURNS, FENCE, RUNTIME_ZERO, source], &[], &questions);
+    let answers = answers(headless, &[TURNS, FENCE, RUNTIME_ZERO, source], &[], &questions);
     let mut worst = 0.0_f64;
     for (question, answer) in questions.into_iter().zip(answers) {
         let turns = numbers(question)[0];
@@ -170,8 +170,7 @@ fn angles(headless: &'static Headless) {
     let source = "fn answer(q: vec4u) -> vec4u {
     return vec4u(bitcast<u32>(atan2_turns(bitcast<f32>(q.x), bitcast<f32>(q.y))), 0u, 0u, 0u);
 }";
-    let answers =
-        compute::answers(headless, &[INVERSE, FENCE, RUNTIME_ZERO, source], &[], &questions);
+    let answers = answers(headless, &[INVERSE, FENCE, RUNTIME_ZERO, source], &[], &questions);
     let mut worst = 0.0_f64;
     for (question, answer) in questions.into_iter().zip(answers) {
         let [y, x, ..] = numbers(question);
@@ -209,7 +208,7 @@ fn answer(q: vec4u) -> vec4u {
         map.rows().iter().chain(map.columns()).map(|share| share.to_bits()).collect();
     let tables = [(0, 2, &lighting[..]), (3, 0, &texels), (3, 1, &shares[..])];
     let parts = [ENVIRONMENT, TURNS, INVERSE, FENCE, RUNTIME_ZERO, source];
-    let answers = compute::answers(headless, &parts, &tables, questions);
+    let answers = answers(headless, &parts, &tables, questions);
     answers.into_iter().map(numbers).collect()
 }
 
@@ -308,4 +307,94 @@ fn black_environment(headless: &'static Headless) {
         assert_eq!(density.to_bits(), 0);
         assert!((DVec3::new(x, y, z).length() - 1.0).abs() < 1e-5, "{answer:?}");
     }
+}
+
+/// The WGSL before the parts, which declares the buffers of questions and answers.
+const BINDINGS: &str = "
+@group(0) @binding(0) var<storage, read> questions: array<vec4u>;
+@group(0) @binding(1) var<storage, read_write> answers: array<vec4u>;
+";
+
+/// Returns the results of `fn answer(question: vec4u) -> vec4u`, which one of the parts must provide, for all
+/// questions.
+///
+/// `tables` are storage buffers of words, with their groups and bindings.
+pub(crate) fn answers(
+    headless: &Headless,
+    parts: &[&str],
+    tables: &[(u32, u32, &[u32])],
+    questions: &[[u32; 4]],
+) -> Vec<[u32; 4]> {
+    assert_eq!(questions.len() % 64, 0, "whole workgroups");
+    let main = "
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) invocation: vec3u,
+        @builtin(num_workgroups) workgroups: vec3u) {
+    let index = invocation.y * workgroups.x * 64u + invocation.x;
+    if (index < arrayLength(&questions)) {
+        answers[index] = answer(questions[index]);
+    }
+}";
+    let source = [BINDINGS, &parts.join("\n"), main].concat();
+    let (device, queue) = (headless.device(), headless.queue());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("part"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("part"),
+        layout: None,
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let filled = |bytes: &[u8]| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytes,
+            usage: wgpu::BufferUsages::STORAGE,
+        })
+    };
+    let size = size_of_val(questions) as u64;
+    let empty = |usage| {
+        let descriptor =
+            wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        device.create_buffer(&descriptor)
+    };
+    let written = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let read = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let mut buffers = vec![(0, 0, filled(bytemuck::cast_slice(questions))), (0, 1, written)];
+    for (group, binding, words) in tables {
+        buffers.push((*group, *binding, filled(bytemuck::cast_slice(words))));
+    }
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(&pipeline);
+    for group in buffers.iter().map(|(group, ..)| *group) {
+        let of_group = buffers.iter().filter(|(of, ..)| *of == group);
+        let entries: Vec<_> = of_group
+            .map(|(_, binding, buffer)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        let layout = pipeline.get_bind_group_layout(group);
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout,
+            entries: &entries,
+        });
+        pass.set_bind_group(group, &bound, &[]);
+    }
+    let workgroups = questions.len() as u32 / 64;
+    // There may be at most 65,535 workgroups along an axis.
+    pass.dispatch_workgroups(workgroups.min(4096), workgroups.div_ceil(4096), 1);
+    drop(pass);
+    encoder.copy_buffer_to_buffer(&buffers[1].2, 0, &read, 0, size);
+    queue.submit([encoder.finish()]);
+    read.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
+    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let mapped = read.get_mapped_range(..).unwrap();
+    bytemuck::cast_slice(&mapped).to_vec()
 }

@@ -1,18 +1,27 @@
-//! Tests of pictures in which every byte is known.
+//! What a device makes of a view: pictures in which every byte is known, their agreement with the CPU reference, and parts
+//! of a film, which have the pixels of the whole, to the bit.
 
 use glam::DVec3;
 use libtest_mimic::Trial;
+use pinhole::accel::AccelChoice;
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::Headless;
+use pinhole::gpu::{self, Decision, GpuError, Headless, Progress, SceneBuffers, Structures};
 use pinhole::image::{Layer, NO_ID};
+use pinhole::render::{Integrator, Outline, Sampling};
+use pinhole::verify::Recording;
 use pinhole::write::npy::encode;
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, glam};
 
 use crate::support::View;
-use crate::trial;
+use crate::support::compare::{Picture, compare};
+use crate::{headless, lit_scenes, scenes, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
+    [own(), agreements(), parts_of_films()].into_iter().flatten().collect()
+}
+
+fn own() -> Vec<Trial> {
     vec![
         trial("pictures::three_spheres_have_exactly_their_colors", exact_colors),
         trial("pictures::a_picture_does_not_change_from_run_to_run", same_again),
@@ -24,14 +33,10 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-fn render(headless: &Headless, view: &View, layers: LayerSet) -> Image {
-    headless.render(&view.scene, &view.seen(), &view.settings, layers).unwrap()
-}
-
 fn exact_colors(headless: &'static Headless) {
     for view in [View::three_spheres(), View::three_spheres_orthographic()] {
         assert_eq!([view.film.width(), view.film.height()], [800, 600]);
-        let image = render(headless, &view, LayerSet::ALL);
+        let image = view.picture(headless, LayerSet::ALL);
         for (color, id) in image.color().iter().zip(image.id().unwrap()) {
             let expected = match id {
                 0 => [0xff, 0, 0],
@@ -46,15 +51,15 @@ fn exact_colors(headless: &'static Headless) {
 
 fn same_again(headless: &'static Headless) {
     let view = View::three_spheres();
-    let first = render(headless, &view, LayerSet::ALL);
-    assert_eq!(first, render(headless, &view, LayerSet::ALL));
+    let first = view.picture(headless, LayerSet::ALL);
+    assert_eq!(first, view.picture(headless, LayerSet::ALL));
 }
 
 fn turned_over(headless: &'static Headless) {
     let mut view = View::three_spheres();
-    let down = render(headless, &view, LayerSet::ALL);
+    let down = view.picture(headless, LayerSet::ALL);
     view.film = view.film.with_y_axis(YAxis::Up);
-    let up = render(headless, &view, LayerSet::ALL);
+    let up = view.picture(headless, LayerSet::ALL);
     let width = view.film.width() as usize;
     let rows = |image: &Image| image.id().unwrap().chunks(width).map(<[u32]>::to_vec).collect();
     let (down, up): (Vec<_>, Vec<_>) = (rows(&down), rows(&up));
@@ -64,18 +69,18 @@ fn turned_over(headless: &'static Headless) {
 
 fn layers_change_nothing(headless: &'static Headless) {
     let view = View::three_spheres();
-    let color_only = render(headless, &view, LayerSet::COLOR);
+    let color_only = view.picture(headless, LayerSet::COLOR);
     assert_eq!(color_only.depth(), None);
-    assert_eq!(color_only.color(), render(headless, &view, LayerSet::ALL).color());
+    assert_eq!(color_only.color(), view.picture(headless, LayerSet::ALL).color());
 }
 
 fn every_layer_alone(headless: &'static Headless) {
     let view = View::three_spheres();
-    let all = render(headless, &view, LayerSet::ALL);
+    let all = view.picture(headless, LayerSet::ALL);
     assert_eq!(all.layers(), LayerSet::ALL);
     for layer in LayerSet::ALL.iter() {
         let layers = LayerSet::COLOR.with(layer);
-        let image = render(headless, &view, layers);
+        let image = view.picture(headless, layers);
         assert_eq!(image.layers(), layers);
         assert_eq!(encode(&image, layer), encode(&all, layer), "{layer}");
     }
@@ -114,6 +119,136 @@ fn on_the_wall(headless: &'static Headless) {
 fn very_tall(headless: &'static Headless) {
     let mut view = View::three_spheres_orthographic();
     view.film = Film::new(2, 500_000).unwrap().with_y_axis(view.film.y_axis());
-    let image = render(headless, &view, LayerSet::COLOR.with(Layer::Id));
+    let image = view.picture(headless, LayerSet::COLOR.with(Layer::Id));
     assert!(image.id().unwrap() == view.reference().id().unwrap());
+}
+
+/// Goes on to the end.
+pub(crate) fn go_on(_: &Progress) -> Decision {
+    Decision::GoOn
+}
+
+impl View {
+    pub(crate) fn picture(&self, device: &Headless, layers: LayerSet) -> Image {
+        device.render(&self.scene, &self.seen(), &self.settings, layers).unwrap()
+    }
+
+    /// The scene in a structure, without one for occluders.
+    pub(crate) fn uploaded(&self, device: &Headless, choice: AccelChoice) -> SceneBuffers {
+        let accel = device.plan_accel(&self.scene, choice).build(self.scene.spheres());
+        device.upload(&self.scene, &accel.into()).unwrap()
+    }
+
+    /// The structures that a device plans, with one for occluders if that is needed.
+    pub(crate) fn planned(&self, device: &Headless, choice: AccelChoice) -> Structures {
+        let (scene, settings, layers) = (&self.scene, &self.settings, LayerSet::COLOR);
+        device.plan(scene, &self.seen(), settings, layers, choice, 0).build(scene)
+    }
+
+    pub(crate) fn watched(
+        &self,
+        device: &Headless,
+        scene: &SceneBuffers,
+        layers: LayerSet,
+        watch: &mut dyn FnMut(&Progress) -> Decision,
+    ) -> Result<gpu::Picture, GpuError> {
+        device.render_uploaded(scene, &self.seen(), &self.settings, layers, watch)
+    }
+
+    pub(crate) fn record(
+        &self,
+        device: &Headless,
+        structures: &Structures,
+    ) -> Result<Recording, GpuError> {
+        let scene = device.upload(&self.scene, structures)?;
+        device.record(&scene, &self.seen(), &self.settings, &mut go_on)
+    }
+}
+
+/// Maximum fraction of pixels whose id may differ because two ids are correct.
+const MAX_AMBIGUOUS: f64 = 1e-3;
+
+fn agreements() -> Vec<Trial> {
+    scenes::all()
+        .into_iter()
+        .map(|(name, view)| {
+            Trial::test(format!("agreement::{name}"), move || {
+                let image = view.picture(headless()?, LayerSet::ALL);
+                let reference = Picture::from(&view.reference());
+                let comparison = compare(&view, &reference, &Picture::from(&image));
+                if let Some(first) = comparison.violations.first() {
+                    let count = comparison.violations.len();
+                    return Err(format!("{count} violations, the first is {first:?}").into());
+                }
+                let ambiguous = comparison.ambiguous as f64 / view.film.pixel_count() as f64;
+                if ambiguous > MAX_AMBIGUOUS {
+                    return Err(format!("{ambiguous} of all pixels are ambiguous").into());
+                }
+                Ok(())
+            })
+        })
+        .collect()
+}
+
+fn parts_of_films() -> Vec<Trial> {
+    let lit = lit_scenes::all().map(|(name, view)| {
+        Trial::test(format!("film_parts::{name}"), move || {
+            let mut settings = RenderSettings {
+                sampling: Sampling { samples: 5, ..view.settings.sampling },
+                is_denoised: true,
+                ..view.settings.clone()
+            };
+            if let Integrator::Studio(studio) = &mut settings.integrator {
+                studio.outline = Some(Outline::thin());
+            }
+            check_parts(headless()?, &view, &settings);
+            check_parts(headless()?, &view, &settings.by_primary_rays());
+            Ok(())
+        })
+    });
+    let others = [
+        trial("film_parts::a_scene_that_fills_no_part", beside),
+        trial("film_parts::what_needs_the_whole_film_refuses_parts", refused),
+    ];
+    lit.chain(others).collect()
+}
+
+/// Compares the whole with parts that are no multiples of workgroups.
+fn check_parts(device: &Headless, view: &View, settings: &RenderSettings) {
+    let (scene, view) = (&view.scene, view.seen());
+    let wanted = LayerSet::ALL;
+    let whole = device.render(scene, &view, settings, wanted).unwrap();
+    let (unfinished, layers) = (settings.unfinished(), settings.layers_for(wanted));
+    let [width, height] = [whole.width(), whole.height()];
+    let mut joined = Image::new(width, height, layers).unwrap();
+    let (left, top) = (width / 3 + 1, height / 2 + 1);
+    for (x, w) in [(0, left), (left, width - left)] {
+        for (y, h) in [(0, top), (top, height - top)] {
+            let film = view.film.part([x, y], [w, h]).unwrap();
+            let part = pinhole::View::new(view.camera, film);
+            let part = device.render(scene, &part, &unfinished, layers).unwrap();
+            joined.put(&part, [x, y]).unwrap();
+        }
+    }
+    let joined = device.finish(joined, settings, wanted).unwrap();
+    assert!(joined.to_le_bytes() == whole.to_le_bytes());
+}
+
+/// Small spheres in a corner, so that most parts show nothing.
+fn beside(device: &'static Headless) {
+    let view = View::from_toml(
+        "[film]\nwidth = 90\nheight = 50\n[camera.pinhole]\neye = [0, 0, 9]\ndirection = [0, 0, -1]\n\
+         vertical_fov = 50\n[[spheres]]\ncenter = [6, 3, 0]\nradius = 0.6\n[[spheres]]\ncenter = [5, 3, 1]\nradius = 0.1\n",
+    );
+    check_parts(device, &view, &view.settings);
+    check_parts(device, &view, &RenderSettings::studio());
+}
+
+fn refused(device: &'static Headless) {
+    let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();
+    let film = Film::new(40, 30).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect()).unwrap();
+    let view = pinhole::View::new(&camera, film.part([8, 0], [16, 16]).unwrap());
+    let refused = device.verify(&scene, &view, &RenderSettings::default());
+    assert_eq!(refused.unwrap_err(), GpuError::PartOfFilm);
 }

@@ -12,15 +12,16 @@ use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
-    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, RendererOptions,
+    SceneBuffers, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::internals::{NO_HIT, ShaderEdit};
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, glam};
 
-use crate::embedding::{Host, size_of_film, view_of};
+use crate::embedding::size_of_film;
 use crate::headless;
+use crate::host_program::{Drawing, Host};
 use crate::planted::faulty;
 use crate::support::View;
 use crate::support::compare::{Picture, compare};
@@ -318,27 +319,11 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
         }],
         ..RendererOptions::default()
     };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
-    let scene =
-        SceneBuffers::with_accel(&renderer, &host.device, &host.queue, scene, accel).unwrap();
-    let texture = |format| host.texture(size_of_film(film), format);
-    let (color, normal) = (
-        texture(ColorTarget::Linear32.texture_format()),
-        texture(wgpu::TextureFormat::Rgba32Float),
-    );
-    let (depth, id) =
-        (texture(wgpu::TextureFormat::R32Float), texture(wgpu::TextureFormat::R32Uint));
-    let data =
-        DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
-    let targets = Targets { color: &view_of(&color), data: Some(data) };
-    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame
-        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
-        .unwrap();
-    let mut encoder = host.encoder();
-    renderer.record(&mut encoder, &scene, &frame).unwrap();
-    let depths = host.submit_and_read(encoder, &depth);
-    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    let mut drawing = Drawing::new(host, &options, size_of_film(film));
+    let Host { device, queue } = host;
+    let scene = SceneBuffers::with_accel(&drawing.renderer, device, queue, scene, accel).unwrap();
+    let encoder = drawing.record(host, &scene, &view.seen(), settings);
+    let depths: Vec<f32> = host.submit_and_read(encoder, &drawing.layers.depth);
     let is_hit = |depth: &f32| match depth.to_bits() {
         0 => true,
         bits if bits == NO_HIT.to_bits() => false,

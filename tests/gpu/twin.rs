@@ -1,26 +1,32 @@
 //! Tests that kernels compute the same as plain f32, to the bit, on versions of lavapipe that round to nearest and fuse
-//! no operations. On these drivers this is stricter than legality.
+//! no operations; on these drivers this is stricter than legality. And tests of rays through points of the lens other than
+//! its centre: pictures with one ray for each pixel have no such rays, so the kernel is edited to use another point.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
 use pinhole::camera::CameraKind;
 use pinhole::camera::film::YAxis;
-use pinhole::glam::{UVec2, Vec2, Vec3};
-use pinhole::gpu::{Decision, Headless};
+use pinhole::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use pinhole::gpu::Headless;
 use pinhole::image::NO_ID;
 use pinhole::internals::NO_HIT;
 use pinhole::render::PrimarySettings;
-use pinhole::verify::{Recording, TracedRay, UploadedView};
-use pinhole::{Film, LayerSet, LinearRgb, Shading};
+use pinhole::verify::{LegalCameraRay, Recording, TracedRay, UploadedView};
+use pinhole::{Film, LinearRgb, Shading};
 
 use crate::harness::trial_unless;
-use crate::scenes;
+use crate::planted::faulty;
 use crate::support::View;
+use crate::{scenes, verify};
 
 /// The versions of lavapipe that are known to round to nearest and fuse nothing. Mesa 26.2 is known to differ.
 const PLAIN: [&str; 2] = ["Mesa 22.3", "Mesa 25.0"];
 
 pub(crate) fn trials() -> Vec<Trial> {
+    [own(), through_the_lens()].into_iter().flatten().collect()
+}
+
+fn own() -> Vec<Trial> {
     scenes::all()
         .into_iter()
         .map(|(name, view)| {
@@ -144,13 +150,8 @@ fn color(primary: &PrimarySettings, of: LinearRgb, normal: [f32; 3], ray: &Trace
 }
 
 fn check(headless: &Headless, view: &View) -> Result<(), Failed> {
-    let (scene, film) = (&view.scene, &view.film);
-    let structures = headless
-        .plan(scene, &view.seen(), &view.settings, LayerSet::DATA, AccelChoice::Auto, 0)
-        .build(scene);
-    let buffers = headless.upload(scene, &structures)?;
-    let go_on = |_: &_| Decision::GoOn;
-    let recording = headless.record(&buffers, &view.seen(), &view.settings, &mut { go_on })?;
+    let film = &view.film;
+    let recording = view.record(headless, &view.planned(headless, AccelChoice::Auto))?;
     let differing = (0..film.height())
         .flat_map(|j| (0..film.width()).map(move |i| UVec2::new(i, j)))
         .filter(|pixel| !is_same(view, &recording, *pixel))
@@ -192,4 +193,57 @@ fn is_same(view: &View, recording: &Recording, pixel: UVec2) -> bool {
 
 fn bits(v: [f32; 3]) -> [u32; 3] {
     v.map(f32::to_bits)
+}
+
+/// Points in all cases of the map from the square to the disk, on a seam, and on the edge.
+const POINTS: [[f32; 2]; 7] =
+    [[0.5, 0.5], [0.9, 0.6], [0.4, 0.1], [0.1, 0.45], [0.3, 0.95], [0.75, 0.75], [0.0, 0.5]];
+
+/// Maximum distance between a unit direction and that of the reference: twenty roundings of f32.
+const NEAR: f64 = 20.0 / (1 << 24) as f64;
+
+fn through_the_lens() -> Vec<Trial> {
+    POINTS
+        .into_iter()
+        .map(|point| {
+            let [x, y] = point;
+            Trial::test(format!("lens::through_{x}_{y}"), move || rays_are_the_references(point))
+        })
+        .collect()
+}
+
+fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
+    let [x, y] = lens;
+    let headless = faulty("camera/entry.wgsl", "vec2f(0.5)", &format!("vec2f({x:?}, {y:?})"))?;
+    let view = verify::lens();
+    let recording = view.record(&headless, &view.planned(&headless, AccelChoice::List))?;
+    let Recording { camera, uploaded, film, pixels, .. } = &recording;
+    let mut traced = 0;
+    for (index, pixel) in pixels.iter().enumerate() {
+        let Some(ray) = pixel.ray else { continue };
+        let (i, j) = (index as u32 % film.width(), index as u32 / film.width());
+        let location = film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
+        let point = DVec2::from(lens.map(f64::from));
+        let expected = view.camera.ray_through_lens(location, point);
+        let [origin, direction] =
+            [ray.origin, ray.direction].map(|v| DVec3::from(v.map(f64::from)));
+        let off = (direction - expected.direction).length();
+        if off > NEAR {
+            return Err(format!("({i}, {j}): the direction is off by {off:e}").into());
+        }
+        let at = view.scene.origin() + origin - expected.at(ray.distance.into());
+        if at.length() > NEAR * f64::from(ray.distance) {
+            return Err(format!("({i}, {j}): the origin is off by {at:?}").into());
+        }
+        // The location in f32 is the nearest one. Its rounding error rotates a ray by less than the bounds.
+        let location = location.as_vec2().to_array();
+        let legal = LegalCameraRay::new(camera.kind, uploaded, location, lens);
+        let is_legal = |axis: usize| legal.direction[axis].contains(ray.direction[axis].into());
+        if !(0..3).all(is_legal) {
+            return Err(format!("({i}, {j}): the direction is not legal: {legal:?}").into());
+        }
+        traced += 1;
+    }
+    // For a camera with a lens, the box may be visible in the whole film.
+    if traced == pixels.len() { Ok(()) } else { Err(format!("only {traced} are traced").into()) }
 }

@@ -1,20 +1,26 @@
-//! Tests that pictures of an updated scene are identical to those of a scene that was created with the new values.
+//! Tests that pictures of every kind of colours are identical to those of spheres with individual colours, and those of an
+//! updated scene to those of a scene that was created with the new values.
 
 use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, Decision, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions,
-    SceneBuffers, Targets, wgpu,
+    SceneBuffers,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Colors, Film, Image, LayerSet, RenderSettings, Scene, View};
 
-use crate::appearance::camera;
+use crate::host_program::Host;
 use crate::support::appearances::{kinds, settings};
 use crate::{headless, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
+    [own(), appearances_are_the_same()].into_iter().flatten().collect()
+}
+
+fn own() -> Vec<Trial> {
     let of_kinds = kinds().into_iter().map(|kind| {
         Trial::test(format!("update::{}", kind.name), move || updated(kind.scene.clone()))
     });
@@ -133,19 +139,10 @@ fn survives(headless: &'static Headless) {
     let renderer = Renderer::new(device, &options).unwrap();
     let recolor = Recolor::new(device).unwrap();
     let mut buffers = SceneBuffers::new(&renderer, device, queue, &scene).unwrap();
-    let target = device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: 40, height: 40, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: options.color.texture_format(),
-        usage: wgpu::TextureUsages::STORAGE_BINDING,
-        view_formats: &[],
-    });
-    let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
-    let targets = Targets { color: &texture, data: None };
-    let mut frame = Frame::new(&renderer, device, &targets).unwrap();
+    let host = Host { device: device.clone(), queue: queue.clone() };
+    let layers = host.layers([40, 40], options.color.texture_format());
+    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets));
+    let mut frame = frame.unwrap();
     let camera = camera();
     let view = View::new(&camera, Film::new(40, 40).unwrap());
     let settings = RenderSettings::default();
@@ -157,7 +154,7 @@ fn survives(headless: &'static Headless) {
         ..SceneUpdate::default()
     };
     scene.apply(&colors).unwrap();
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = host.encoder();
     recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &colors).unwrap();
     renderer.record(&mut encoder, &buffers, &frame).unwrap();
 
@@ -170,5 +167,34 @@ fn survives(headless: &'static Headless) {
     assert_eq!(stale, Err(GpuError::OtherScene));
     frame.set_view(queue, &buffers, &view, &settings).unwrap();
     renderer.record(&mut encoder, &buffers, &frame).unwrap();
-    queue.submit([encoder.finish()]);
+    host.submit(encoder);
+}
+
+fn appearances_are_the_same() -> Vec<Trial> {
+    kinds()
+        .into_iter()
+        .map(|kind| {
+            Trial::test(format!("appearance::{}", kind.name), move || {
+                let (found, expected) = (pictures(&kind.scene)?, pictures(&kind.expected)?);
+                if found == expected { Ok(()) } else { Err("another picture".into()) }
+            })
+        })
+        .collect()
+}
+
+fn camera() -> PinholeCamera {
+    let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
+}
+
+/// Pictures with one ray for each pixel, of a studio, and of paths.
+fn pictures(scene: &Scene) -> Result<[Image; 3], Failed> {
+    let (headless, camera) = (headless()?, camera());
+    let view = View::new(&camera, Film::new(64, 64)?);
+    if !headless.verify(scene, &view, &RenderSettings::default())?.is_legal() {
+        return Err("the picture is not legal".into());
+    }
+    let render = |settings| headless.render(scene, &view, &settings, LayerSet::ALL);
+    let [primary, studio, path] = settings();
+    Ok([render(primary)?, render(studio)?, render(path)?])
 }

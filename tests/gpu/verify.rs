@@ -1,24 +1,28 @@
 //! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
-use libtest_mimic::{Failed, Trial};
-use pinhole::accel::{Accel, AccelChoice, AccelPlan};
-use pinhole::camera::film::YAxis;
-use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Decision, Headless};
-use pinhole::image::NO_ID;
-use pinhole::verify::conformance::{Answers, Rays};
-use pinhole::verify::{Certificate, Checker, Outcome, Recording};
-use pinhole::{Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere};
-
-use crate::planted::{self, Fault, named, planted};
-use crate::support::View;
-use crate::verify_views as views;
-use crate::{headless, scenes};
-
-/// The example of docs/verify.md for tests of other renderers.
 #[path = "../../examples/legal.rs"]
 #[allow(dead_code, reason = "an example has a main function")]
 mod example;
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan};
+use pinhole::camera::film::YAxis;
+use pinhole::camera::{
+    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+};
+use pinhole::gpu::Headless;
+use pinhole::image::NO_ID;
+use pinhole::verify::conformance::{Answers, Rays};
+use pinhole::verify::{Certificate, Checker, Outcome, Recording};
+use pinhole::{
+    Appearance, Film, Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere, SphereArray,
+};
+
+use crate::planted::{Fault, named, planted};
+use crate::support::{View, shaded, spheres};
+use crate::{headless, planted, scenes};
+
+/// The example of docs/verify.md for tests of other renderers.
 
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
@@ -69,9 +73,7 @@ const UNDECIDED: [&str; 4] =
     ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
 
 fn legal(name: &str, view: &View) -> Result<(), Failed> {
-    let View { scene, camera, film, settings } = view;
-    let certificate =
-        headless()?.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
+    let certificate = headless()?.verify(&view.scene, &view.seen(), &view.settings)?;
     if certificate.rendered_otherwise.is_none() {
         return Err("what is rendered was not compared".into());
     }
@@ -84,21 +86,20 @@ fn legal(name: &str, view: &View) -> Result<(), Failed> {
 
 /// By exact rays, as the answers of any renderer are judged.
 fn certified(view: &View) -> Result<(), Failed> {
-    let View { scene, camera, film, settings } = view;
-    let view = pinhole::View::new(camera.as_ref(), *film);
-    let image = headless()?.render(scene, &view, settings, LayerSet::DATA)?;
+    let image = view.picture(headless()?, LayerSet::DATA);
     let depths: Vec<f64> =
         image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
     let normals: Vec<[f64; 3]> =
         image.normal().unwrap_or_default().iter().map(|normal| normal.map(f64::from)).collect();
     let answers = Answers {
-        size: [film.width(), film.height()],
+        size: [image.width(), image.height()],
         ids: image.id().unwrap_or_default(),
         depths: Some(&depths),
         normals: Some(&normals),
         ..Answers::default()
     };
-    let found = Checker::new(scene)?.certify_answers(&answers, Rays::View(view), None)?;
+    let rays = Rays::View(view.seen());
+    let found = Checker::new(&view.scene)?.certify_answers(&answers, rays, None)?;
     println!("{found}");
     if found.outcome() == Outcome::Violated { Err(found.to_string().into()) } else { Ok(()) }
 }
@@ -109,10 +110,7 @@ fn build(scene: &Scene, how: How) -> Accel {
 }
 
 fn record(headless: &Headless, view: &View, how: How) -> Result<Recording, Failed> {
-    let scene = &view.scene;
-    let buffers = headless.upload(scene, &build(scene, how).into())?;
-    let go_on = |_: &_| Decision::GoOn;
-    Ok(headless.record(&buffers, &view.seen(), &view.settings, &mut { go_on })?)
+    Ok(view.record(headless, &build(&view.scene, how).into())?)
 }
 
 fn certify(view: &View, recording: &Recording) -> Certificate {
@@ -122,7 +120,7 @@ fn certify(view: &View, recording: &Recording) -> Certificate {
 /// The view in which a fault is visible, and the structure in which it is tested.
 fn view_of(fault: &Fault) -> (View, How) {
     let [view, how] = fault.setup();
-    (named(views::ALL, view)(), named(STRUCTURES, how))
+    (named(VIEWS, view)(), named(STRUCTURES, how))
 }
 
 /// The views in which faults are inserted are legal without them.
@@ -162,14 +160,12 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
 fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
     let faulty = fault.device()?;
     let [view] = fault.setup();
-    let view = named(views::ALL, view)();
+    let view = named(VIEWS, view)();
     let alone = certify(&view, &record(&faulty, &view, LIST)?);
     if !alone.is_legal() || alone.rendered_otherwise.is_some() {
         return Err(format!("the recording has the fault as well:\n{alone}").into());
     }
-    let View { scene, camera, film, settings } = &view;
-    let certificate =
-        faulty.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
+    let certificate = faulty.verify(&view.scene, &view.seen(), &view.settings)?;
     println!("{certificate}");
     found(&certificate)?;
     match certificate.violations.iter().find(|violation| violation.kind.stage() != "render") {
@@ -267,10 +263,180 @@ fn with_spheres(
 
 fn input_fault_is_found(spoil: Spoil) -> Result<(), Failed> {
     let headless = headless()?;
-    let mut view = views::balls();
+    let mut view = balls();
     let reference = view.reference();
     let seen = reference.id().unwrap().iter().find(|id| **id != NO_ID).unwrap();
     let record = &mut |view: &View| record(headless, view, LIST).unwrap();
     let recording = spoil(&mut view, record, *seen as usize);
     found(&certify(&view, &recording))
+}
+
+/// Makes a view.
+type Make = fn() -> View;
+
+pub(crate) const VIEWS: &[(&str, Make)] = &[
+    ("balls", balls),
+    ("own_colors", own_colors),
+    ("parallel", parallel),
+    ("lens", lens),
+    ("around", around),
+    ("disk", disk),
+    ("inside", inside),
+    ("behind", behind),
+    ("lattice", lattice),
+    ("clusters", clusters),
+    ("far_clusters", far_clusters),
+    ("copies", copies),
+    ("two_tiles", two_tiles),
+];
+
+fn colored(center: [f64; 3], radius: f64, i: usize) -> Sphere {
+    let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
+    let color = LinearRgb::new([level(3), level(5), level(7)]).unwrap();
+    Sphere::new(center, radius, color)
+}
+
+fn view(spheres: &[Sphere], camera: impl Camera + 'static, size: [u32; 2]) -> View {
+    let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
+    View {
+        scene: Scene::new(spheres).unwrap(),
+        camera: Box::new(camera),
+        film: Film::new(size[0], size[1]).unwrap(),
+        settings: shaded(Shading::Headlight, background),
+    }
+}
+
+fn pose(eye: [f64; 3], look_at: [f64; 3]) -> Pose {
+    Pose::looking_at(eye, look_at, [0.1, 1.0, 0.2]).unwrap()
+}
+
+fn pinhole(eye: [f64; 3], look_at: [f64; 3], degrees: f64) -> PinholeCamera {
+    PinholeCamera::with_vertical_fov(pose(eye, look_at), f64::to_radians(degrees), 1.2).unwrap()
+}
+
+fn random(count: usize, seed: u64) -> Vec<Sphere> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    (0..count)
+        .map(|i| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            colored(center, 0.08 + 0.1 * random.f64(), i)
+        })
+        .collect()
+}
+
+/// Spheres in several colours, seen from outside, with background around them.
+pub(crate) fn balls() -> View {
+    view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+}
+
+/// Spheres with individual colours.
+pub(crate) fn own_colors() -> View {
+    let view = balls();
+    let colors = (0..view.scene.len()).map(|i| [i as u8, (i / 2) as u8, (i / 3) as u8, 255]);
+    let appearance = Appearance::from(colors.collect::<Vec<_>>());
+    let spheres = SphereArray::F32(view.scene.spheres().to_vec());
+    View { scene: Scene::from_parts(spheres, appearance).unwrap(), ..view }
+}
+
+pub(crate) fn parallel() -> View {
+    let camera =
+        OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();
+    view(&random(400, 31), camera, [96, 80])
+}
+
+/// A view through a lens. Recordings use rays through the centre of the lens.
+pub(crate) fn lens() -> View {
+    let pinhole = pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0);
+    view(&random(400, 31), ThinLensCamera::new(pinhole, 0.3, 5.0).unwrap(), [96, 80])
+}
+
+/// A stereo view from the middle, for the right eye.
+pub(crate) fn around() -> View {
+    let pose = pose([0.1, 0.2, 0.3], [3.0, 2.0, 6.0]);
+    let [_, right] = PanoramaCamera::new(pose).stereo_pair(0.1, 1.0).unwrap();
+    view(&random(400, 31), right, [96, 48])
+}
+
+/// A view from the middle in most directions, in which no ray misses.
+pub(crate) fn disk() -> View {
+    let mut spheres = random(400, 31);
+    spheres.push(colored([0.0; 3], 5.0, 3));
+    let pose = pose([0.1, 0.2, 0.3], [3.0, 2.0, 6.0]);
+    let camera = FisheyeCamera::new(pose, 5.0, 1.2).unwrap();
+    view(&spheres, camera, [96, 80])
+}
+
+/// A view from inside a large sphere, with others inside and around it.
+pub(crate) fn inside() -> View {
+    let mut spheres = random(60, 32);
+    spheres.push(colored([0.0; 3], 5.0, 3));
+    view(&spheres, pinhole([0.5, 1.0, 3.9], [0.0; 3], 90.0), [96, 80])
+}
+
+/// Spheres all around the eye, most of them behind it.
+pub(crate) fn behind() -> View {
+    view(&random(100, 33), pinhole([0.0, 0.0, 1.6], [0.0, 0.0, 4.0], 60.0), [96, 80])
+}
+
+/// Spheres that fill all cells of a grid equally and extend into neighbouring cells.
+pub(crate) fn lattice() -> View {
+    let spheres: Vec<Sphere> = spheres::lattice(12)
+        .iter()
+        .enumerate()
+        .map(|(i, [x, y, z, r])| {
+            let radius = f64::from(*r) * (0.2 + 0.3 * (i % 5) as f64);
+            colored([*x, *y, *z].map(f64::from), radius, i)
+        })
+        .collect();
+    view(&spheres, pinhole([-9.0, 15.0, -12.0], [5.0, 5.0, 5.0], 40.0), [96, 80])
+}
+
+fn in_clusters() -> Vec<Sphere> {
+    let mut random = fastrand::Rng::with_seed(34);
+    (0..12)
+        .flat_map(|_| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            let size = 10_f64.powf(-2.0 * random.f64());
+            (0..120)
+                .map(|i| {
+                    let near = center.map(|x| x + (random.f64() - 0.5) * size);
+                    colored(near, size * 0.08 * (0.2 + random.f64()), i)
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Spheres that form a few dense clusters.
+pub(crate) fn clusters() -> View {
+    view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+}
+
+/// The same spheres, but small in a large box.
+pub(crate) fn far_clusters() -> View {
+    let mut spheres = in_clusters();
+    spheres.push(colored([40.0, 60.0, 120.0], 0.5, 5));
+    view(&spheres, pinhole([63.0, 42.0, 126.0], [0.0; 3], 1.8), [96, 80])
+}
+
+/// Eight copies of each sphere, in shuffled order.
+pub(crate) fn copies() -> View {
+    let mut random = fastrand::Rng::with_seed(35);
+    let mut places: Vec<usize> = (0..40 * 8).map(|i| i % 40).collect();
+    random.shuffle(&mut places);
+    let spheres: Vec<Sphere> = places
+        .into_iter()
+        .enumerate()
+        .map(|(i, place)| {
+            let center = [(place % 8) as f64 - 3.5, (place / 8) as f64 - 2.0, 0.0];
+            colored(center, 0.45, i)
+        })
+        .collect();
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0), [96, 80])
+}
+
+/// A picture that is larger than one tile.
+pub(crate) fn two_tiles() -> View {
+    let spheres = [colored([-1.0, 0.0, 0.0], 0.9, 1), colored([1.0, 0.0, 0.0], 0.9, 2)];
+    view(&spheres, pinhole([0.0, 0.5, 5.0], [0.0; 3], 16.0), [1100, 1000])
 }

@@ -9,10 +9,9 @@ use pinhole::verify::{Checker, Outcome};
 use pinhole::write::png;
 use pinhole::{Encoding, Image, LayerSet, cpu};
 
-use crate::light::scenes::{self as light, LitView};
 use crate::planted::{self, Fault, named, planted};
 use crate::support::View;
-use crate::{headless, scenes, verify_views};
+use crate::{headless, lit_scenes, scenes, verify};
 
 /// Faults of layers that are not in the picture.
 const OF_LAYERS: [&str; 5] = [
@@ -40,7 +39,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
     }
-    for (name, view) in light::all() {
+    for (name, view) in lit_scenes::all() {
         trials.push(Trial::test(format!("written::means::{name}"), move || {
             let means = means(headless()?, &view)?;
             match means.count(Outcome::Violated) {
@@ -54,8 +53,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         let file = &fault.edit.file;
         file.starts_with("primary/shad") && !file.contains('#') && is_visible(fault.name)
     };
-    let found =
-        |fault: &Fault| is_found(&fault.device()?, &named(verify_views::ALL, fault.setup[0])());
+    let found = |fault: &Fault| is_found(&fault.device()?, &named(verify::VIEWS, fault.setup[0])());
     let (render, primary) = (planted("render"), planted("primary"));
     trials.extend(planted::trials("written::faults::render_", render.filter(is_seen), found));
     trials.extend(planted::trials("written::faults::", primary.filter(is_of_color), found));
@@ -99,8 +97,8 @@ fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
 }
 
 /// Compares with the reference, which has another seed.
-fn means(device: &Headless, view: &LitView) -> Result<Means, Failed> {
-    let LitView { scene, settings, .. } = view;
+fn means(device: &Headless, view: &View) -> Result<Means, Failed> {
+    let View { scene, settings, .. } = view;
     let mut settings = settings.clone();
     settings.sampling.samples = settings.sampling.samples.min(64);
     let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR)?;

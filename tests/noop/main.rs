@@ -2,26 +2,24 @@
 //! every call as any device does, and executes nothing. No driver is needed.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-mod async_forms;
-mod calls;
+mod building;
+#[path = "../support/host_program.rs"]
+#[allow(dead_code, reason = "nothing is read back here")]
+mod host_program;
 mod passes;
-mod pieces;
 mod steady_state;
 mod version;
 
-use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::accel::AccelChoice;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::gpu::{DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, wgpu};
+use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, wgpu};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
-/// A program with a device that has WebGPU's default limits and features.
-struct Host {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-}
+use host_program::Host;
 
+/// With WebGPU's default limits and features.
 impl Host {
     fn new() -> Self {
         let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
@@ -30,54 +28,18 @@ impl Host {
         Self { device, queue }
     }
 
-    fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
-        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("host"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::STORAGE_BINDING,
-            view_formats: &[],
-        });
-        texture.create_view(&wgpu::TextureViewDescriptor::default())
-    }
-
     fn with_targets<T>(
         &self,
         options: &RendererOptions,
         size: [u32; 2],
         work: impl FnOnce(&Targets<'_>) -> T,
     ) -> T {
-        let color = self.texture(size, options.color.texture_format());
-        let depth = self.texture(size, wgpu::TextureFormat::R32Float);
-        let normal = self.texture(size, wgpu::TextureFormat::Rgba32Float);
-        let id = self.texture(size, wgpu::TextureFormat::R32Uint);
-        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        work(&Targets { color: &color, data: options.data_layers.then_some(data) })
+        self.layers(size, options.color.texture_format()).with(options.data_layers, work)
     }
 
     fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
-        self.with_targets(options, size, |targets| {
-            Frame::new(renderer, &self.device, targets).unwrap()
-        })
-    }
-
-    /// A scene in a structure, divided into bricks of at most `binding` bytes.
-    fn scene(
-        &self,
-        renderer: &Renderer,
-        scene: &Scene,
-        choice: AccelChoice,
-        binding: u64,
-    ) -> SceneBuffers {
-        let accel = AccelPlan::new(scene.spheres(), choice, binding).build(scene.spheres());
-        SceneBuffers::with_accel(renderer, &self.device, &self.queue, scene, &accel).unwrap()
-    }
-
-    fn encoder(&self) -> wgpu::CommandEncoder {
-        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+        let frame = |targets: &Targets<'_>| Frame::new(renderer, &self.device, targets).unwrap();
+        self.with_targets(options, size, frame)
     }
 
     /// Runs `work` and returns what the device refuses of it.

@@ -6,7 +6,8 @@ use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};
 
-use crate::{Host, SIZE, cameras, film, pinhole_camera, scene, spheres};
+use crate::host_program::Host;
+use crate::{SIZE, cameras, film, pinhole_camera, scene, spheres};
 
 #[test]
 fn primary_rays_of_every_camera_structure_and_target() {
@@ -39,7 +40,7 @@ fn primary_rays_of_every_camera_structure_and_target() {
                 let refused = host.refused(|| {
                     let mut encoder = host.encoder();
                     renderer.record(&mut encoder, &buffers, &frame).unwrap();
-                    host.queue.submit([encoder.finish()]);
+                    host.submit(encoder);
                 });
                 assert_eq!(refused, None, "{color:?} {choice:?} {:?}", camera.kind());
             }
@@ -61,7 +62,7 @@ fn several_bands() {
     let refused = host.refused(|| {
         let mut encoder = host.encoder();
         renderer.record(&mut encoder, &buffers, &frame).unwrap();
-        host.queue.submit([encoder.finish()]);
+        host.submit(encoder);
     });
     assert_eq!(refused, None);
 }
@@ -80,7 +81,7 @@ fn new_colors() {
     let refused = host.refused(|| {
         let (device, queue, mut encoder) = (&host.device, &host.queue, host.encoder());
         recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &update).unwrap();
-        host.queue.submit([encoder.finish()]);
+        host.submit(encoder);
     });
     assert_eq!(refused, None);
 }
@@ -112,7 +113,7 @@ fn studios_and_paths() {
                 let refused = host.refused(|| {
                     let mut encoder = host.encoder();
                     picture.record(&lit, queue, &mut encoder, &buffers, u64::MAX).unwrap();
-                    queue.submit([encoder.finish()]);
+                    host.submit(encoder);
                 });
                 assert_eq!(refused, None, "{} {:?}", settings.integrator.name(), camera.kind());
             }

@@ -1,4 +1,8 @@
-//! What recording a frame costs a host: nothing is created, submitted, awaited or read back.
+//! What recording a frame costs a host: nothing is created, submitted, awaited or read back, by what wgpu logs of the calls
+//! that a thread makes.
+
+use std::cell::RefCell;
+use std::sync::Once;
 
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{PinholeCamera, Pose};
@@ -7,8 +11,75 @@ use pinhole::gpu::{
 };
 use pinhole::{RenderSettings, View};
 
-use crate::calls::{self, Calls};
-use crate::{Host, SIZE, film, pinhole_camera, ready, scene};
+use crate::host_program::Host;
+use crate::{SIZE, film, pinhole_camera, ready, scene};
+
+/// Numbers of calls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Calls {
+    /// Resources of any kind that were created.
+    pub(crate) created: u32,
+    /// Writes that were queued. wgpu copies what is written to memory of its own.
+    pub(crate) writes: u32,
+    pub(crate) submitted: u32,
+    /// Calls that wait for the device or ask whether it is done.
+    pub(crate) waited: u32,
+    /// Calls that map memory of the device or read it.
+    pub(crate) mapped: u32,
+    /// All calls that are logged.
+    pub(crate) all: u32,
+}
+
+thread_local! {
+    static CALLS: RefCell<Calls> = const { RefCell::new(Calls {
+        created: 0, writes: 0, submitted: 0, waited: 0, mapped: 0, all: 0,
+    }) };
+}
+
+struct Counter;
+
+impl log::Log for Counter {
+    fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
+        metadata.target().starts_with("wgpu_core")
+    }
+
+    fn log(&self, record: &log::Record<'_>) {
+        if !self.enabled(record.metadata()) {
+            return;
+        }
+        let line = record.args().to_string();
+        let starts = |with: &str| line.starts_with(with);
+        CALLS.with_borrow_mut(|calls| {
+            let waits = ["Device::poll", "poll_all_devices", "Queue::on_submitted_work_done"];
+            if starts("Device::create_") || starts("Texture::create_") {
+                calls.created += 1;
+            } else if starts("Queue::write_") {
+                calls.writes += 1;
+            } else if line == "Queue::submit" {
+                calls.submitted += 1;
+            } else if waits.into_iter().any(starts) {
+                calls.waited += 1;
+            } else if starts("Buffer::map_async") || starts("Buffer::get_mapped_range") {
+                calls.mapped += 1;
+            }
+            calls.all += 1;
+        });
+    }
+
+    fn flush(&self) {}
+}
+
+/// The calls that `work` makes on this thread.
+pub(crate) fn calls_of<T>(work: impl FnOnce() -> T) -> (Calls, T) {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        log::set_logger(&Counter).unwrap();
+        log::set_max_level(log::LevelFilter::Trace);
+    });
+    CALLS.take();
+    let result = work();
+    (CALLS.take(), result)
+}
 
 /// The counts below mean something: each kind of call is seen.
 #[test]
@@ -22,15 +93,15 @@ fn every_kind_of_call_is_counted() {
             mapped_at_creation: false,
         })
     };
-    let (created, buffer) = calls::of(|| buffer(wgpu::BufferUsages::MAP_READ));
+    let (created, buffer) = calls_of(|| buffer(wgpu::BufferUsages::MAP_READ));
     assert_eq!(created.created, 1, "{created:?}");
-    let (written, ()) = calls::of(|| host.queue.write_buffer(&buffer, 0, &[0; 16]));
+    let (written, ()) = calls_of(|| host.queue.write_buffer(&buffer, 0, &[0; 16]));
     assert_eq!(written.writes, 1, "{written:?}");
-    let (submitted, _) = calls::of(|| host.queue.submit([]));
+    let (submitted, _) = calls_of(|| host.queue.submit([]));
     assert_eq!(submitted.submitted, 1, "{submitted:?}");
-    let (mapped, ()) = calls::of(|| buffer.map_async(wgpu::MapMode::Read, .., |_| {}));
+    let (mapped, ()) = calls_of(|| buffer.map_async(wgpu::MapMode::Read, .., |_| {}));
     assert_eq!(mapped.mapped, 1, "{mapped:?}");
-    let (waited, polled) = calls::of(|| host.device.poll(wgpu::PollType::wait_indefinitely()));
+    let (waited, polled) = calls_of(|| host.device.poll(wgpu::PollType::wait_indefinitely()));
     polled.unwrap();
     assert_eq!(waited.waited, 1, "{waited:?}");
 }
@@ -40,19 +111,19 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
     let host = Host::new();
     for data_layers in [false, true] {
         let options = RendererOptions { data_layers, ..RendererOptions::default() };
-        let (built, renderer) = calls::of(|| Renderer::new(&host.device, &options).unwrap());
+        let (built, renderer) = calls_of(|| Renderer::new(&host.device, &options).unwrap());
         assert!(built.created > 10, "{built:?}");
         let (scene, mut frame) = ready(&host, &renderer, &options);
         for _ in 0..3 {
             let camera = pinhole_camera();
             let view = View::new(&camera, film());
             let settings = RenderSettings::default();
-            let (set, done) = calls::of(|| frame.set_view(&host.queue, &scene, &view, &settings));
+            let (set, done) = calls_of(|| frame.set_view(&host.queue, &scene, &view, &settings));
             done.unwrap();
             // One write of less than a kilobyte.
             assert_eq!(set, Calls { writes: 1, all: set.all, ..Calls::default() });
             let mut encoder = host.encoder();
-            let (recorded, done) = calls::of(|| renderer.record(&mut encoder, &scene, &frame));
+            let (recorded, done) = calls_of(|| renderer.record(&mut encoder, &scene, &frame));
             done.unwrap();
             assert_eq!(recorded, Calls { all: recorded.all, ..Calls::default() });
             host.queue.submit([encoder.finish()]);
@@ -82,13 +153,13 @@ fn lit_pictures_create_submit_and_await_nothing() {
             let moved = if moves { moved_camera } else { camera };
             let view = View::new(&moved, film());
             let (set, begins_again) =
-                calls::of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+                calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
             assert_eq!(begins_again.unwrap(), moves);
             assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
             assert!(set.writes <= if moves { 4 } else { 0 }, "{set:?}");
             let mut encoder = host.encoder();
             let (recorded, done) =
-                calls::of(|| picture.record(&lit, queue, &mut encoder, &scene, 1 << 16));
+                calls_of(|| picture.record(&lit, queue, &mut encoder, &scene, 1 << 16));
             let mapped = recorded.mapped;
             let only = Calls { writes: 1, mapped, all: recorded.all, ..Calls::default() };
             assert_eq!(recorded, only);
@@ -126,12 +197,12 @@ fn live_pictures_create_submit_and_await_nothing() {
         let pose = Pose::looking_at(eye, [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
         let view = View::new(&camera, film());
-        let (set, done) = calls::of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+        let (set, done) = calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
         done.unwrap();
         assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
         assert!((1..=3).contains(&set.writes), "{set:?}");
         let mut encoder = host.encoder();
-        let (recorded, done) = calls::of(|| picture.record(&lit, queue, &mut encoder, &scene));
+        let (recorded, done) = calls_of(|| picture.record(&lit, queue, &mut encoder, &scene));
         let (mapped, all) = (recorded.mapped, recorded.all);
         assert_eq!(recorded, Calls { writes: 2, mapped, all, ..Calls::default() });
         assert!(mapped <= 1, "{recorded:?}");

@@ -72,7 +72,7 @@ impl Source {
         let aspect = file.film.aspect();
         // A scene file says where its camera stands.
         let facing = matches!(self.format, Format::Data(_) | Format::Bricks)
-            .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis));
+            .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false }));
         let parameters = if has_flags {
             self.camera.parameters(facing, self.default_up()).map_err(Failure::usage)?
         } else {

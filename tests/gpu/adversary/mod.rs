@@ -1,23 +1,25 @@
 //! Tests that the checker never accuses devices that conform to WGSL and yet round as they like, and that it accuses
 //! those whose results are farther off. For more scenes, run `cargo bench --bench verify -- adversary 100`.
 
-mod bias;
 mod operations;
-pub(crate) mod structures;
 
+use std::fmt::Display;
 use std::sync::LazyLock;
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::accel::AccelChoice;
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{Decision, Headless, HeadlessOptions};
-use pinhole::verify::{Certificate, Checker, LitCertificate, LitRecording, Outcome};
-use pinhole::{Film, LayerSet, Scene, View};
+use pinhole::verify::{
+    Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome,
+};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View};
 
 use crate::any_rounding::{Adversary, Rounding};
-use crate::planted::{self, planted};
+use crate::planted::{Fault, planted};
 use crate::support::effort::tries;
-use crate::support::random_light::{self, RandomView};
-use crate::{headless, light, paths, scenes, studio, support};
+use crate::support::{random_light, spheres};
+use crate::{headless, lit_scenes, planted, scenes, support};
 
 /// How many random lit scenes, and random studios, there are if all run.
 const SEEDS: u32 = 10;
@@ -61,69 +63,46 @@ pub(crate) fn trials() -> Vec<Trial> {
     }
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("adversary::primary::{name}"), move || {
-            not_accused(certify(&PRIMARY, &view, RENDERED.contains(&name))?.outcome_in_words())
+            let certificate = certify(&PRIMARY, &view, RENDERED.contains(&name))?;
+            not_accused(certificate.outcome(), &certificate)
         }));
     }
     for (name, view) in lit_views() {
         trials.push(Trial::test(format!("adversary::{name}"), move || {
-            not_accused(certify_lit(&LIT, &view())?.outcome_in_words())
+            let certificate = certify_lit(&LIT, &view())?;
+            not_accused(certificate.outcome(), &certificate)
         }));
     }
     trials.push(Trial::test("adversary::sixty_ulp_are_found", found));
-    trials.push(Trial::test("adversary::structures_agree", structures::agree));
-    trials.push(Trial::test("bias::none_without_a_fault", bias::clean));
-    trials.extend(planted::trials("bias::", planted("small"), bias::is_noted));
+    trials.push(Trial::test("adversary::structures_agree", structures_agree));
+    trials.push(Trial::test("bias::none_without_a_fault", clean));
+    trials.extend(planted::trials("bias::", planted("small"), is_noted));
     trials
 }
 
 pub(crate) type Lazy<T> = Box<dyn FnOnce() -> T + Send>;
 
 /// All lit scenes of the tests that a device of its own bits is legal, and random ones.
-pub(crate) fn lit_views() -> Vec<(String, Lazy<RandomView>)> {
-    let mut views: Vec<(String, Lazy<RandomView>)> = Vec::new();
-    let name = String::new;
-    for (of, view) in paths::scenes::all() {
-        let view = move || {
-            let crate::light::scenes::LitView { scene, camera, film, settings } = view();
-            RandomView { scene, camera, film, settings, name: name() }
-        };
-        views.push((format!("paths::{of}"), Box::new(view)));
-    }
-    let studios = light::scenes::studios().into_iter();
-    let more = studio::scenes::ALL.iter().map(|(name, view)| (*name, view()));
-    for (of, view) in studios.chain(more) {
-        let light::scenes::LitView { scene, camera, film, settings } = view;
-        let view = RandomView { scene, camera, film, settings, name: name() };
-        views.push((format!("studio::{of}"), Box::new(move || view)));
-    }
-    for seed in 0..u64::from(tries(SEEDS)) {
-        views.push((format!("random::paths_{seed}"), Box::new(move || random_light::view(seed))));
-        views
-            .push((format!("random::studio_{seed}"), Box::new(move || random_light::studio(seed))));
+pub(crate) fn lit_views() -> Vec<(String, Lazy<support::View>)> {
+    let mut views: Vec<(String, Lazy<support::View>)> = Vec::new();
+    for (suite, of) in
+        [("paths", random_light::view as fn(u64) -> _), ("studio", random_light::studio)]
+    {
+        for name in lit_scenes::judged(suite) {
+            let full = format!("{suite}::{name}");
+            views.push((full, Box::new(move || lit_scenes::view(suite, &name))));
+        }
+        for seed in 0..u64::from(tries(SEEDS)) {
+            views.push((format!("random::{suite}_{seed}"), Box::new(move || of(seed).into())));
+        }
     }
     views
 }
 
-trait InWords {
-    /// The outcome, and the certificate in words.
-    fn outcome_in_words(self) -> (Outcome, String);
-}
-
-impl InWords for Certificate {
-    fn outcome_in_words(self) -> (Outcome, String) {
-        (self.outcome(), self.to_string())
-    }
-}
-
-impl InWords for LitCertificate {
-    fn outcome_in_words(self) -> (Outcome, String) {
-        (self.outcome(), self.to_string())
-    }
-}
-
-fn not_accused((outcome, words): (Outcome, String)) -> Result<(), Failed> {
+/// Asserts that a certificate, which is printed, is not violated.
+pub(crate) fn not_accused(outcome: Outcome, words: &dyn Display) -> Result<(), Failed> {
     println!("{words}");
-    if outcome == Outcome::Violated { Err(words.into()) } else { Ok(()) }
+    if outcome == Outcome::Violated { Err(words.to_string().into()) } else { Ok(()) }
 }
 
 fn go_on() -> impl FnMut(&pinhole::gpu::Progress) -> Decision {
@@ -175,18 +154,17 @@ fn upload(
     Ok(headless.upload(scene, &plan.build(scene))?)
 }
 
-fn certify_lit(device: &Device, view: &RandomView) -> Result<LitCertificate, Failed> {
+fn certify_lit(device: &Device, view: &support::View) -> Result<LitCertificate, Failed> {
     certify_lit_on(device.as_ref()?, view, &[0, 1], AccelChoice::Auto)
 }
 
 pub(crate) fn certify_lit_on(
     headless: &Headless,
-    view: &RandomView,
+    view: &support::View,
     samples: &[u32],
     choice: AccelChoice,
 ) -> Result<LitCertificate, Failed> {
-    let RandomView { scene, camera, film, settings, .. } = view;
-    let seen = View::new(camera.as_ref(), *film);
+    let (scene, settings, seen) = (&view.scene, &view.settings, view.seen());
     let buffers = upload(headless, scene, &seen, settings, choice)?;
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
@@ -199,8 +177,8 @@ pub(crate) fn certify_lit_on(
 fn found() -> Result<(), Failed> {
     let primary = certify(&FAULTY, &support::View::three_spheres(), false)?;
     println!("{primary}");
-    let paths = certify_lit(&FAULTY, &random_light::view(1))?;
-    let studio = certify_lit(&FAULTY, &random_light::studio(1))?;
+    let paths = certify_lit(&FAULTY, &random_light::view(1).into())?;
+    let studio = certify_lit(&FAULTY, &random_light::studio(1).into())?;
     println!("{paths}\n{studio}");
     for certificate in [&paths, &studio] {
         let mut stages: Vec<_> =
@@ -213,4 +191,122 @@ fn found() -> Result<(), Failed> {
         true => Ok(()),
         false => Err(format!("violations of primary rays, paths and studio: {counts:?}").into()),
     }
+}
+
+static ALIKE: Device =
+    Device::new(|| open(Adversary { is_alike: true, ..Adversary::new(Rounding::EachItsOwn, 3) }));
+
+/// The bits of the distance and the id of every pixel's hit. `box_margin` is that of boxes for ray queries.
+pub(crate) fn hits(
+    headless: &Headless,
+    scene: &Scene,
+    view: &View<'_>,
+    choice: AccelChoice,
+    box_margin: f32,
+) -> Result<Vec<(u32, u32)>, Failed> {
+    let plan = AccelPlan::new(scene.spheres(), choice, 1 << 27);
+    let plan = plan.with_box_margin(box_margin);
+    let buffers = headless.upload(scene, &plan.build(scene.spheres()).into())?;
+    let recording = headless.record(&buffers, view, &RenderSettings::default(), &mut go_on())?;
+    Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
+}
+
+/// Calls `test` with a view of all of a scene.
+pub(crate) fn seen<T>(
+    scene: &Scene,
+    test: impl FnOnce(&View<'_>) -> Result<T, Failed>,
+) -> Result<T, Failed> {
+    let bounds = scene.bounds_to_frame();
+    let (center, size) = (bounds.center(), bounds.size().max_element());
+    let eye = center + pinhole::glam::DVec3::new(0.3, 0.2, 0.9) * size;
+    let pose = Pose::looking_at(eye, center, [0.1, 1.0, 0.2])?;
+    let camera = PinholeCamera::with_vertical_fov(pose, 0.6, 1.0)?;
+    test(&View::new(&camera, Film::new(112, 112)?))
+}
+
+fn structures_agree() -> Result<(), Failed> {
+    let headless = ALIKE.as_ref()?;
+    // Small spheres in a large box, beside which its margin is not small, and spheres that touch.
+    let scenes = [
+        ("small", spheres::random(6000, 5, |_| 1e-3)),
+        ("four decades", spheres::four_decades(3000)),
+        ("a line that touches", spheres::line(300)),
+        ("mirrored pairs", spheres::mirrored(1000)),
+    ];
+    for (name, spheres) in scenes {
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
+        let expected = seen(&scene, |view| hits(headless, &scene, view, AccelChoice::List, 1.0))?;
+        let misses = expected.iter().filter(|(_, id)| *id == pinhole::image::NO_ID).count();
+        println!("{name}: {} hits", expected.len() - misses);
+        if expected.len() - misses < 40 {
+            return Err(format!("{name}: few hits").into());
+        }
+        for choice in [AccelChoice::Grid, AccelChoice::Tree] {
+            let found = seen(&scene, |view| hits(headless, &scene, view, choice, 1.0))?;
+            let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+            if different > 0 {
+                return Err(format!("{name}: {different} hits differ in {choice:?}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The mean deviations of a device without a fault are below this, where there are this many results.
+const CLEAN: f64 = LARGEST_MEAN / 2.0;
+const MANY: u64 = 20_000;
+
+/// The deviations of a picture of primary rays.
+fn of_picture(headless: &Headless) -> Result<Deviations, Failed> {
+    let mut scenes = scenes::all().into_iter();
+    let (_, view) = scenes.find(|(name, _)| *name == "random_pinhole_y_up").unwrap();
+    let certificate = certify_on(headless, &view, 160, AccelChoice::Auto)?;
+    println!("{certificate}");
+    Ok(certificate.deviations)
+}
+
+/// The deviations of paths between mirrors, and of studios.
+fn of_light(headless: &Headless) -> Result<Deviations, Failed> {
+    let mut all = pinhole::verify::LitCertificate::default();
+    for (name, view) in lit_views() {
+        if ["paths::lobes", "paths::metals", "paths::matt", "studio::lamps_of_all_kinds"]
+            .contains(&name.as_str())
+        {
+            all.join(certify_lit_on(
+                headless,
+                &view(),
+                &(0..8).collect::<Vec<_>>(),
+                AccelChoice::Auto,
+            )?);
+        }
+    }
+    println!("{all}");
+    Ok(all.deviations)
+}
+
+fn clean() -> Result<(), Failed> {
+    let headless = headless()?;
+    let mut failed = Vec::new();
+    for deviations in [of_picture(headless)?, of_light(headless)?] {
+        for one in deviations.iter() {
+            println!("{one}");
+            if one.is_biased() || (one.count() >= MANY && one.mean().abs() > CLEAN) {
+                failed.push(one.to_string());
+            }
+        }
+    }
+    if failed.is_empty() { Ok(()) } else { Err(failed.join("\n").into()) }
+}
+
+/// A fault that is smaller than its bound is noted.
+fn is_noted(fault: &Fault) -> Result<(), Failed> {
+    let headless = fault.device()?;
+    let deviations = match fault.setup() {
+        ["lit"] => of_light(&headless)?,
+        ["primary"] => of_picture(&headless)?,
+        other => return Err(format!("{other:?}").into()),
+    };
+    let biased: Vec<_> = deviations.biased().map(ToString::to_string).collect();
+    println!("{}", biased.join("\n"));
+    if biased.is_empty() { Err("nothing is biased".into()) } else { Ok(()) }
 }

@@ -7,7 +7,7 @@ use dashu_float::round::mode;
 use pinhole::gpu::Headless;
 
 use crate::any_rounding::{Adversary, Rounding};
-use crate::compute;
+use crate::parts;
 
 const FENCE: &str = include_str!("../../../shaders/math/fence.wgsl");
 
@@ -78,7 +78,7 @@ fn answers(
             }}"
         );
         let parts = [RUNTIME_ZERO, FENCE, &operations, &answer];
-        let answers = compute::answers(headless, &parts, &[], questions);
+        let answers = parts::answers(headless, &parts, &[], questions);
         answers.into_iter().map(|answer| answer.map(f32::from_bits)).collect()
     };
     [

@@ -5,8 +5,8 @@ use pinhole::gpu::{Composite, CompositeOptions, Headless, wgpu};
 use pinhole::internals::edited_composite;
 use wgpu::TextureFormat;
 
-use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, begin_over, pixels};
-use crate::embedding::view_of;
+use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, at, begin_over, pixels};
+use crate::host_program::view_of;
 use crate::planted::planted;
 use crate::support::hosts::Convention;
 use crate::trial;
@@ -45,10 +45,6 @@ enum Fault {
     Hits,
     /// The host's colour is not kept below.
     NoBlend,
-}
-
-fn at(pixel: [u32; 2]) -> usize {
-    (pixel[1] * SIZE[0] + pixel[0]) as usize
 }
 
 /// Hits are sparse, so that some pixels have no hit around. Some are behind the far plane.
@@ -111,22 +107,12 @@ fn wrong(stage: &Stage, fault: Fault) -> usize {
 /// Number of pixels that a pipeline draws with a colour or depth that is not what it must be.
 fn wrong_by(stage: &Stage, composite: &Composite, fault: Fault) -> usize {
     let picture = random_picture(5);
-    let queue = &stage.host.queue;
-    for (texture, bytes) in [
-        (&stage.layers.color, bytemuck::cast_slice::<_, u8>(&picture.colors)),
-        (&stage.layers.depth, bytemuck::cast_slice(&picture.distances)),
-    ] {
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(4 * SIZE[0]),
-            rows_per_image: None,
-        };
-        queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
-    }
+    stage.host.write(&stage.layers.color, &picture.colors);
+    stage.host.write(&stage.layers.depth, &picture.distances);
     let color = stage.attachment(FORMAT, 1);
     let depth = stage.attachment(DEPTH, 1);
     let mut drawn = stage.picture(composite);
-    drawn.set_camera(queue, &stage.camera, FIRST);
+    drawn.set_camera(&stage.host.queue, &stage.camera, FIRST);
     let mut encoder = stage.host.encoder();
     {
         let (color, depth) = (view_of(&color), view_of(&depth));
@@ -135,14 +121,13 @@ fn wrong_by(stage: &Stage, composite: &Composite, fault: Fault) -> usize {
         let mut pass = begin_over(&mut encoder, [&color, &depth], None, Some(stage.far()), under);
         composite.draw(&mut pass, &drawn).unwrap();
     }
-    let colors = stage.host.submit_and_read(encoder, &color);
-    let depths = stage.host.submit_and_read(stage.host.encoder(), &depth);
-    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    let colors: Vec<[u8; 4]> = stage.host.submit_and_read(encoder, &color);
+    let depths: Vec<f32> = stage.host.read(&depth);
     let (mut wrong, mut seen) = (0, [0; 4]);
     for row in 0..TARGET[1] {
         for column in 0..TARGET[0] {
             let texel = (row * TARGET[0] + column) as usize;
-            let found = &colors[4 * texel..][..4];
+            let found = colors[texel];
             let pixel = [column.wrapping_sub(FIRST[0]), row.wrapping_sub(FIRST[1])];
             let is_in = (0..2).all(|axis| pixel[axis] < SIZE[axis]);
             let expected = is_in.then(|| expected_depth(stage, &picture, pixel, fault)).flatten();

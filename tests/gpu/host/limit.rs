@@ -1,7 +1,7 @@
 //! Rays that end at the host's depth give the pictures of those that do not, to the bit.
 
 use libtest_mimic::Trial;
-use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::accel::AccelChoice;
 use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
@@ -11,9 +11,8 @@ use pinhole::internals::ShaderEdit;
 use pinhole::{LinearRgb, Scene};
 use wgpu::TextureFormat;
 
-use super::depth_out::pixel_is_near_a_silhouette;
-use super::stage::{FIRST, Layers, SIZE, Stage, begin, settings};
-use crate::embedding::{Host, view_of};
+use super::stage::{FIRST, SIZE, Stage, settings};
+use crate::host_program::{Host, view_of};
 use crate::planted::planted;
 use crate::support::hosts::Convention;
 use crate::support::spheres::{self, Spheres};
@@ -47,17 +46,7 @@ struct HostPicture {
 
 /// A different depth in every pixel, from the near plane to the far one. Some pixels are at these planes.
 fn random_depth(stage: &Stage, random: &mut fastrand::Rng) -> HostPicture {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let texture = stage.host.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Depth16Unorm,
-        usage,
-        view_formats: &[],
-    });
+    let texture = stage.host.texture(SIZE, TextureFormat::Depth16Unorm);
     // Depths of points among the spheres; the whole range would be in front of them or behind them nearly everywhere.
     let words: Vec<u16> = super::stage::pixels()
         .map(|pixel| match random.u32(0..10) {
@@ -70,34 +59,14 @@ fn random_depth(stage: &Stage, random: &mut fastrand::Rng) -> HostPicture {
             }
         })
         .collect();
-    stage.host.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(&words),
-        wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(2 * SIZE[0]),
-            rows_per_image: None,
-        },
-        texture.size(),
-    );
+    stage.host.write(&texture, &words);
     HostPicture { texture, first_pixel: [0, 0] }
 }
 
 /// The depth of the spheres of the stage, which are those of the scene or others.
 fn own_depth(stage: &Stage) -> HostPicture {
-    let color = stage.attachment(TextureFormat::Rgba8Unorm, 1);
-    let texture = stage.attachment(TextureFormat::Depth32Float, 1);
-    let composite = stage.composite(color.format(), texture.format(), 1);
-    let mut picture = stage.picture(&composite);
-    picture.set_camera(&stage.host.queue, &stage.camera, FIRST);
-    let mut encoder = stage.host.encoder();
-    stage.trace(&mut encoder);
-    {
-        let (color, depth) = (view_of(&color), view_of(&texture));
-        let mut pass = begin(&mut encoder, &color, None, &depth, Some(stage.far()));
-        composite.draw(&mut pass, &picture).unwrap();
-    }
-    stage.host.queue.submit([encoder.finish()]);
+    let formats = [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float];
+    let [_, texture] = stage.composited(formats, &stage.camera, FIRST, stage.far());
     HostPicture { texture, first_pixel: FIRST }
 }
 
@@ -109,17 +78,16 @@ fn picture(
     depth: &HostPicture,
 ) -> [Vec<u8>; 4] {
     let Host { device, queue } = &stage.host;
-    let layers = Layers::new(&stage.host);
-    let mut frame = layers.with(|targets| Frame::new(renderer, device, targets).unwrap());
+    let layers = stage.host.layers(SIZE, TextureFormat::Rgba8Unorm);
+    let mut frame = layers.with(true, |targets| Frame::new(renderer, device, targets)).unwrap();
     frame.set_view(queue, scene, &stage.view(), &settings()).unwrap();
     let test = DepthTest::new(renderer, device).unwrap();
     let mut host_depth = HostDepth::new(&test, device, &view_of(&depth.texture)).unwrap();
     host_depth.set_camera(queue, &stage.camera, &frame, depth.first_pixel).unwrap();
     let mut encoder = stage.host.encoder();
     renderer.record_with_depth(&mut encoder, scene, &frame, &test, &host_depth).unwrap();
-    queue.submit([encoder.finish()]);
-    [&layers.color, &layers.depth, &layers.normal, &layers.id]
-        .map(|layer| stage.host.submit_and_read(stage.host.encoder(), layer))
+    stage.host.submit(encoder);
+    layers.all().map(|layer| stage.host.read(layer))
 }
 
 fn scene(
@@ -128,11 +96,9 @@ fn scene(
     spheres: Spheres,
     choice: AccelChoice,
 ) -> SceneBuffers {
-    let Host { device, queue } = &stage.host;
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-    let bytes = device.limits().max_storage_buffer_binding_size;
-    let accel = AccelPlan::new(scene.spheres(), choice, bytes).build(scene.spheres());
-    SceneBuffers::with_accel(renderer, device, queue, &scene, &accel).unwrap()
+    let bytes = stage.host.device.limits().max_storage_buffer_binding_size;
+    stage.host.scene(renderer, &scene, choice, bytes)
 }
 
 fn stages() -> impl Iterator<Item = Stage> {
@@ -229,7 +195,7 @@ fn near(_: &'static Headless) {
             let leaves = planes[0].max(planes[1]).min_element();
             // Hits are beside the point, also those that `hide` removes because they are a little too far.
             let is_hit = ids[at] != u32::MAX || limits[at] == 0.0;
-            if is_hit || pixel_is_near_a_silhouette(&stage, pixel) || enters + 0.01 > leaves {
+            if is_hit || stage.is_near_a_silhouette(pixel) || enters + 0.01 > leaves {
                 continue;
             }
             if limits[at] >= 1e30 {

@@ -2,16 +2,17 @@
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{
-    ColorTarget, DataTargets, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState,
-    Recolor, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    ColorTarget, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState, Recolor,
+    Renderer, RendererOptions, SceneBuffers, wgpu,
 };
 use pinhole::image::Layer;
 use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, Image, LayerSet, RenderSettings, Scene};
 
-use crate::embedding::Host;
-use crate::light::scenes::{self, LitView};
+use crate::host_program::{Host, Layers};
+use crate::lit_scenes::{self, sampled as named};
+use crate::support::View;
 use crate::trial;
 
 pub(super) fn trials() -> Vec<Trial> {
@@ -30,18 +31,10 @@ pub(super) fn trials() -> Vec<Trial> {
 const LAYERS: LayerSet =
     LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
 
-pub(super) fn named(name: &str, samples: u32) -> LitView {
-    let found = scenes::all().into_iter().find(|(found, _)| *found == name);
-    let mut view = found.unwrap_or_else(|| panic!("there is no scene {name}")).1;
-    view.settings.sampling.samples = samples;
-    view
-}
-
 pub(super) struct Show {
     pub(super) host: Host,
     pub(super) renderer: LitRenderer,
-    /// Colour, depth, normal and id.
-    pub(super) layers: [wgpu::Texture; 4],
+    pub(super) layers: Layers,
 }
 
 impl Show {
@@ -58,36 +51,23 @@ impl Show {
             ..RendererOptions::default()
         };
         let renderer = LitRenderer::new(Renderer::new(&host.device, &options).unwrap());
-        use wgpu::TextureFormat::{R32Float, R32Uint, Rgba32Float};
-        let layers =
-            [Rgba32Float, R32Float, Rgba32Float, R32Uint].map(|format| host.texture(size, format));
+        let layers = host.layers(size, wgpu::TextureFormat::Rgba32Float);
         Self { host, renderer, layers }
     }
 
-    fn of(view: &LitView) -> Self {
+    fn of(view: &View) -> Self {
         Self::new([view.film.width(), view.film.height()])
     }
 
     pub(super) fn scene(&self, scene: &Scene) -> SceneBuffers {
-        SceneBuffers::for_studio(
-            self.renderer.renderer(),
-            &self.host.device,
-            &self.host.queue,
-            scene,
-        )
-        .unwrap()
+        let (renderer, Host { device, queue }) = (self.renderer.renderer(), &self.host);
+        SceneBuffers::for_studio(renderer, device, queue, scene).unwrap()
     }
 
-    pub(super) fn with_targets<T>(&self, work: impl FnOnce(&Targets<'_>) -> T) -> T {
-        let [color, depth, normal, id] = self.layers.each_ref().map(crate::embedding::view_of);
-        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        work(&Targets { color: &color, data: Some(data) })
-    }
-
-    fn picture(&self, scene: &SceneBuffers, view: &LitView) -> Result<LitPicture, GpuError> {
+    fn picture(&self, scene: &SceneBuffers, view: &View) -> Result<LitPicture, GpuError> {
         let Host { device, queue } = &self.host;
         let (seen, settings) = (view.seen(), &view.settings);
-        self.with_targets(|targets| {
+        self.layers.with(true, |targets| {
             LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, targets)
         })
     }
@@ -96,7 +76,7 @@ impl Show {
         &self,
         picture: &mut LitPicture,
         scene: &SceneBuffers,
-        view: &LitView,
+        view: &View,
     ) -> Result<bool, GpuError> {
         let Host { device, queue } = &self.host;
         picture.set(&self.renderer, device, queue, scene, &view.seen(), &view.settings)
@@ -120,11 +100,11 @@ impl Show {
             let done = self.record(picture, &mut encoder, scene, max_rays).unwrap();
             assert!(done.rays <= max_rays, "{done:?}");
             assert!(!done.was_lost, "{done:?}");
-            self.host.queue.submit([encoder.finish()]);
+            self.host.submit(encoder);
             match done.state {
                 LitState::Done if done.rays == 0 => return recordings,
                 LitState::Waiting => {
-                    self.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+                    self.host.wait();
                 }
                 _ => recordings += 1,
             }
@@ -133,29 +113,21 @@ impl Show {
 
     /// Compares the textures with a picture of a headless device.
     fn assert_shows(&self, wanted: &Image, what: &str) {
-        let [color, depth, _, id] = self.layers.each_ref().map(|layer| self.words(layer));
-        let floats =
-            |words: &[u32]| -> Vec<f32> { words.iter().map(|w| f32::from_bits(*w)).collect() };
-        let color = floats(&color);
-        let pixels: Vec<[f32; 3]> = color.chunks(4).map(|p| [p[0], p[1], p[2]]).collect();
+        let color: Vec<[f32; 4]> = self.host.read(&self.layers.color);
+        let pixels: Vec<[f32; 3]> = color.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         let wrong = pixels.iter().zip(wanted.color()).filter(|(a, b)| a != b).count();
         assert_eq!(wrong, 0, "{what}: colours of {} pixels", pixels.len());
-        let alpha: Vec<f32> = color.chunks(4).map(|p| p[3]).collect();
-        assert!(alpha == wanted.alpha().unwrap(), "{what}: alpha");
+        assert!(color.iter().map(|p| &p[3]).eq(wanted.alpha().unwrap()), "{what}: alpha");
         // A texture has 1e30 for a miss.
-        let depth = floats(&depth).into_iter().map(|d| if d >= 1e30 { f32::INFINITY } else { d });
+        let depth: Vec<f32> = self.host.read(&self.layers.depth);
+        let depth = depth.into_iter().map(|d| if d >= 1e30 { f32::INFINITY } else { d });
         assert!(depth.eq(wanted.depth().unwrap().iter().copied()), "{what}: depth");
-        assert!(id == wanted.id().unwrap(), "{what}: id");
-    }
-
-    pub(super) fn words(&self, texture: &wgpu::Texture) -> Vec<u32> {
-        let bytes = self.host.submit_and_read(self.host.encoder(), texture);
-        bytes.chunks(4).map(|word| u32::from_ne_bytes(word.try_into().unwrap())).collect()
+        assert!(self.host.read::<u32>(&self.layers.id) == wanted.id().unwrap(), "{what}: id");
     }
 }
 
-fn headless_picture(headless: &Headless, view: &LitView) -> Image {
-    headless.render(&view.scene, &view.seen(), &view.settings, LAYERS).unwrap()
+fn headless_picture(headless: &Headless, view: &View) -> Image {
+    view.picture(headless, LAYERS)
 }
 
 fn budgets(headless: &'static Headless) {
@@ -175,14 +147,14 @@ fn budgets(headless: &'static Headless) {
 }
 
 fn every_scene(headless: &'static Headless) {
-    for (name, mut view) in scenes::all() {
+    for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = 3;
         view.settings.is_transparent = true;
         let show = Show::of(&view);
         let scene = show.scene(&view.scene);
         let mut picture = show.picture(&scene, &view).unwrap();
         show.finish(&mut picture, &scene, u64::MAX);
-        show.assert_shows(&headless_picture(headless, &view), name);
+        show.assert_shows(&headless_picture(headless, &view), &name);
     }
 }
 
@@ -208,15 +180,15 @@ fn changes(headless: &'static Headless) {
         // In the middle of a picture.
         let mut encoder = show.host.encoder();
         show.record(&mut picture, &mut encoder, &scene, 60_000).unwrap();
-        show.host.queue.submit([encoder.finish()]);
+        show.host.submit(encoder);
         assert!(show.set(&mut picture, &scene, other).unwrap(), "change {number}");
-        show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        show.host.wait();
         show.finish(&mut picture, &scene, 60_000);
         show.assert_shows(&headless_picture(headless, other), &format!("change {number}"));
     }
 }
 
-fn nearer_camera(view: &LitView) -> Box<dyn pinhole::camera::Camera> {
+fn nearer_camera(view: &View) -> Box<dyn pinhole::camera::Camera> {
     let pose =
         pinhole::camera::Pose::looking_at([0.5, 1.5, 6.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let aspect = view.film.aspect();
@@ -245,13 +217,13 @@ fn lost(headless: &'static Headless) {
     let wanted = headless_picture(headless, &view);
     let show = Show::of(&view);
     let scene = show.scene(&view.scene);
-    let settle = || show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let settle = || show.host.wait();
     let finish = |mut picture: LitPicture, what: &str| {
         settle();
         let mut encoder = show.host.encoder();
         let noticed = show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
         assert!(noticed.was_lost, "{what}: {noticed:?}");
-        show.host.queue.submit([encoder.finish()]);
+        show.host.submit(encoder);
         show.finish(&mut picture, &scene, 20_000);
         show.assert_shows(&wanted, what);
     };
@@ -259,7 +231,7 @@ fn lost(headless: &'static Headless) {
         let mut picture = show.picture(&scene, &view).unwrap();
         let mut encoder = show.host.encoder();
         show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
-        show.host.queue.submit([encoder.finish()]);
+        show.host.submit(encoder);
         picture
     };
     let recorded = |picture: &mut LitPicture| {
@@ -285,7 +257,7 @@ fn lost(headless: &'static Headless) {
     settle();
     let mut encoder = show.host.encoder();
     assert!(show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap().was_lost);
-    show.host.queue.submit([encoder.finish()]);
+    show.host.submit(encoder);
     show.host.queue.submit([late]);
     finish(picture, "a recording that comes late");
 }
@@ -305,7 +277,7 @@ fn together(headless: &'static Headless) {
             encoder.finish()
         });
         show.host.queue.submit(commands);
-        show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        show.host.wait();
         if states[1] == LitState::Done {
             break;
         }
@@ -354,8 +326,7 @@ fn refused(_: &'static Headless) {
     let mut encoder = show.host.encoder();
     let few = show.record(&mut picture, &mut encoder, &scene, 63).unwrap_err();
     assert_eq!(few, GpuError::Budget { needed: 64, given: 63 });
-    let primary =
-        LitView { settings: RenderSettings::default(), ..named("studio_key_and_fill", 1) };
+    let primary = View { settings: RenderSettings::default(), ..named("studio_key_and_fill", 1) };
     assert_eq!(show.picture(&scene, &primary).unwrap_err(), GpuError::NotLit);
     let small = Show::new([20, 20]);
     let refused = small.picture(&small.scene(&view.scene), &view).unwrap_err();

@@ -7,10 +7,11 @@ use pinhole::gpu::{GpuError, Headless, LitState, LivePicture, LiveProgress, Scen
 use pinhole::internals::{LiveReference, ShaderEdit};
 use pinhole::{Film, View};
 
-use super::lit::{Show, named};
-use crate::embedding::Host;
-use crate::light::scenes::LitView;
+use super::lit::Show;
+use crate::host_program::Host;
+use crate::lit_scenes::sampled as named;
 use crate::planted::planted;
+use crate::support;
 use crate::trial;
 
 pub(super) fn trials() -> Vec<Trial> {
@@ -48,7 +49,7 @@ fn camera(kind: usize, angle: f64, film: Film) -> Box<dyn Camera> {
 struct Stage {
     show: Show,
     scene: SceneBuffers,
-    view: LitView,
+    view: support::View,
     reference: LiveReference,
 }
 
@@ -63,7 +64,7 @@ impl Stage {
     fn picture(&self) -> Result<LivePicture, GpuError> {
         let Host { device, queue } = &self.show.host;
         let (seen, settings) = (self.view.seen(), &self.view.settings);
-        self.show.with_targets(|targets| {
+        self.show.layers.with(true, |targets| {
             let renderer = &self.show.renderer;
             LivePicture::new(renderer, device, queue, &self.scene, &seen, settings, targets)
         })
@@ -88,22 +89,21 @@ impl Stage {
         let mut encoder = self.show.host.encoder();
         let progress = self.record(picture, &mut encoder);
         assert!(progress.rays > 0 && !progress.was_lost, "{progress:?}");
-        queue.submit([encoder.finish()]);
-        device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        self.show.host.submit(encoder);
+        self.show.host.wait();
         let search = Search::from(&self.view.scene);
         let wanted = self.reference.frame(search, &view, settings).unwrap();
-        let [color, depth, _, id] = self.show.layers.each_ref().map(|layer| self.show.words(layer));
-        let color: Vec<f32> = color.into_iter().map(f32::from_bits).collect();
-        let pixels = color.chunks(4).zip(depth).zip(id).enumerate();
-        let differs = |(i, ((color, depth), id)): &(usize, ((&[f32], u32), u32))| {
+        let color: Vec<[f32; 4]> = self.show.host.read(&self.show.layers.color);
+        let depth: Vec<f32> = self.show.host.read(&self.show.layers.depth);
+        let id: Vec<u32> = self.show.host.read(&self.show.layers.id);
+        let differs = |i: &usize| {
             let colors = wanted.color[*i].iter().chain([&wanted.alpha[*i]]);
-            let is_far = colors.zip(*color).any(|(a, b)| (a - f64::from(*b)).abs() > 0.004);
-            let depth = f64::from(f32::from_bits(*depth));
+            let is_far = colors.zip(color[*i]).any(|(a, b)| (a - f64::from(b)).abs() > 0.004);
             let wanted_depth = wanted.depth[*i].min(1e30);
-            is_far || (depth - wanted_depth).abs() > 1e-4 * wanted_depth || *id != wanted.id[*i]
+            let off = (f64::from(depth[*i]) - wanted_depth).abs();
+            is_far || off > 1e-4 * wanted_depth || id[*i] != wanted.id[*i]
         };
-        let count = color.len() / 4;
-        pixels.filter(differs).count() as f64 / count as f64
+        (0..color.len()).filter(differs).count() as f64 / color.len() as f64
     }
 
     /// The largest fraction of pixels that differ in frames around the scene.
@@ -137,19 +137,20 @@ fn at_rest(headless: &'static Headless) {
     for _ in 0..200 {
         let mut encoder = stage.show.host.encoder();
         stage.record(&mut picture, &mut encoder);
-        stage.show.host.queue.submit([encoder.finish()]);
-        stage.show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        stage.show.host.submit(encoder);
+        stage.show.host.wait();
     }
-    let color = stage.show.words(&stage.show.layers[0]);
+    let color: Vec<[f32; 4]> = stage.show.host.read(&stage.show.layers.color);
     let mut view = named("studio_near_occlusion", 256);
     view.settings.sampling.filter = pinhole::PixelFilter::Box;
     let wanted = headless
         .render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR)
         .unwrap();
     // Within a pixel of an edge the two are not the same: one is smooth there, and the other not.
-    let close = color.chunks(4).zip(wanted.color()).filter(|(found, wanted)| {
-        (0..3).all(|c| (f32::from_bits(found[c]) - wanted[c]).abs() < 0.06)
-    });
+    let close = color
+        .iter()
+        .zip(wanted.color())
+        .filter(|(found, wanted)| (0..3).all(|c| (found[c] - wanted[c]).abs() < 0.06));
     let part = close.count() as f64 / wanted.color().len() as f64;
     assert!(part > 0.8, "{part}");
 }
@@ -166,8 +167,8 @@ fn lost(_: &'static Headless) {
     let stage = Stage::new("studio_key_and_fill", Vec::new());
     let mut picture = stage.picture().unwrap();
     let submit = |encoder: wgpu::CommandEncoder| {
-        stage.show.host.queue.submit([encoder.finish()]);
-        stage.show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        stage.show.host.submit(encoder);
+        stage.show.host.wait();
     };
     let mut encoder = stage.show.host.encoder();
     stage.record(&mut picture, &mut encoder);

@@ -2,13 +2,11 @@
 #![allow(clippy::float_cmp, reason = "depths to which a host clears are exact")]
 
 mod blended;
-mod depth_in;
-mod depth_out;
+mod depth;
 mod limit;
 mod lit;
 mod live;
 mod overlay;
-mod pick;
 mod same_picture;
 mod stage;
 mod triangle;
@@ -18,13 +16,11 @@ use libtest_mimic::Trial;
 pub(crate) fn trials() -> Vec<Trial> {
     [
         same_picture::trials(),
-        depth_out::trials(),
+        depth::trials(),
         overlay::trials(),
         triangle::trials(),
-        depth_in::trials(),
         limit::trials(),
         blended::trials(),
-        pick::trials(),
         lit::trials(),
         live::trials(),
     ]

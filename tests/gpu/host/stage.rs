@@ -4,13 +4,13 @@ use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, HostCamera, Pose};
 use pinhole::glam::{DMat4, DVec2, DVec3};
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, DataTargets, DepthTest, Frame,
-    HostDepth, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth,
+    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
 };
 use pinhole::{LinearRgb, RenderSettings, Scene, Shading, Sphere};
 use wgpu::TextureFormat;
 
-use crate::embedding::{Host, view_of};
+use crate::host_program::{Drawing, Host, Layers, view_of};
 use crate::support::hosts::{Convention, view};
 use crate::support::shaded;
 
@@ -31,13 +31,6 @@ pub(super) struct Stage {
     scene: SceneBuffers,
     pub(super) frame: Frame,
     pub(super) layers: Layers,
-}
-
-pub(super) struct Layers {
-    pub(super) color: wgpu::Texture,
-    pub(super) depth: wgpu::Texture,
-    pub(super) normal: wgpu::Texture,
-    pub(super) id: wgpu::Texture,
 }
 
 /// The point of a sphere that a pixel shows.
@@ -95,11 +88,9 @@ impl Stage {
         let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
         let spheres = random_spheres();
         let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-        let renderer = Renderer::new(&host.device, &options).unwrap();
-        let scene = Scene::new(&spheres).unwrap();
-        let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &scene).unwrap();
-        let layers = Layers::new(&host);
-        let frame = layers.with(|targets| Frame::new(&renderer, &host.device, targets).unwrap());
+        let drawing = Drawing::new(&host, &options, SIZE);
+        let scene = drawing.scene(&host, &Scene::new(&spheres).unwrap());
+        let Drawing { renderer, layers, frame } = drawing;
         let mut stage = Self {
             host,
             convention,
@@ -123,22 +114,13 @@ impl Stage {
 
     /// An attachment of the host.
     pub(super) fn attachment(&self, format: TextureFormat, sample_count: u32) -> wgpu::Texture {
-        let (width, height) = (TARGET[0], TARGET[1]);
         let once = if sample_count == 1 {
             wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING
         } else {
             wgpu::TextureUsages::empty()
         };
-        self.host.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("attachment"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | once,
-            view_formats: &[],
-        })
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | once;
+        self.host.texture_for(TARGET, format, sample_count, usage)
     }
 
     pub(super) fn composite(
@@ -158,7 +140,31 @@ impl Stage {
 
     pub(super) fn picture(&self, composite: &Composite) -> CompositePicture {
         let device = &self.host.device;
-        self.layers.with(|targets| CompositePicture::new(composite, device, targets).unwrap())
+        let picture = |targets: &Targets<'_>| CompositePicture::new(composite, device, targets);
+        self.layers.with(true, picture).unwrap()
+    }
+
+    /// Attachments of one sample in which the spheres are drawn, seen by a camera.
+    pub(super) fn composited(
+        &self,
+        [color, depth]: [TextureFormat; 2],
+        camera: &HostCamera,
+        first_pixel: [u32; 2],
+        cleared: f32,
+    ) -> [wgpu::Texture; 2] {
+        let composite = self.composite(color, depth, 1);
+        let mut picture = self.picture(&composite);
+        picture.set_camera(&self.host.queue, camera, first_pixel);
+        let textures = [color, depth].map(|format| self.attachment(format, 1));
+        let mut encoder = self.host.encoder();
+        self.trace(&mut encoder);
+        {
+            let [color, depth] = textures.each_ref().map(view_of);
+            let mut pass = begin(&mut encoder, &color, None, &depth, Some(cleared));
+            composite.draw(&mut pass, &picture).unwrap();
+        }
+        self.host.submit(encoder);
+        textures
     }
 
     /// Records the spheres.
@@ -220,39 +226,32 @@ impl Stage {
         });
         hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
+
+    /// The pixels that are not near a silhouette, where rounding decides what is hit.
+    pub(super) fn clear_pixels(&self) -> impl Iterator<Item = [u32; 2]> {
+        pixels().filter(|pixel| !self.is_near_a_silhouette(*pixel))
+    }
+
+    /// Whether the ray passes a sphere at less than a thousandth of its radius from its silhouette.
+    pub(super) fn is_near_a_silhouette(&self, pixel: [u32; 2]) -> bool {
+        let ray = self.camera.ray_in_world(Self::location(pixel));
+        self.spheres.iter().any(|sphere| {
+            let to_center = DVec3::from(sphere.center) - ray.origin;
+            let along = to_center.dot(ray.direction);
+            let aside = (to_center - along * ray.direction).length();
+            (aside / sphere.radius - 1.0).abs() < 2e-3
+        })
+    }
 }
 
-impl Layers {
-    pub(super) fn new(host: &Host) -> Self {
-        let layer = |format| {
-            host.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("layer"),
-                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC
-                    | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        };
-        Self {
-            color: layer(TextureFormat::Rgba8Unorm),
-            depth: layer(TextureFormat::R32Float),
-            normal: layer(TextureFormat::Rgba32Float),
-            id: layer(TextureFormat::R32Uint),
-        }
-    }
+/// The place in a picture of a pixel.
+pub(super) fn at([column, row]: [u32; 2]) -> usize {
+    (row * SIZE[0] + column) as usize
+}
 
-    pub(super) fn with<T>(&self, then: impl FnOnce(&Targets<'_>) -> T) -> T {
-        let [color, depth, normal, id] =
-            [&self.color, &self.depth, &self.normal, &self.id].map(view_of);
-        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        then(&Targets { color: &color, data: Some(data) })
-    }
+/// The place in an attachment of a pixel of the picture.
+pub(super) fn at_target([column, row]: [u32; 2]) -> usize {
+    ((row + FIRST[1]) * TARGET[0] + column + FIRST[0]) as usize
 }
 
 pub(super) fn settings() -> RenderSettings {

@@ -6,9 +6,8 @@ use pinhole::glam::{DVec2, DVec3};
 use pinhole::gpu::{Headless, wgpu};
 use wgpu::TextureFormat;
 
-use super::depth_out::pixel_is_near_a_silhouette;
-use super::stage::{FIRST, SIZE, Stage, TARGET, begin, pixels};
-use crate::embedding::view_of;
+use super::stage::{FIRST, SIZE, Stage, at_target, begin, pixels};
+use crate::host_program::view_of;
 use crate::support::hosts::Convention;
 use crate::trial;
 
@@ -139,7 +138,7 @@ pub(super) fn triangle_at(stage: &Stage, pixel: [u32; 2]) -> There {
 
 /// The colour that a pixel must have. `None` where a silhouette, an edge or equal depths leave it open.
 fn expected(stage: &Stage, pixel: [u32; 2], resolution: f64) -> Option<[u8; 4]> {
-    if pixel_is_near_a_silhouette(stage, pixel) {
+    if stage.is_near_a_silhouette(pixel) {
         return None;
     }
     let sphere = stage.truth(pixel).map(|truth| {
@@ -188,19 +187,18 @@ fn both_ways(_: &'static Headless) {
                         triangle.draw(&mut pass);
                     }
                 }
-                let bytes = stage.host.submit_and_read(encoder, &color);
+                let found: Vec<[u8; 4]> = stage.host.submit_and_read(encoder, &color);
                 let context = format!("{convention:?}, {format:?}, {spheres_first}");
-                compare(&stage, &bytes, resolution, &context);
+                compare(&stage, &found, resolution, &context);
             }
         }
     }
 }
 
-fn compare(stage: &Stage, bytes: &[u8], resolution: f64, context: &str) {
+fn compare(stage: &Stage, colors: &[[u8; 4]], resolution: f64, context: &str) {
     let (mut seen, mut open) = ([0; 3], 0);
     for pixel in pixels() {
-        let at = ((pixel[1] + FIRST[1]) * TARGET[0] + pixel[0] + FIRST[0]) as usize;
-        let found = &bytes[4 * at..][..4];
+        let found = colors[at_target(pixel)];
         let Some(expected) = expected(stage, pixel, resolution) else {
             open += 1;
             continue;
@@ -239,12 +237,11 @@ fn four_samples(_: &'static Headless) {
             triangle.draw(&mut pass);
             composite.draw(&mut pass, &picture).unwrap();
         }
-        let bytes = stage.host.submit_and_read(encoder, &resolved);
+        let colors: Vec<[u8; 4]> = stage.host.submit_and_read(encoder, &resolved);
         let mut seen = 0;
         let (mut mixed, mut all) = (0, 0);
         for pixel in pixels() {
-            let at = ((pixel[1] + FIRST[1]) * TARGET[0] + pixel[0] + FIRST[0]) as usize;
-            let found = &bytes[4 * at..][..4];
+            let found = colors[at_target(pixel)];
             let around: Vec<_> = (-1..=1)
                 .flat_map(|y| (-1..=1).map(move |x| (x, y)))
                 .map(|(x, y)| {

@@ -9,16 +9,17 @@ use pinhole::render::{Integrator, Occlusion};
 use pinhole::verify::LitRecording;
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
-use super::scenes::{self, LitView};
+use crate::lit_scenes::{self, named, sampled};
+use crate::pictures::go_on;
 use crate::planted::planted;
+use crate::support::View;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
-        trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
         trial("light::passes::one_pass_makes_the_picture_of_several", one_pass),
         trial("light::passes::faults_in_one_pass_change_the_picture", faults),
-        trial("light::passes::every_structure_makes_the_same_studio", structures),
+        trial("light::passes::every_structure_makes_the_same_picture", structures),
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
@@ -34,33 +35,19 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-fn named(name: &str) -> LitView {
-    let found = scenes::all().into_iter().find(|(found, _)| *found == name);
-    found.unwrap_or_else(|| panic!("there is no scene {name}")).1
-}
-
-fn direct(headless: &'static Headless) {
-    let options = HeadlessOptions { indirect: false, ..HeadlessOptions::default() };
-    let without = Headless::open(&options).unwrap();
-    for (name, mut view) in scenes::all() {
-        view.settings.sampling.samples = 6;
-        let [with, without] = [headless, &without].map(|device| {
-            device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
-        });
-        assert_eq!(with, without, "{name}");
-    }
+/// Spheres side by side, so many along each axis.
+fn block([x, y, z]: [u32; 3], step: f32, radius: f32) -> Scene {
+    let spheres = (0..x * y * z).map(|i| {
+        let [x, y, z] = [i % x, i / x % y, i / (x * y)].map(|c| step * c as f32 - 2.2);
+        [x, y, z, radius]
+    });
+    Scene::from_f32(spheres.collect(), LinearRgb::from_srgb8([200; 3])).unwrap()
 }
 
 /// A studio of a picture of several tiles. Before the device is known to be fast, even one sample is several submissions.
-fn large_studio() -> LitView {
+fn large_studio() -> View {
     let mut view = named("studio_ambient_occlusion");
-    let spheres: Vec<[f32; 4]> = (0..1000_u32)
-        .map(|i| {
-            let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|c| 0.45 * c as f32 - 2.2);
-            [x, y, z, 0.25]
-        })
-        .collect();
-    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
+    view.scene = block([10, 10, 10], 0.45, 0.25);
     view.film = Film::new(800, 600).unwrap();
     view
 }
@@ -69,7 +56,7 @@ fn large_studio() -> LitView {
 fn one_pass(headless: &'static Headless) {
     let options = HeadlessOptions { one_pass: false, ..HeadlessOptions::default() };
     let several = Headless::open(&options).unwrap();
-    for (name, mut view) in scenes::all() {
+    for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = 6;
         let mut sharp = view.settings.clone();
         if let Integrator::Studio(studio) = &mut sharp.integrator {
@@ -97,9 +84,7 @@ fn one_pass(headless: &'static Headless) {
     }
     let mut view = large_studio();
     view.settings.sampling.samples = 1;
-    let [one, several] = [headless, &several].map(|device| {
-        device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
-    });
+    let [one, several] = [headless, &several].map(|device| view.picture(device, LayerSet::ALL));
     assert!(one == several, "the large picture differs");
 }
 
@@ -107,30 +92,26 @@ fn one_pass(headless: &'static Headless) {
 fn faults(headless: &'static Headless) {
     for fault in planted("one_pass") {
         let [scene] = fault.setup();
-        let mut view = named(scene);
-        view.settings.sampling.samples = 6;
+        let view = sampled(scene, 6);
         let faulty = fault.device().unwrap();
-        let [right, wrong] = [headless, &faulty].map(|device| {
-            device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
-        });
+        let [right, wrong] = [headless, &faulty].map(|device| view.picture(device, LayerSet::ALL));
         assert!(right != wrong, "{}", fault.name);
     }
 }
 
 /// Some structures are searched in one pass, and others in several.
-fn structures(headless: &'static Headless) {
-    for name in ["studio_ambient_occlusion", "studio_shadow_catcher"] {
-        let mut view = named(name);
-        view.settings.sampling.samples = 3;
+fn structures(device: &'static Headless) {
+    for (name, samples) in [
+        ("studio_ambient_occlusion", 3),
+        ("studio_shadow_catcher", 3),
+        ("studio_near_occlusion", 64),
+        ("path_glass", 64),
+    ] {
+        let view = sampled(name, samples);
         let pictures = [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List]
             .map(|choice| {
-                let accel = headless.plan_accel(&view.scene, choice).build(view.scene.spheres());
-                let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
-                let go_on = &mut |_: &Progress| Decision::GoOn;
-                headless
-                    .render_uploaded(&buffers, &view.seen(), &view.settings, LayerSet::COLOR, go_on)
-                    .unwrap()
-                    .image
+                let buffers = device.upload(&view.scene, &view.planned(device, choice)).unwrap();
+                view.watched(device, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
             });
         assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{name}");
     }
@@ -141,13 +122,12 @@ fn structures(headless: &'static Headless) {
 fn sums(headless: &'static Headless) {
     const SAMPLES: u32 = 11;
     let samples: Vec<u32> = (0..SAMPLES).collect();
-    for (name, mut view) in scenes::all() {
+    for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = SAMPLES;
         view.settings.is_denoised = false;
-        let LitView { scene, settings, .. } = &view;
-        let layers = LayerSet::COLOR;
-        let plan = headless.plan(scene, &view.seen(), settings, layers, AccelChoice::Auto, 0);
-        let buffers = headless.upload(scene, &plan.build(scene)).unwrap();
+        let View { scene, settings, .. } = &view;
+        let structures = view.planned(headless, AccelChoice::Auto);
+        let buffers = headless.upload(scene, &structures).unwrap();
         let mut film = RecordedFilm::default();
         let mut each = |recording: LitRecording<'_>| {
             let one = match recording {
@@ -158,8 +138,7 @@ fn sums(headless: &'static Headless) {
             assert!(film.after.is_empty() || film.after == one.before, "{name}");
             film = one.clone();
         };
-        let go_on = &mut |_: &Progress| Decision::GoOn;
-        let callbacks = (&mut each as &mut EachSample<'_>, go_on as &mut Watch<'_>);
+        let callbacks = (&mut each as &mut EachSample<'_>, &mut go_on as &mut Watch<'_>);
         headless.record_lit(&buffers, &view.seen(), settings, &samples, callbacks).unwrap();
         let wanted: Vec<[f32; 3]> = film
             .after
@@ -171,53 +150,37 @@ fn sums(headless: &'static Headless) {
                 })
             })
             .collect();
-        let picture = headless.render(scene, &view.seen(), settings, layers).unwrap();
-        assert!(picture.color() == wanted, "{name}");
+        assert!(view.picture(headless, LayerSet::COLOR).color() == wanted, "{name}");
     }
 }
 
 /// Sixteen directions with 9,000 spheres each exceed the iteration limit of some devices.
 fn long_list(headless: &'static Headless) {
     let mut view = named("studio_ambient_occlusion");
-    let spheres: Vec<[f32; 4]> = (0..9000_u32)
-        .map(|i| {
-            let [x, y, z] = [i % 30, i / 30 % 30, i / 900].map(|c| 0.15 * c as f32 - 2.2);
-            [x, y, z, 0.07]
-        })
-        .collect();
-    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
+    view.scene = block([30, 30, 10], 0.15, 0.07);
     view.film = Film::new(40, 32).unwrap();
     view.settings.sampling.samples = 1;
     let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
     studio.occlusion = Some(Occlusion { radius: None, samples: 16 });
     let pictures = [AccelChoice::List, AccelChoice::Grid].map(|choice| {
-        let LitView { scene, settings, .. } = &view;
-        let accel = headless.plan_accel(scene, choice).build(scene.spheres());
-        let buffers = headless.upload(scene, &accel.into()).unwrap();
-        let (layers, go_on) = (LayerSet::COLOR, &mut |_: &Progress| Decision::GoOn);
-        let picture = headless.render_uploaded(&buffers, &view.seen(), settings, layers, go_on);
-        picture.unwrap().image
+        let buffers = view.uploaded(headless, choice);
+        view.watched(headless, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
     });
     assert_eq!(pictures[0], pictures[1]);
 }
 
 /// The device computes the noise during a render, and the host at its end; both must agree.
 fn noise(headless: &'static Headless) {
-    let mut view = named("path_emissive_both");
-    view.settings.sampling.samples = 16;
-    let LitView { scene, settings, .. } = &view;
-    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
-    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    let view = sampled("path_emissive_both", 16);
+    let buffers = view.uploaded(headless, AccelChoice::Auto);
     let told = |wanted: Decision| {
         let mut told = Vec::new();
         let watch = &mut |progress: &Progress| {
             told.push((progress.samples, progress.noise));
             wanted
         };
-        let layers = LayerSet::COLOR;
-        let picture =
-            headless.render_uploaded(&buffers, &view.seen(), settings, layers, watch).unwrap();
-        (told, picture.noise.unwrap())
+        let picture = view.watched(headless, &buffers, LayerSet::COLOR, watch);
+        (told, picture.unwrap().noise.unwrap())
     };
     let (told_nothing, at_end) = told(Decision::GoOn);
     assert!(told_nothing.iter().all(|(_, noise)| noise.is_none()), "{told_nothing:?}");
@@ -253,12 +216,10 @@ fn unfinished_in_one_pass(headless: &'static Headless) {
 
 /// Finishes a render within a batch, at the call with this number after at least `first` samples, and compares its pixels
 /// with pictures that were asked for with as many samples.
-fn finish_within_a_batch(headless: &'static Headless, view: &mut LitView, first: u32, call: usize) {
+fn finish_within_a_batch(headless: &'static Headless, view: &mut View, first: u32, call: usize) {
     view.settings.sampling.samples = 64;
     let layers = LayerSet::COLOR.with(Layer::Samples);
-    let LitView { scene, settings, .. } = &view;
-    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
-    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    let buffers = view.uploaded(headless, AccelChoice::Auto);
     // Each batch has as many samples as all batches before it.
     let (mut finished_at, mut calls) = (None, 0);
     let watch = &mut |progress: &Progress| {
@@ -273,7 +234,7 @@ fn finish_within_a_batch(headless: &'static Headless, view: &mut LitView, first:
         }
         Decision::GoOn
     };
-    let early = headless.render_uploaded(&buffers, &view.seen(), settings, layers, watch).unwrap();
+    let early = view.watched(headless, &buffers, layers, watch).unwrap();
     let least = finished_at.unwrap();
     assert_eq!(early.samples, least);
     let counts = early.image.samples().unwrap();
@@ -283,9 +244,8 @@ fn finish_within_a_batch(headless: &'static Headless, view: &mut LitView, first:
         if !counts.contains(&samples) {
             continue;
         }
-        let mut asked = settings.clone();
-        asked.sampling.samples = samples;
-        let whole = headless.render(scene, &view.seen(), &asked, LayerSet::COLOR).unwrap();
+        view.settings.sampling.samples = samples;
+        let whole = view.picture(headless, LayerSet::COLOR);
         let pixels = counts.iter().zip(early.image.color()).zip(whole.color());
         for ((count, found), wanted) in pixels {
             let is_same = found.map(f32::to_bits) == wanted.map(f32::to_bits);
@@ -295,20 +255,16 @@ fn finish_within_a_batch(headless: &'static Headless, view: &mut LitView, first:
 }
 
 fn stopped(headless: &'static Headless) {
-    let view = named("path_emissive_both");
-    let LitView { scene, settings, .. } = &view;
-    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
-    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    let mut view = named("path_emissive_both");
+    view.film = Film::new(1500, 1200).unwrap();
+    let buffers = view.uploaded(headless, AccelChoice::Auto);
     for decision in [Decision::Stop, Decision::Finish] {
         let mut calls = 0;
         let watch = &mut |progress: &Progress| {
             calls += 1;
             if progress.samples == 0 { decision } else { Decision::GoOn }
         };
-        let layers = LayerSet::COLOR;
-        let film = Film::new(1500, 1200).unwrap();
-        let seen = pinhole::View::new(view.camera.as_ref(), film);
-        let picture = headless.render_uploaded(&buffers, &seen, settings, layers, watch);
+        let picture = view.watched(headless, &buffers, LayerSet::COLOR, watch);
         assert_eq!(picture.unwrap_err(), GpuError::Stopped, "{decision:?}");
         assert_eq!(calls, 1);
     }

@@ -7,7 +7,7 @@ use naga::{
     Span, Statement, TypeInner, UniqueArena, VectorSize,
 };
 
-use super::vectors::ORDERS;
+use super::ORDERS;
 
 /// What is known of a module while its functions are rewritten.
 pub(super) struct Context<'a> {
