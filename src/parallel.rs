@@ -36,7 +36,10 @@ pub(crate) fn try_map<R: Send>(
 }
 
 /// An empty list with the results of `f` for `0..count`, of which a thread takes `chunk` at a time.
-#[expect(unsafe_code, reason = "the results are written where they stay, so that nothing is copied or written twice")]
+#[expect(
+    unsafe_code,
+    reason = "the results are written where they stay, so that nothing is copied or written twice"
+)]
 fn extended<R: Send>(
     mut list: Vec<R>,
     count: usize,

@@ -227,7 +227,7 @@ impl SphereData {
                 .map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))?,
             None => {
                 let flat = self.lock().subject().flat_axis();
-                flat.map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis)
+                flat.map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
             }
         };
         let usual = if self.z_is_up { DVec3::Z } else { DVec3::Y };

@@ -71,8 +71,11 @@ impl Source {
         let subject = scene.subject().with_free_sides(free_sides);
         let aspect = file.film.aspect();
         // A scene file says where its camera stands.
-        let facing = matches!(self.format, Format::Data(_) | Format::Bricks)
-            .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false }));
+        let facing = matches!(self.format, Format::Data(_) | Format::Bricks).then(|| {
+            subject
+                .flat_axis()
+                .map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
+        });
         let parameters = if has_flags {
             self.camera.parameters(facing, self.default_up()).map_err(Failure::usage)?
         } else {

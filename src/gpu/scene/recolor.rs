@@ -162,6 +162,6 @@ impl SceneBuffers {
             && before.sphere_count() == scene.len()
             && before.surfaces() == after.surfaces()
             && !after.surfaces().iter().any(absorbs)
-            && (!self.occluders.is_some() || hides_the_same())
+            && (self.occluders.is_none() || hides_the_same())
     }
 }
