@@ -18,6 +18,9 @@ use super::topology::{Positions, Topology};
 /// Å in a nm.
 const ANGSTROMS: f64 = 10.0;
 
+/// Checks a frame's header, and returns where the frame ends and whether it has positions.
+type NextFrame = fn(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>;
+
 /// Reads the positions of a frame, whose number of atoms the topology has.
 type ReadFrame = fn(&mut Reader<'_>, usize, &Topology) -> Result<Positions, LoadError>;
 
@@ -42,13 +45,12 @@ impl FrameReader for Trajectory {
     }
 }
 
-/// Finds frames one after the other: `next` checks a frame's header, and returns where the frame ends and whether it has
-/// positions.
+/// Finds frames one after the other.
 fn find_frames(
     source: &mut dyn Bytes,
     last: Option<usize>,
     topology: Topology,
-    next: fn(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>,
+    next: NextFrame,
     read: ReadFrame,
 ) -> Result<FrameIndex, LoadError> {
     let reader = &mut Reader::new(source, Order::Big)?;

@@ -1,8 +1,8 @@
 //! Colours, radii, opacities and strengths of light from columns, and expressions over columns that select.
 
 use pinhole::color_by::{
-    ColorBy, ColorByError, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING,
-    Mapping, RadiusBy, column,
+    ColorBy, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING, Mapping, RadiusBy,
+    column,
 };
 use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::scene::Colors;

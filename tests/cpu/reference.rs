@@ -182,7 +182,8 @@ fn with_spheres(view: &View, change: impl Fn(&mut Vec<Sphere>)) -> Scene {
 #[test]
 fn one_pixel_of_each_layer_is_found() {
     assert!(found(|_| ()).is_empty());
-    let spoils: [(&[[u32; 2]], &str, fn(&mut Pixel)); 10] = [
+    type Spoil<'a> = (&'a [[u32; 2]], &'a str, fn(&mut Pixel));
+    let spoils: [Spoil<'_>; 10] = [
         (&[RED, BACKGROUND], "id", |p| p.id = 1),
         (&[RED, BACKGROUND], "color", |p| p.color[2] += 1e-4),
         (&[RED, BACKGROUND], "normal", |p| p.normal[1] += 1e-3),
@@ -220,7 +221,8 @@ fn one_shifted_row_is_found() {
 
 #[test]
 fn another_picture_is_found() {
-    let changes: [(&str, &str, fn(&mut View)); 5] = [
+    type Change<'a> = (&'a str, &'a str, fn(&mut View));
+    let changes: [Change<'_>; 5] = [
         ("another size", "size", |view| view.film = Film::new(80, 61).unwrap()),
         ("half a pixel", "id", |view| {
             let text = include_str!("../../examples/three-spheres.toml")

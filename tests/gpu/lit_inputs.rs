@@ -88,12 +88,12 @@ pub(crate) fn all() -> Vec<Input> {
             });
         }),
         given("paths", "two_spheres_swapped", |view| {
-            on_spheres(view, |spheres| spheres.swap(0, 3))
+            on_spheres(view, |spheres| spheres.swap(0, 3));
         }),
         given("paths", "light_moved", move_lights),
         given("paths", "another_seed", |view| view.settings.sampling.seed += 1),
         given("paths", "another_filter", |view| {
-            view.settings.sampling.filter = pinhole::PixelFilter::Box
+            view.settings.sampling.filter = pinhole::PixelFilter::Box;
         }),
         given("paths", "ground_moved", |view| ground(view).point.y -= 1e-5),
         given("paths", "sky_seen", |view| view.settings.sky.is_visible ^= true),
@@ -125,32 +125,32 @@ pub(crate) fn all() -> Vec<Input> {
         }),
         paths("a_camera_elsewhere", |recording| recording.given.uploaded.origin[1] += 1e-5),
         given("studio", "ambient_light_a_thousandth_brighter", |view| {
-            in_studio(view).ambient = LinearRgb::new([0.25025; 3]).unwrap()
+            in_studio(view).ambient = LinearRgb::new([0.25025; 3]).unwrap();
         }),
         given("studio", "no_shadows", |view| in_studio(view).has_shadows = false),
         given("studio", "a_surface_less", |view| in_studio(view).max_surfaces -= 1),
         given("studio", "fog_a_thousandth_nearer", |view| {
-            in_studio(view).depth_cue.as_mut().unwrap().near *= 0.999
+            in_studio(view).depth_cue.as_mut().unwrap().near *= 0.999;
         }),
         given("studio", "another_radius_of_occlusion", |view| {
-            in_studio(view).occlusion.as_mut().unwrap().radius = Some(0.801)
+            in_studio(view).occlusion.as_mut().unwrap().radius = Some(0.801);
         }),
         given("studio", "light_moved", move_lights),
         given("studio", "a_catcher_for_a_ground", |view| ground(view).is_shadow_catcher = true),
         given("studio", "another_seed", |view| view.settings.sampling.seed += 1),
         studio("box_of_the_occluders_too_small", |recording| {
-            recording.given.occluders[1][0] -= 0.05
+            recording.given.occluders[1][0] -= 0.05;
         }),
         studio("a_sample_of_another_number", |recording| recording.samples[1].sample = 5),
         studio("a_hidden_light", |recording| {
-            recording.samples[2].surfaces[0].lights[0].hidden[900] ^= 1
+            recording.samples[2].surfaces[0].lights[0].hidden[900] ^= 1;
         }),
         studio("a_bit_of_the_radiance", |recording| {
-            recording.samples[0].surfaces[0].lights[0].radiance[900][1] ^= 1 << 4
+            recording.samples[0].surfaces[0].lights[0].radiance[900][1] ^= 1 << 4;
         }),
         studio("a_bit_of_a_sum", |recording| recording.samples[2].film.after[900][0][2] ^= 1 << 3),
         studio("a_bit_of_the_rest_of_a_sum", |recording| {
-            recording.samples[2].film.after[900][1][2] ^= 1 << 30
+            recording.samples[2].film.after[900][1][2] ^= 1 << 30;
         }),
         studio("a_film_that_was_cleared", |recording| {
             let film = &mut recording.samples[1].film;

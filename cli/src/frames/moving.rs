@@ -84,7 +84,7 @@ pub(crate) enum Course {
         clock: PathClock,
         frames_per_second: f64,
         /// The camera before it is moved, with its position.
-        base: CameraParameters,
+        base: Box<CameraParameters>,
         /// The middle of what it frames, and how far from it the camera is.
         center: DVec3,
         distance: f64,
@@ -109,6 +109,7 @@ impl MovingCamera {
         let center = stage.framed.bounds_to_frame().center();
         let distance = eye_of(&base).map_or(1.0, |eye| eye.distance(center));
         let (clock, frames_per_second) = (wanted.path.clock(), f64::from(frames_per_second));
+        let base = Box::new(base);
         let course = Course::Path { motion, clock, frames_per_second, base, center, distance };
         Ok(Self { course, stage })
     }
