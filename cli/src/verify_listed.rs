@@ -16,7 +16,8 @@ pub(super) struct Listed {
 }
 
 impl From<&Violation> for Listed {
-    fn from(Violation { pixel, kind }: &Violation) -> Self {
-        Self { pixel: *pixel, stage: kind.stage(), message: kind.to_string() }
+    fn from(violation: &Violation) -> Self {
+        let Violation { pixel, stage, ref message, .. } = *violation;
+        Self { pixel, stage, message: message.clone() }
     }
 }

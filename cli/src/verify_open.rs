@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use pinhole::verify::{Certificate, Checker, Recording, Verdict, ViolationKind};
+use pinhole::verify::{Certificate, Checker, Recording, Verdict};
 
 /// The largest number of pixels with each verdict.
 const SHOWN: usize = 3;
@@ -30,7 +30,7 @@ pub(super) fn open_pixels(
             let pixel = recording.pixels.get(index)?;
             let ray = pixel.ray?;
             let legal = checker.legal_hits(ray.origin, ray.direction);
-            let message = ViolationKind::Hit { id: pixel.id, t: pixel.t, legal }.to_string();
+            let message = legal.message(pixel.id, pixel.t);
             // The sides of a film are u32.
             let pixel = [(index % width) as u32, (index / width) as u32];
             Some(OpenPixel { pixel, verdict: verdict.name(), message })

@@ -172,7 +172,7 @@ fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
         faulty.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
     println!("{certificate}");
     found(&certificate)?;
-    match certificate.violations.iter().find(|violation| violation.kind.stage() != "render") {
+    match certificate.violations.iter().find(|violation| violation.stage != "render") {
         Some(elsewhere) => Err(format!("elsewhere: {elsewhere}").into()),
         None => Ok(()),
     }
