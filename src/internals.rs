@@ -9,9 +9,10 @@ pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 pub use crate::gpu::edited_composite;
 pub use crate::verify::NO_HIT;
-pub use crate::verify::lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
-pub use crate::verify::paths::{RecordedSample, RecordedSurface};
-pub use crate::verify::studio::{StudioLight, StudioSample, StudioSurface};
+pub use crate::verify::lit::recording::{
+    PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,
+    StudioSurface, UploadedLighting, UploadedSky,
+};
 
 /// Foreign text in messages.
 pub mod text {

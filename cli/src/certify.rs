@@ -19,7 +19,7 @@ use pinhole::image::NO_ID;
 use pinhole::load::LoadError;
 use pinhole::load::npy::pixels::{self, Pixels};
 use pinhole::verify::conformance::{
-    Answers, Conformance, ConformanceError, DepthKind, Finding, Rays,
+    Answers, Conformance, ConformanceError, DepthKind, Field, Finding, Rays,
 };
 use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
@@ -206,12 +206,12 @@ fn certified(
 
 /// Names the file, or the flag, that an error is about.
 fn explained(args: &CertifyArgs, error: &ConformanceError) -> Failure {
-    let file = match error {
-        ConformanceError::Id { .. } => Some(&args.id),
-        ConformanceError::Depth { .. } => args.depth.as_ref(),
-        ConformanceError::Normal { .. } => args.normal.as_ref(),
-        ConformanceError::Origin { .. } | ConformanceError::Direction { .. } => args.rays.as_ref(),
-        ConformanceError::NoAxis => return Failure::usage(format!("--depth-is z: {error}")),
+    let file = match error.field {
+        Some(Field::Ids) => Some(&args.id),
+        Some(Field::Depths) => args.depth.as_ref(),
+        Some(Field::Normals) => args.normal.as_ref(),
+        Some(Field::Rays) => args.rays.as_ref(),
+        Some(Field::DepthKind) => return Failure::usage(format!("--depth-is z: {error}")),
         _ => None,
     };
     let place = file.map_or("the answers".into(), |file| file.to_string_lossy());

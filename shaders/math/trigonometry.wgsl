@@ -1,5 +1,5 @@
 // Sine and cosine with small errors, for cameras. The built-in functions of WGSL are only accurate to 2^-11. The error
-// bounds are in src/verify/camera/trigonometry.rs.
+// bounds are in src/verify/camera/round.rs.
 // provides: PI, sin_cos_eighth, sin_cos_half_turns
 // needs: fence
 

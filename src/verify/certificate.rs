@@ -2,10 +2,57 @@
 
 use std::fmt;
 
-use super::bias::Deviations;
-use super::outcome::Outcome;
-use super::upload::UploadError;
-use super::violation::Violation;
+use crate::verify::bias::Deviations;
+use crate::verify::hit::LegalHits;
+use crate::verify::recording::UploadError;
+use crate::verify::rounding::Interval;
+
+/// The largest share of answers that may stay undecided in a certificate that proves something.
+pub const MOST_UNDECIDED: f64 = 0.01;
+
+/// What a certificate says as a whole.
+///
+/// Only [`Outcome::Proved`] means that a picture is legal. A picture of which too much stays undecided is not called
+/// legal, even if nothing in it is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Outcome {
+    /// Nothing is wrong, and at most [`MOST_UNDECIDED`] of all answers are undecided.
+    Proved,
+    /// Nothing is known to be wrong, but more than [`MOST_UNDECIDED`] of all answers are undecided, or there are none.
+    Undecided,
+    /// At least one answer is wrong.
+    Violated,
+}
+
+impl Outcome {
+    /// All outcomes, from good to bad.
+    pub const ALL: &'static [Self] = &[Self::Proved, Self::Undecided, Self::Violated];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Undecided => "undecided",
+            Self::Violated => "violated",
+        }
+    }
+
+    /// The outcome of `all` answers.
+    pub(super) fn of(is_violated: bool, undecided: u64, all: u64) -> Self {
+        match (is_violated, undecided as f64 <= MOST_UNDECIDED * all as f64 && all > 0) {
+            (true, _) => Self::Violated,
+            (false, true) => Self::Proved,
+            (false, false) => Self::Undecided,
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
 
 /// The verdict about a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,6 +71,24 @@ impl Verdict {
     /// All verdicts, in the order of reports.
     pub const ALL: &'static [Self] = &[Self::Decided, Self::Silhouette, Self::Tie, Self::Violation];
 
+    /// The verdict about an answer that is among the legal ones.
+    pub(super) fn of(legal: &LegalHits) -> Self {
+        match (legal.count(), legal.miss) {
+            (1, _) => Self::Decided,
+            (_, true) => Self::Silhouette,
+            (_, false) => Self::Tie,
+        }
+    }
+
+    pub(super) fn count(self, all: &[Self]) -> usize {
+        all.iter().filter(|verdict| **verdict == self).count()
+    }
+
+    /// The number of pixels with several legal answers.
+    pub(super) fn undecided(all: &[Self]) -> usize {
+        Self::Silhouette.count(all) + Self::Tie.count(all)
+    }
+
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -36,11 +101,64 @@ impl Verdict {
     }
 }
 
+/// Column and row of a pixel by its index, row by row from the top.
+pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
+    let width = width.max(1) as usize;
+    // The sides of a picture are u32.
+    [(index % width) as u32, (index / width) as u32]
+}
+
 /// The largest number of violations that are kept; all are counted.
 pub(super) const KEPT: usize = 1000;
 
+/// A result that is not legal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Violation {
+    /// Column and row of the pixel, from the top left.
+    pub pixel: [u32; 2],
+    /// The stage with the illegal result: `cull`, `camera`, `hit`, `id`, `depth`, `normal`, `color`; or `render`, in the
+    /// picture of [`Headless::render`](crate::gpu::Headless::render), where distances of hits are from the camera.
+    pub stage: &'static str,
+    /// The result that was found, and the legal ones.
+    pub message: String,
+}
+
+impl fmt::Display for Violation {
+    /// Writes the violation on one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pixel: [i, j], stage, message } = self;
+        write!(f, "pixel ({i}, {j}), {stage}: {message}")
+    }
+}
+
+/// A [`Violation`] at some pixel.
+#[derive(Debug)]
+pub(super) struct Illegal {
+    pub(super) stage: &'static str,
+    pub(super) message: String,
+}
+
+impl Illegal {
+    pub(super) fn new(stage: &'static str, message: impl Into<String>) -> Self {
+        Self { stage, message: message.into() }
+    }
+
+    pub(super) fn value(stage: &'static str, found: f32, legal: Interval) -> Self {
+        Self::new(stage, format!("{found:?}; legal is {legal}"))
+    }
+}
+
+/// The names of axes.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The name of a channel of a colour, from 0 for red to 3 for alpha.
+pub(super) fn channel_name(channel: usize) -> &'static str {
+    ["red", "green", "blue", "alpha"].get(channel).copied().unwrap_or("a channel")
+}
+
 /// Whether a device rendered a picture as a conforming WGSL implementation may.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Certificate {
     /// Width and height in pixels.
@@ -67,7 +185,7 @@ impl Certificate {
     /// The number of pixels with a verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
-        self.verdicts.iter().filter(|of_pixel| **of_pixel == verdict).count()
+        verdict.count(&self.verdicts)
     }
 
     /// The fraction of pixels with a single legal answer, which the device gave.
@@ -79,7 +197,7 @@ impl Certificate {
     /// The number of pixels for which several answers are legal, of which the device gave one.
     #[must_use]
     pub fn undecided(&self) -> usize {
-        self.count(Verdict::Silhouette) + self.count(Verdict::Tie)
+        Verdict::undecided(&self.verdicts)
     }
 
     /// The outcome: violated if the uploaded data are wrong or a pixel is not legal, and undecided if too many pixels
@@ -119,5 +237,25 @@ impl fmt::Display for Certificate {
             write!(f, "\nfirst violation: {first}")?;
         }
         self.deviations.biased().try_for_each(|biased| write!(f, "\nbiased: {biased}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_violation_counts_more_than_what_is_undecided() {
+        for (is_violated, undecided, all, outcome) in [
+            (false, 0, 1, Outcome::Proved),
+            (false, 1, 100, Outcome::Proved),
+            (false, 2, 100, Outcome::Undecided),
+            (false, 0, 0, Outcome::Undecided),
+            (true, 0, 1, Outcome::Violated),
+            (true, 2, 100, Outcome::Violated),
+        ] {
+            assert_eq!(Outcome::of(is_violated, undecided, all), outcome);
+        }
+        assert!(Outcome::ALL.is_sorted());
     }
 }

@@ -1,17 +1,25 @@
-//! The checker of recordings of a scene.
+//! The checker of recordings of a scene, pixel by pixel and stage by stage. A pixel whose ray was not recorded is legal
+//! if it is for some ray that a device may compute for it.
 
-use super::bias::Deviations;
-use super::camera::CameraModel;
-use super::candidates::Candidates;
-use super::certificate::{Certificate, KEPT, Verdict};
-use super::hit::LegalHits;
-use super::line::Line;
-use super::pixel::PixelCheck;
-use super::recording::{Recording, Rendered};
-use super::upload;
-use super::violation::Violation;
+use glam::DVec3;
+
+use crate::geometry::math::wide;
+use crate::image::{Image, NO_ID};
 use crate::parallel::{map_parts, ranges};
 use crate::scene::{Scene, SceneError};
+use crate::verify::bias::{Deviations, deviation};
+use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
+use crate::verify::certificate::{
+    AXES, Certificate, Illegal, KEPT, Verdict, Violation, channel_name, pixel_at,
+};
+use crate::verify::hit::{Candidates, LegalHits};
+use crate::verify::recording::{
+    NO_HIT, Recording, Rendered, TracedPixel, TracedRay, check_recording,
+};
+use crate::verify::rounding::{Interval, PAD, U, unit_error};
+use crate::verify::sphere::{
+    LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth,
+};
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 12;
@@ -23,27 +31,14 @@ pub struct Checker<'a> {
     pub(super) candidates: Candidates,
 }
 
-/// The results for a range of pixels.
-#[derive(Default)]
-struct JudgedPixels {
-    verdicts: Vec<Verdict>,
-    violations: Vec<Violation>,
-    rendered_otherwise: usize,
-    worst_depth: f64,
-    worst_normal: f64,
-    deviations: Deviations,
-}
-
 /// In pictures of more pixels, one in some pixels is measured for biases.
 const ALL_MEASURED: usize = 1 << 16;
 const ONE_IN: usize = 8;
 
-impl Checker<'_> {
+impl<'a> Checker<'a> {
     /// The largest number of bytes that the checker needs for each sphere.
     pub const BYTES_PER_SPHERE: u64 = 40;
-}
 
-impl<'a> Checker<'a> {
     /// Prepares a scene, which takes 24 bytes for each sphere, and 8 to 16 for boxes.
     ///
     /// # Errors
@@ -68,13 +63,8 @@ impl<'a> Checker<'a> {
         let size = [film.width(), film.height()];
         let mut certificate = Certificate {
             size,
-            verdicts: Vec::new(),
-            violations: Vec::new(),
-            rendered_otherwise: None,
-            upload: upload::check(self.scene, &self.candidates, recording).err(),
-            worst_depth: 0.0,
-            worst_normal: 0.0,
-            deviations: Deviations::default(),
+            upload: check_recording(self.scene, &self.candidates, recording).err(),
+            ..Certificate::default()
         };
         if certificate.upload.is_some() {
             return certificate;
@@ -91,7 +81,7 @@ impl<'a> Checker<'a> {
         for part in map_parts(pixels, |range| judge(&check, range, size[0])) {
             certificate.verdicts.extend(part.verdicts);
             if let Some(count) = &mut certificate.rendered_otherwise {
-                *count += part.rendered_otherwise;
+                *count += part.rendered_otherwise.unwrap_or_default();
             }
             let room = KEPT.saturating_sub(certificate.violations.len());
             certificate.violations.extend(part.violations.into_iter().take(room));
@@ -103,18 +93,17 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> JudgedPixels {
-    let mut part =
-        JudgedPixels { verdicts: Vec::with_capacity(range.len()), ..JudgedPixels::default() };
+/// Judges a range of pixels.
+fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> Certificate {
+    let mut part = Certificate::default();
     let mut legal = LegalHits::default();
     let one_in = if check.recording.pixels.len() > ALL_MEASURED { ONE_IN } else { 1 };
     for index in range {
-        // The sides of a film are u32.
-        let pixel = [(index % width as usize) as u32, (index / width as usize) as u32];
+        let pixel = pixel_at(index, width);
         let measured = (index % one_in == 0).then_some(&mut part.deviations);
         let judged = check.judge(index, pixel, &mut legal, measured);
         let rendered = check.judge_rendered(index, pixel, &mut legal);
-        part.rendered_otherwise += usize::from(rendered.is_some());
+        *part.rendered_otherwise.get_or_insert_default() += usize::from(rendered.is_some());
         let judged = judged.and_then(|judged| rendered.unwrap_or(Ok(())).map(|()| judged));
         let verdict = match judged {
             Ok(judged) => {
@@ -122,9 +111,9 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> J
                 part.worst_normal = part.worst_normal.max(judged.normal);
                 judged.verdict
             }
-            Err(kind) => {
+            Err(Illegal { stage, message }) => {
                 if part.violations.len() < KEPT {
-                    part.violations.push(Violation { pixel, kind });
+                    part.violations.push(Violation { pixel, stage, message });
                 }
                 Verdict::Violation
             }
@@ -132,4 +121,321 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> J
         part.verdicts.push(verdict);
     }
     part
+}
+
+/// The data with which pixels are judged.
+pub(super) struct PixelCheck<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) candidates: &'a Candidates,
+    pub(super) model: CameraModel,
+    pub(super) recording: &'a Recording,
+}
+
+/// The result for a legal pixel.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    /// The deviation of the distance from the middle of its legal interval, relative to half the width of the interval.
+    pub(super) depth: f64,
+    /// The deviation of the normal from the exact one, relative to its bound.
+    pub(super) normal: f64,
+}
+
+/// The ray with which a hit is shaded, and how far the device's may be from it.
+struct Shaded {
+    line: Line,
+    slack: Slack,
+    direction: [Interval; 3],
+}
+
+/// The layers of a pixel.
+#[derive(PartialEq)]
+pub(super) struct Layers {
+    color: [f32; 3],
+    pub(super) depth: f32,
+    pub(super) normal: [f32; 3],
+    pub(super) id: u32,
+}
+
+impl Layers {
+    /// The layers of a pixel; a picture that is judged has all of them.
+    pub(super) fn of(image: &Image, index: usize) -> Self {
+        Self {
+            color: image.color()[index],
+            depth: image.depth().map_or(f32::NAN, |layer| layer[index]),
+            normal: image.normal().map_or([f32::NAN; 3], |layer| layer[index]),
+            id: image.id().map_or(NO_ID, |layer| layer[index]),
+        }
+    }
+}
+
+impl PixelCheck<'_> {
+    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused. The
+    /// deviations of a decided hit are added to `measured`.
+    pub(super) fn judge(
+        &self,
+        index: usize,
+        pixel: [u32; 2],
+        legal: &mut LegalHits,
+        measured: Option<&mut Deviations>,
+    ) -> Result<Judged, Illegal> {
+        let TracedPixel { ray, t, id, shading_ray } = self.recording.pixels[index];
+        let layers = Layers::of(&self.recording.image, index);
+        let illegal = |legal: &LegalHits| Illegal::new("hit", legal.message(id, t));
+        let camera_ray = self.model.ray(pixel);
+        let Some(ray) = ray else {
+            let exact = camera_ray.entered(&self.model, camera_ray.line.direction);
+            if !exact.may_miss_box {
+                let message = "no ray was traced, although it hits the scene's box";
+                return Err(Illegal::new("cull", message));
+            }
+            legal.clear();
+            if id != NO_ID {
+                return Err(illegal(legal));
+            }
+            self.check_miss(&layers, t)?;
+            return Ok(Judged { verdict: Verdict::Decided, depth: 0.0, normal: 0.0 });
+        };
+        let line = Line::new(ray.origin, ray.direction);
+        let entered = camera_ray.entered(&self.model, line.direction);
+        check_ray(&entered, &ray)?;
+
+        legal.clear();
+        if entered.may_hit_box {
+            legal.find(self.candidates, &line);
+            legal.miss |= entered.may_miss_box;
+        }
+        let verdict = Verdict::of(legal);
+        if id == NO_ID {
+            if !legal.miss {
+                return Err(illegal(legal));
+            }
+            self.check_miss(&layers, t)?;
+            return Ok(Judged { verdict, depth: 0.0, normal: 0.0 });
+        }
+        if !legal.allows(id, t.into()) {
+            return Err(illegal(legal));
+        }
+        let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
+        let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
+        let depths = legal_depth(ray.distance, t);
+        // Without the ray of shading, it is known only as well as the ray that it must have had.
+        let mut shading = Shaded { line, slack: entered.slack(), direction: entered.direction };
+        if let Some(ray) = shading_ray {
+            let line = Line::new(ray.origin, ray.direction);
+            check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
+            let direction = ray.direction.map(exactly);
+            shading = Shaded { line, slack: Slack::default(), direction };
+        }
+        let normal = self.check_hit(&layers, depths, id, &shading)?;
+        if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
+            for (what, found, legal) in entered.numbers(&ray) {
+                measured.add_if("camera", what, deviation(found, legal));
+            }
+            let t = side.and_then(|crossing| deviation(t.into(), crossing));
+            measured.add_if("trace", "the distance of a hit", t);
+            self.measure_shading(&layers, &shading, measured);
+        }
+        Ok(Judged { verdict, depth, normal })
+    }
+
+    fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), Illegal> {
+        if t.to_bits() != NO_HIT.to_bits() {
+            return Err(Illegal::new("hit", format!("a miss at {t:?}; legal is {NO_HIT:?}")));
+        }
+        self.check_layers_of_miss(layers)
+    }
+
+    pub(super) fn check_layers_of_miss(&self, layers: &Layers) -> Result<(), Illegal> {
+        if layers.id != NO_ID {
+            return Err(wrong_id(layers.id, NO_ID));
+        }
+        let infinity = Interval { low: f64::INFINITY, high: f64::INFINITY };
+        if layers.depth != f32::INFINITY {
+            return Err(Illegal::value("depth", layers.depth, infinity));
+        }
+        if layers.normal.iter().any(|component| component.abs() > 0.0 || component.is_nan()) {
+            return Err(wrong_normal(layers.normal, DVec3::ZERO, 0.0));
+        }
+        let background = self.recording.primary.background.to_array();
+        check_color(layers.color, background.map(exactly))
+    }
+
+    /// Judges the layers of a hit. Returns the deviation of the normal from the exact one, relative to its bound.
+    fn check_hit(
+        &self,
+        layers: &Layers,
+        depths: Interval,
+        id: u32,
+        shading: &Shaded,
+    ) -> Result<f64, Illegal> {
+        if layers.id != id {
+            return Err(wrong_id(layers.id, id));
+        }
+        if !depths.contains(layers.depth.into()) {
+            return Err(Illegal::value("depth", layers.depth, depths));
+        }
+        self.check_shading(layers, &shading.line, shading.slack, shading.direction)
+    }
+
+    /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
+    /// bound.
+    pub(super) fn check_shading(
+        &self,
+        layers: &Layers,
+        line: &Line,
+        slack: Slack,
+        direction: [Interval; 3],
+    ) -> Result<f64, Illegal> {
+        let (scene, id) = (self.scene, layers.id);
+        let sphere = scene.spheres()[id as usize];
+        let normals = LegalNormals::new(line, sphere, slack);
+        let normal = wide(layers.normal);
+        let fraction = normals.fraction(normal);
+        let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
+        if !(fraction <= 1.0 && is_unit) {
+            let (exact, error) = normals.crossings().next().unwrap_or_default();
+            return Err(wrong_normal(layers.normal, exact, error));
+        }
+        let color = scene.color(id).to_array();
+        let shading = self.recording.primary.shading;
+        check_color(layers.color, legal_color(shading, color, normal, direction))?;
+        Ok(fraction)
+    }
+
+    /// Adds the deviations of a legal normal and colour.
+    fn measure_shading(&self, layers: &Layers, ray: &Shaded, measured: &mut Deviations) {
+        let (scene, id) = (self.scene, layers.id);
+        let normal = wide(layers.normal);
+        let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
+        if let Some((exact, error)) = normals.only() {
+            for axis in 0..3 {
+                let legal = Interval::around(exact[axis], error);
+                measured.add_if("shade", "the normal", deviation(normal[axis], legal));
+            }
+        }
+        let shading = self.recording.primary.shading;
+        let legal = legal_color(shading, scene.color(id).to_array(), normal, ray.direction);
+        for (found, legal) in layers.color.into_iter().zip(legal) {
+            measured.add_if("shade", "the color", deviation(found.into(), legal));
+        }
+    }
+}
+
+fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Illegal> {
+    for axis in 0..3 {
+        let (found, legal) = (ray.direction[axis], entered.direction[axis]);
+        if !legal.contains(found.into()) {
+            let message = format!("the direction's {} is {found:?}; legal is {legal}", AXES[axis]);
+            return Err(Illegal::new("camera", message));
+        }
+    }
+    entered.check_start(ray)
+}
+
+fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Illegal> {
+    match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
+        None => Ok(()),
+        Some(channel) => {
+            let (found, legal) = (found[channel], legal[channel]);
+            let name = channel_name(channel);
+            Err(Illegal::new("color", format!("{name} is {found:?}; legal is {legal}")))
+        }
+    }
+}
+
+fn wrong_id(found: u32, traced: u32) -> Illegal {
+    let name = |id| if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") };
+    Illegal::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
+}
+
+fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Illegal {
+    let DVec3 { x, y, z } = exact;
+    let message = format!(
+        "{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length"
+    );
+    Illegal::new("normal", message)
+}
+
+impl PixelCheck<'_> {
+    /// Judges a pixel of the picture without recording; `None` if there is no such picture, or if the pixel equals the
+    /// recorded one.
+    pub(super) fn judge_rendered(
+        &self,
+        index: usize,
+        pixel: [u32; 2],
+        legal: &mut LegalHits,
+    ) -> Option<Result<(), Illegal>> {
+        let Rendered::Other(image) = &self.recording.rendered else {
+            return None;
+        };
+        let layers = Layers::of(image, index);
+        if layers == Layers::of(&self.recording.image, index) {
+            return None;
+        }
+        let judged = self.judge_any(&layers, pixel, legal);
+        Some(judged.map_err(|illegal| {
+            Illegal::new("render", format!("{}: {}", illegal.stage, illegal.message))
+        }))
+    }
+
+    fn judge_any(
+        &self,
+        layers: &Layers,
+        pixel: [u32; 2],
+        legal: &mut LegalHits,
+    ) -> Result<(), Illegal> {
+        let ray = self.model.ray(pixel).any(&self.model);
+        legal.clear();
+        if ray.may_hit_box {
+            legal.find_nearer(self.candidates, &ray.line, ray.slack, |_| false);
+            legal.miss |= ray.may_miss_box;
+        }
+        legal.start_from(&ray);
+        let Layers { id, depth, .. } = *layers;
+        if id == NO_ID && legal.miss {
+            return self.check_layers_of_miss(layers);
+        }
+        if id == NO_ID || !legal.allows(id, depth.into()) {
+            return Err(Illegal::new("hit", legal.message(id, depth)));
+        }
+        if let Some(legal) = self.legal_depth(&ray, id)
+            && !legal.contains(depth.into())
+        {
+            return Err(Illegal::value("depth", depth, legal));
+        }
+        self.check_shading(layers, &ray.line, ray.slack, ray.direction).map(|_| ())
+    }
+
+    /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not
+    /// depend on where the ray enters the scene's box.
+    fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
+        let sphere = *self.scene.spheres().get(id as usize)?;
+        let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
+        let test = SphereTest::new(&ray.line, sphere, ray.slack_of_distance)?.as_the_kernel();
+        let closer = test.roots();
+        let side = match ((roots.near, roots.far), (closer.near, closer.far)) {
+            ((Some(_), None), (Some(side), None)) | ((None, Some(_)), (None, Some(side))) => side,
+            _ => return None,
+        };
+        Some(ray.depths(side))
+    }
+}
+
+impl AnyRay {
+    /// Distances from the camera; the device computes them with one sum.
+    fn depths(&self, Interval { low, high }: Interval) -> Interval {
+        let (near, far) = (low + self.distance.low, high + self.distance.high);
+        Interval { low: near - PAD * U * near.abs(), high: far + PAD * U * far.abs() }
+    }
+}
+
+impl LegalHits {
+    /// Converts distances along the line to distances from the camera.
+    fn start_from(&mut self, ray: &AnyRay) {
+        let moved = |side| ray.depths(side);
+        for hit in &mut self.spheres {
+            (hit.near, hit.far) = (hit.near.map(moved), hit.far.map(moved));
+        }
+        self.limit = moved(Interval { low: self.limit, high: self.limit }).high;
+    }
 }

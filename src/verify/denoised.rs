@@ -11,13 +11,13 @@
 //! roundings of the sums and of the quotient are added. What intervals leave open, such as whether a miss has no noise,
 //! may go either way.
 
-use super::outcome::Outcome;
+use super::certificate::{channel_name, pixel_at};
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
-use super::violation::channel_name;
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
 use crate::image::denoise::{Guided, MissingGuide, PASSES};
 use crate::parallel::{map_parts, ranges};
+use crate::verify::certificate::Outcome;
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 10;
@@ -108,7 +108,6 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
         lights = parts.concat();
     }
     let mut certificate = DenoiseCertificate::default();
-    let width = noisy.width().max(1) as usize;
     for (index, (light, albedo)) in lights.iter().zip(&filter.guided.albedos).enumerate() {
         // A picture of another size is not legal where it has no pixels.
         let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
@@ -126,7 +125,7 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
             Some(channel) => {
                 certificate.violation_count += 1;
                 if certificate.violations.len() < KEPT {
-                    let pixel = [(index % width) as u32, (index / width) as u32];
+                    let pixel = pixel_at(index, noisy.width());
                     let (found, legal) = (found[channel], legal[channel]);
                     certificate.violations.push(DenoiseViolation { pixel, channel, found, legal });
                 }

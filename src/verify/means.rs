@@ -26,8 +26,8 @@
 
 use std::fmt;
 
-use super::outcome::Outcome;
-use super::violation::channel_name;
+use super::certificate::channel_name;
+use crate::verify::certificate::Outcome;
 
 /// The probability with which a correct device is accused.
 pub const ERROR_PROBABILITY: f64 = 1e-9;

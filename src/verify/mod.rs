@@ -38,59 +38,46 @@
 
 mod bias;
 mod camera;
-mod candidates;
 mod certificate;
 mod checker;
 mod choices;
 pub mod conformance;
 pub mod denoised;
 mod hit;
-mod line;
 pub(crate) mod lit;
-mod lit_recording;
+mod lit_check;
 pub mod means;
 mod number;
-mod outcome;
-pub(crate) mod paths;
+mod paths;
 #[cfg(feature = "run-file")]
 pub mod picture_certificate;
-mod pixel;
 mod recording;
-mod rendered;
 mod rounding;
 #[cfg(feature = "run-file")]
 pub mod run_file;
-mod shading;
 mod sphere;
-pub(crate) mod studio;
-mod upload;
-mod violation;
+mod studio;
 pub mod written;
 
 pub use bias::{Deviation, Deviations, LARGEST_MEAN};
 pub use camera::LegalCameraRay;
-pub use certificate::{Certificate, Verdict};
+pub use certificate::{Certificate, MOST_UNDECIDED, Outcome, Verdict, Violation};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
-pub use lit::{
-    LitCertificate, LitInputs, LitOpen, LitShare, LitStage, LitUploadError, LitViolation,
-    StageCounts,
+pub use lit::certificate::{
+    LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts,
+};
+pub use lit::recording::{
+    LitInputs, LitRecording, PathRecording, RectangleRecording, RectangleSample, StudioRecording,
 };
 #[cfg(feature = "gpu")]
-pub(crate) use lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
-pub use lit_recording::LitRecording;
-pub use outcome::{MOST_UNDECIDED, Outcome};
-pub use paths::PathRecording;
-#[cfg(feature = "gpu")]
-pub(crate) use paths::{RecordedSample, RecordedSurface};
+pub(crate) use lit::recording::{
+    PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,
+    StudioSurface, UploadedLighting, UploadedSky,
+};
 pub use recording::{
-    NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+    NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadError, UploadedView,
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
 pub(crate) use rounding::{DIVIDE_UNITS, SQRT_ULP, gamma};
-pub use studio::StudioRecording;
-#[cfg(feature = "gpu")]
-pub(crate) use studio::{StudioLight, StudioSample, StudioSurface};
-pub use upload::UploadError;
-pub use violation::{Violation, ViolationKind};

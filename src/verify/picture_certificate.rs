@@ -24,10 +24,10 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
-use super::outcome::Outcome;
 use super::run_file::hex;
 use crate::scene::Scene;
 use crate::text::{one_line, shortened};
+use crate::verify::certificate::Outcome;
 
 /// The version of the format that this crate writes, and the only one that it reads.
 pub const VERSION: &str = "1";
@@ -86,39 +86,13 @@ pub struct PictureCertificate {
 
 /// Why a text is not a certificate.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CertificateError {
-    /// The certificate has another version of the format.
-    #[error(
-        "the picture's certificate has the version {}, and this program reads version {VERSION}; use the program that \
-         wrote it, or render the picture again",
-        shortened(found)
-    )]
-    Version {
-        /// The version that was found.
-        found: String,
-    },
-    /// The text is not what was written.
-    #[error(
-        "the picture's certificate was edited: its SHA-256 digest does not match; render the picture again with --certify"
-    )]
-    Edited,
-    /// A line is missing or not valid.
-    #[error(
+#[error("{0}")]
+pub struct CertificateError(String);
+
+fn missing(key: &str) -> CertificateError {
+    CertificateError(format!(
         "the picture's certificate has no valid line `{key}`; render the picture again with --certify"
-    )]
-    Line {
-        /// The key of the line.
-        key: &'static str,
-    },
-    /// An argument has a line break.
-    #[error(
-        "{found:?}: an argument with a line break cannot be part of a certificate; rename the file, or use a scene file"
-    )]
-    LineBreak {
-        /// The argument.
-        found: String,
-    },
+    ))
 }
 
 impl PictureCertificate {
@@ -147,7 +121,10 @@ impl PictureCertificate {
         line("adapter", &one_line(&self.adapter));
         for argument in &self.arguments {
             if argument.contains(['\n', '\r']) {
-                return Err(CertificateError::LineBreak { found: argument.clone() });
+                return Err(CertificateError(format!(
+                    "{argument:?}: an argument with a line break cannot be part of a certificate; rename the file, or use \
+                     a scene file"
+                )));
             }
             line("argument", argument);
         }
@@ -168,12 +145,15 @@ impl PictureCertificate {
     /// # Errors
     /// Returns an error if the text is of another version, was edited, or lacks a line.
     pub fn from_text(text: &str) -> Result<Self, CertificateError> {
-        let missing = |key| CertificateError::Line { key };
         let mut lines = text.lines().map(|line| line.split_once(' ').unwrap_or((line, "")));
         match lines.next() {
             Some((FIRST, VERSION)) => {}
             Some((FIRST, other)) => {
-                return Err(CertificateError::Version { found: one_line(other) });
+                return Err(CertificateError(format!(
+                    "the picture's certificate has the version {}, and this program reads version {VERSION}; use the \
+                     program that wrote it, or render the picture again",
+                    shortened(&one_line(other))
+                )));
             }
             _ => return Err(missing(FIRST)),
         }
@@ -181,7 +161,9 @@ impl PictureCertificate {
         let digest =
             format!("{DIGEST} {}\n", hex(Sha256::new_with_prefix(&text.as_bytes()[..before])));
         if text[before..] != digest {
-            return Err(CertificateError::Edited);
+            let message = "the picture's certificate was edited: its SHA-256 digest does not match; render the picture \
+                           again with --certify";
+            return Err(CertificateError(message.to_owned()));
         }
         let lines: Vec<(&str, String)> =
             lines.map(|(key, value)| (key, unescaped(value))).collect();
@@ -313,16 +295,19 @@ mod tests {
             assert!(PictureCertificate::from_text(&edited).is_err(), "{index}: {edited}");
             assert!(PictureCertificate::from_text(&text[..index]).is_err(), "{index}");
         }
-        assert_eq!(
-            PictureCertificate::from_text(&text.replace("certificate 1", "certificate 2")),
-            Err(CertificateError::Version { found: "2".into() })
+        let refused = |text: &str| PictureCertificate::from_text(text).unwrap_err().to_string();
+        let other = refused(&text.replace("certificate 1", "certificate 2"));
+        assert!(
+            other.starts_with("the picture's certificate has the version 2, and this"),
+            "{other}"
         );
-        assert_eq!(PictureCertificate::from_text(""), Err(CertificateError::Line { key: FIRST }));
+        assert_eq!(refused(""), missing(FIRST).to_string());
     }
 
     #[test]
     fn arguments_with_line_breaks_are_refused() {
         let broken = PictureCertificate { arguments: vec!["a\nb".into()], ..certificate() };
-        assert!(matches!(broken.to_text(), Err(CertificateError::LineBreak { .. })));
+        let error = broken.to_text().unwrap_err().to_string();
+        assert!(error.starts_with("\"a\\nb\": an argument with a line break"), "{error}");
     }
 }

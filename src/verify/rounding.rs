@@ -87,3 +87,24 @@ impl Interval {
         if half > 0.0 && half.is_finite() { (value - middle).abs() / half } else { 0.0 }
     }
 }
+
+impl std::fmt::Display for Interval {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { low, high } = self;
+        if low.to_bits() == high.to_bits() {
+            // The number is written like the f32 that it is.
+            write!(f, "{:?}", *low as f32)
+        } else {
+            write!(f, "[{low:.10e}, {high:.10e}]")
+        }
+    }
+}
+
+/// Whether a number on the device is within two roundings of the one that was asked for.
+pub(crate) fn is_near(found: f32, asked: f64) -> bool {
+    (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH
+}
+
+pub(crate) fn are_near<const N: usize>(found: [f32; N], asked: [f64; N]) -> bool {
+    found.into_iter().zip(asked).all(|(found, asked)| is_near(found, asked))
+}

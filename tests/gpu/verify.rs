@@ -167,7 +167,7 @@ fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
     let certificate = faulty.verify(&view.scene, &view.seen(), &view.settings)?;
     println!("{certificate}");
     found(&certificate)?;
-    match certificate.violations.iter().find(|violation| violation.kind.stage() != "render") {
+    match certificate.violations.iter().find(|violation| violation.stage != "render") {
         Some(elsewhere) => Err(format!("elsewhere: {elsewhere}").into()),
         None => Ok(()),
     }

@@ -13,7 +13,7 @@ use pinhole::verify::denoised::{self, DenoiseCertificate};
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome,
-    Recording, StageCounts, Verdict, Violation, ViolationKind,
+    Recording, StageCounts, Verdict, Violation,
 };
 
 /// The JSON document.
@@ -345,8 +345,9 @@ pub(crate) struct Listed {
 }
 
 impl From<&Violation> for Listed {
-    fn from(Violation { pixel, kind }: &Violation) -> Self {
-        Self { pixel: *pixel, stage: kind.stage(), message: kind.to_string() }
+    fn from(violation: &Violation) -> Self {
+        let Violation { pixel, stage, ref message, .. } = *violation;
+        Self { pixel, stage, message: message.clone() }
     }
 }
 
@@ -376,7 +377,7 @@ pub(crate) fn open_pixels(
             let pixel = recording.pixels.get(index)?;
             let ray = pixel.ray?;
             let legal = checker.legal_hits(ray.origin, ray.direction);
-            let message = ViolationKind::Hit { id: pixel.id, t: pixel.t, legal }.to_string();
+            let message = legal.message(pixel.id, pixel.t);
             // The sides of a film are u32.
             let pixel = [(index % width) as u32, (index / width) as u32];
             Some(OpenPixel { pixel, verdict: verdict.name(), message })

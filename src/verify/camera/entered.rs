@@ -1,35 +1,46 @@
-//! The point where a camera's ray enters the scene's box, and bounds of a device's error. The WGSL twin is
-//! `shaders/scene/enter.wgsl`.
+//! The point where a camera's ray enters the scene's box, and bounds of a device's error; and all rays that a device may
+//! compute for a pixel, for results whose ray was not recorded. The WGSL twin is `shaders/scene/enter.wgsl`.
 
 use glam::DVec3;
 
-use super::{CameraModel, CameraRay};
+use crate::verify::camera::{CameraModel, CameraRay};
+use crate::verify::certificate::{AXES, Illegal};
 use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
-use crate::verify::sphere::Slack;
-use crate::verify::violation::ViolationKind;
+use crate::verify::sphere::{Line, Slack};
 
 /// The same constant as in `shaders/scene/enter.wgsl`.
-pub(super) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
+pub(crate) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl CameraModel {
-    /// Where a ray with this origin and direction enters and leaves the scene's box, for all origins within their error
-    /// bounds.
-    fn slabs(&self, ray: &CameraRay, direction: DVec3) -> BoxCrossing {
+    /// Where a ray enters and leaves the scene's box, for all origins within their error bounds and all directions within
+    /// `turned`, each axis by itself.
+    fn slabs(&self, ray: &CameraRay, direction: DVec3, turned: DVec3) -> BoxCrossing {
         let mut crossing = BoxCrossing::default();
         for axis in 0..3 {
-            let size = direction[axis].abs().max(SMALLEST_COMPONENT);
-            let inverse = if direction[axis] < 0.0 { -1.0 / size } else { 1.0 / size };
-            let plane = |plane: f64| {
-                let away = plane - ray.line.origin[axis];
-                // Errors of the difference, the reciprocal of the direction and their product, with the three terms in
-                // any order.
-                let error = (ray.origin_error[axis] * (1.0 + 5.0 * U) + U * away.abs()) / size
-                    + (DIVIDE + 3.0 * U) * (away * inverse).abs();
-                Interval::around(away * inverse, PAD * error + FLUSH / size + FLUSH)
+            let (d, error) = (direction[axis], turned[axis]);
+            let least = (d.abs() - error).max(SMALLEST_COMPONENT);
+            let most = (d.abs() + error).max(SMALLEST_COMPONENT);
+            let crossed = |sign: f64| {
+                // The reciprocal of the component.
+                let inverses = [sign / least, sign / most];
+                let plane = |plane: f64| {
+                    let away = plane - ray.line.origin[axis];
+                    // Errors of the difference, the reciprocal of the direction and their product, with the three terms in
+                    // any order.
+                    let moved = ray.origin_error[axis] * (1.0 + 5.0 * U) + U * away.abs();
+                    let error = moved / least + (DIVIDE + 3.0 * U) * away.abs() / least;
+                    let [one, other] = inverses.map(|inverse| away * inverse);
+                    let error = PAD * error + FLUSH / least + FLUSH;
+                    Interval { low: one.min(other) - error, high: one.max(other) + error }
+                };
+                Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis]))
             };
-            crossing
-                .cut(Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis])));
+            // A small component may have either sign, which is the same for both planes.
+            let sign = if d < 0.0 { -1.0 } else { 1.0 };
+            let is_open = error > 0.0 && d.abs() <= error;
+            let found = crossed(sign);
+            crossing.cut(if is_open { found.or(crossed(-sign)) } else { found });
         }
         crossing
     }
@@ -37,9 +48,9 @@ impl CameraModel {
 
 /// Where a ray enters and leaves the scene's box.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BoxCrossing {
-    pub(super) enter: Interval,
-    pub(super) leave: Interval,
+pub(crate) struct BoxCrossing {
+    pub(crate) enter: Interval,
+    pub(crate) leave: Interval,
 }
 
 impl Default for BoxCrossing {
@@ -54,14 +65,14 @@ impl Default for BoxCrossing {
 
 /// Where a ray crosses the nearer and the farther of two parallel planes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Crossed {
-    near: Interval,
-    far: Interval,
+pub(crate) struct Crossed {
+    pub(crate) near: Interval,
+    pub(crate) far: Interval,
 }
 
 impl Crossed {
     /// Of the crossings of two planes.
-    pub(super) fn between(a: Interval, b: Interval) -> Self {
+    pub(crate) fn between(a: Interval, b: Interval) -> Self {
         Self {
             near: Interval { low: a.low.min(b.low), high: a.high.min(b.high) },
             far: Interval { low: a.low.max(b.low), high: a.high.max(b.high) },
@@ -76,7 +87,7 @@ impl Crossed {
 
 impl BoxCrossing {
     /// Intersects the crossing with the slab between two parallel planes.
-    pub(super) fn cut(&mut self, Crossed { near, far }: Crossed) {
+    pub(crate) fn cut(&mut self, Crossed { near, far }: Crossed) {
         self.enter.low = self.enter.low.max(near.low);
         self.enter.high = self.enter.high.max(near.high);
         self.leave.low = self.leave.low.min(far.low);
@@ -86,29 +97,27 @@ impl BoxCrossing {
 
 /// The legal start of a device's ray, for the direction that the device recorded.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct EnteredRay {
+pub(crate) struct EnteredRay {
     exact: CameraRay,
     recorded_direction: DVec3,
     /// Distance at which the ray enters the box.
-    pub(in crate::verify) enter: Interval,
+    pub(crate) enter: Interval,
     /// Legal intervals of the direction's components.
-    pub(in crate::verify) direction: [Interval; 3],
+    pub(crate) direction: [Interval; 3],
     /// Whether the device may find that a ray exists and hits the box, and whether it may find the opposite.
-    pub(in crate::verify) may_hit_box: bool,
-    pub(in crate::verify) may_miss_box: bool,
+    pub(crate) may_hit_box: bool,
+    pub(crate) may_miss_box: bool,
 }
 
 impl CameraRay {
     /// The legal rays for the direction that the device recorded, or for the exact direction if it traced nothing.
-    pub(in crate::verify) fn entered(&self, model: &CameraModel, direction: DVec3) -> EnteredRay {
-        let BoxCrossing { enter, leave } = model.slabs(self, direction);
+    pub(crate) fn entered(&self, model: &CameraModel, direction: DVec3) -> EnteredRay {
+        let BoxCrossing { enter, leave } = model.slabs(self, direction, DVec3::ZERO);
         EnteredRay {
             exact: *self,
             recorded_direction: direction,
             enter,
-            direction: [0, 1, 2].map(|axis| {
-                Interval::around(self.line.direction[axis], self.direction_error[axis])
-            }),
+            direction: around(self.line.direction, self.direction_error),
             may_hit_box: self.may_be_seen && enter.low <= leave.high,
             may_miss_box: self.may_be_unseen || enter.high > leave.low,
         }
@@ -118,25 +127,28 @@ impl CameraRay {
 impl EnteredRay {
     /// Judges the start of the device's ray. The start and its distance from the camera must agree on where the ray
     /// enters the box.
-    pub(in crate::verify) fn check_start(&self, ray: &TracedRay) -> Result<(), ViolationKind> {
+    pub(crate) fn check_start(&self, ray: &TracedRay) -> Result<(), Illegal> {
         let mut enter = self.enter;
         for axis in 0..3 {
             let found = ray.origin[axis];
             let legal = self.origin(axis, enter);
             if !legal.contains(found.into()) {
-                return Err(ViolationKind::Origin { axis, found, legal });
+                let axis = AXES[axis];
+                let message = format!("the origin's {axis} is {found:?}; legal is {legal}");
+                return Err(Illegal::new("camera", message));
             }
             enter = enter.intersection(self.enter_by(axis, found.into()));
         }
         let (found, legal) = (ray.distance, self.distance(enter));
         if !legal.contains(found.into()) {
-            return Err(ViolationKind::Distance { found, legal });
+            let message = format!("the origin's distance is {found:?}; legal is {legal}");
+            return Err(Illegal::new("camera", message));
         }
         Ok(())
     }
 
     /// The numbers of a legal ray, with their names and bounds.
-    pub(in crate::verify) fn numbers(
+    pub(crate) fn numbers(
         &self,
         ray: &TracedRay,
     ) -> impl Iterator<Item = (&'static str, f64, Interval)> {
@@ -187,7 +199,7 @@ impl EnteredRay {
     }
 
     /// How much the ray of another kernel may differ from this one.
-    pub(in crate::verify) fn slack(&self) -> Slack {
+    pub(crate) fn slack(&self) -> Slack {
         let turned = self.exact.direction_error.length();
         let moved = self.exact.origin_error.length();
         let rounded = DVec3::from([0, 1, 2].map(|axis| self.origin_error(axis))).length();
@@ -200,4 +212,60 @@ impl EnteredRay {
             direction: 2.0 * turned,
         }
     }
+}
+
+/// The exact ray of a pixel, starting where a device's ray may first enter the scene's box, and bounds of the
+/// difference of a device's ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AnyRay {
+    pub(crate) line: Line,
+    pub(crate) slack: Slack,
+    /// The slack for distances from the camera, which do not depend on where a ray enters the box, apart from rounding.
+    pub(crate) slack_of_distance: Slack,
+    /// The number that a device may add to a distance along the line to get the distance from the camera.
+    pub(crate) distance: Interval,
+    /// Legal intervals of the direction's components.
+    pub(crate) direction: [Interval; 3],
+    /// Whether a device may find that a ray exists and hits the box, and whether it may find the opposite.
+    pub(crate) may_hit_box: bool,
+    pub(crate) may_miss_box: bool,
+}
+
+impl CameraRay {
+    /// The legal rays for every direction that the device may have computed.
+    pub(crate) fn any(&self, model: &CameraModel) -> AnyRay {
+        let BoxCrossing { enter, leave } =
+            model.slabs(self, self.line.direction, self.direction_error);
+        let Line { origin, direction, bend } = self.line;
+        let turned = self.direction_error.length();
+        let along = enter.high * (direction.abs() + self.direction_error);
+        // As for `EnteredRay`: a product and a sum.
+        let moved = self.origin_error
+            + gamma(4) * along
+            + U * (origin.abs() + along + self.origin_error)
+            + 4.0 * FLUSH;
+        let across = PAD * (moved.length() + enter.high * turned);
+        let slack = Slack { across, along: enter.high - enter.low, direction: PAD * turned };
+        let distance = self.distance + enter.low;
+        let sum = self.distance.abs() + self.distance_error + enter.high;
+        let distance_error = PAD * (self.distance_error + U * sum) + FLUSH;
+        // A device's direction may deviate from unit length by as much again.
+        let bend = bend + PAD * (2.0 * turned + turned * turned);
+        // If the direction does not have unit length, distances from two points of a line differ by this much more.
+        let along = (gamma(16) + 2.0 * bend) * slack.along;
+        AnyRay {
+            slack_of_distance: Slack { along, ..slack },
+            line: Line { origin: origin + enter.low * direction, direction, bend },
+            slack,
+            distance: Interval::around(distance, distance_error),
+            direction: around(direction, self.direction_error),
+            may_hit_box: self.may_be_seen && enter.low <= leave.high,
+            may_miss_box: self.may_be_unseen || enter.high > leave.low,
+        }
+    }
+}
+
+/// The numbers within errors of a vector, along each axis.
+pub(super) fn around(exact: DVec3, error: DVec3) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
 }

@@ -5,11 +5,11 @@ use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, DVec3};
 
-use super::trigonometry::EIGHTH_ERROR;
 use super::{CameraModel, CameraRay, Computed, Location, Unit};
 use crate::geometry::math::concentric_disk;
-use crate::verify::line::Line;
+use crate::verify::camera::round::EIGHTH_ERROR;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, gamma};
+use crate::verify::sphere::Line;
 
 /// A point of the view plane, relative to its middle.
 struct Aside {
@@ -49,13 +49,11 @@ impl CameraModel {
     fn advanced(&self, origin: DVec3, origin_error: DVec3, unit: &Unit) -> CameraRay {
         let Unit { direction, direction_error, length, length_error } = *unit;
         CameraRay {
-            line: Line::exact(origin, direction),
             distance: self.advance * length,
             origin_error: PAD * origin_error,
             direction_error,
             distance_error: PAD * (self.advance * (length_error * (1.0 + U) + U * length)) + FLUSH,
-            may_be_seen: true,
-            may_be_unseen: false,
+            ..CameraRay::exact(Line::exact(origin, direction))
         }
     }
 
@@ -64,13 +62,11 @@ impl CameraModel {
         let origin_error =
             location_error + gamma(3) * (terms + location_error + self.origin.abs()) + 4.0 * FLUSH;
         CameraRay {
-            line: Line::exact(self.origin + aside, self.forward),
             distance: self.advance,
             origin_error: PAD * origin_error,
             direction_error: DVec3::splat(FLUSH),
             distance_error: FLUSH,
-            may_be_seen: true,
-            may_be_unseen: false,
+            ..CameraRay::exact(Line::exact(self.origin + aside, self.forward))
         }
     }
 

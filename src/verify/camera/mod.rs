@@ -1,23 +1,21 @@
 //! The check of camera rays: bounds of the error of a device's rays. The WGSL twins are `shaders/camera/film.wgsl` and
 //! the cameras beside it.
 
-mod any;
 mod entered;
 mod linear;
 mod round;
-mod trigonometry;
 
 use glam::{DVec2, DVec3};
 
-use super::line::Line;
 use super::recording::UploadedView;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length};
+use super::sphere::Line;
 use crate::camera::CameraKind;
 use crate::camera::film::Film;
 use crate::geometry::math::wide;
 
-pub(super) use any::AnyRay;
-pub(super) use entered::EnteredRay;
+use entered::around;
+pub(super) use entered::{AnyRay, BoxCrossing, Crossed, EnteredRay, SMALLEST_COMPONENT};
 
 /// The centre of the lens; all rays of a recording go through it.
 const LENS_CENTER: DVec2 = DVec2::splat(0.5);
@@ -34,6 +32,21 @@ pub(super) struct CameraRay {
     /// Whether the device may find that there is a ray, and whether it may find that there is none.
     pub(super) may_be_seen: bool,
     pub(super) may_be_unseen: bool,
+}
+
+impl CameraRay {
+    /// A ray that is known exactly, and starts at the camera.
+    pub(super) fn exact(line: Line) -> Self {
+        Self {
+            line,
+            distance: 0.0,
+            origin_error: DVec3::ZERO,
+            direction_error: DVec3::ZERO,
+            distance_error: 0.0,
+            may_be_seen: true,
+            may_be_unseen: false,
+        }
+    }
 }
 
 /// Every ray that a conforming device may compute from exactly these numbers, component by component. The ray is in the
@@ -61,9 +74,6 @@ impl LegalCameraRay {
         let location = Location { exact: exact(location), error: DVec2::ZERO };
         let model = CameraModel::new(kind, view, &Film::default());
         let ray = model.ray_through_lens(location, exact(lens));
-        let around = |exact: DVec3, error: DVec3| {
-            [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
-        };
         Self {
             origin: around(ray.line.origin, ray.origin_error),
             direction: around(ray.line.direction, ray.direction_error),

@@ -1,4 +1,6 @@
-//! What a renderer answered, for which rays, and whether that can be judged.
+//! What a renderer answered, for which rays, whether that can be judged, and what was found about it.
+
+use std::fmt;
 
 use glam::DVec3;
 
@@ -6,6 +8,7 @@ use crate::camera::View;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
 use crate::scene::Scene;
+use crate::verify::certificate::{Outcome, pixel_at};
 
 /// The unit of k: 2⁻²⁴, half the distance from 1 to the next f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
@@ -62,105 +65,39 @@ pub enum Rays<'a> {
 }
 
 /// Why answers cannot be judged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
 #[non_exhaustive]
-pub enum ConformanceError {
-    /// A list has the wrong length.
-    #[error("there are {found} {what} for a picture of {}x{} pixels", size[0], size[1])]
-    Count {
-        /// What the list is of.
-        what: &'static str,
-        /// The length of the list.
-        found: usize,
-        /// Width and height of the picture.
-        size: [u32; 2],
-    },
-    /// The picture is not as large as the view.
-    #[error(
-        "the picture is {}x{} pixels, but the view is {}x{}; render and certify the same size",
-        found[0], found[1], view[0], view[1]
-    )]
-    Size {
-        /// Width and height of the picture.
-        found: [u32; 2],
-        /// Width and height of the view.
-        view: [u32; 2],
-    },
-    /// An id is not that of a sphere.
-    #[error(
-        "the id at {} is {found}, but the scene has {spheres} sphere{}; ids count them from 0 in the order of the input",
-        at(*pixel),
-        if *spheres == 1 { "" } else { "s" }
-    )]
-    Id {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// The id.
-        found: u32,
-        /// The number of spheres.
-        spheres: usize,
-    },
-    /// A depth of a hit is not a distance.
-    #[error(
-        "the depth at {} is {found}, but its id is that of a sphere; the depth of a hit must be finite and at least 0",
-        at(*pixel)
-    )]
-    Depth {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// The depth.
-        found: f64,
-    },
-    /// A normal of a hit is not finite.
-    #[error("the normal at {} is {found:?}; it must be finite", at(*pixel))]
-    Normal {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// The normal.
-        found: [f64; 3],
-    },
-    /// A ray does not start at a finite point.
-    #[error("the ray at {} starts at {found:?}; coordinates must be finite", at(*pixel))]
-    Origin {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// Where the ray starts.
-        found: [f64; 3],
-    },
-    /// A direction does not have unit length.
-    #[error(
-        "the direction of the ray at {} has the length {length}, but must have unit length within 1e-6; divide \
-         directions by their lengths",
-        at(*pixel)
-    )]
-    Direction {
-        /// Column and row.
-        pixel: [u32; 2],
-        /// The length of the direction.
-        length: f64,
-    },
-    /// There is no axis along which depths could be measured.
-    #[error("depths along an axis need a camera with a plane (pinhole, orthographic or thin-lens)")]
-    NoAxis,
-    /// The limit of k is not a positive number.
-    #[error("the limit {found} must be greater than 0 and finite")]
-    Limit {
-        /// The limit.
-        found: f64,
-    },
+pub struct ConformanceError {
+    /// What is not valid, if it is one field.
+    pub field: Option<Field>,
+    message: String,
 }
 
-/// A pixel in words.
-fn at([column, row]: [u32; 2]) -> String {
-    format!("pixel ({column}, {row})")
+/// A field of answers, or the rays, of which a number is not valid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Field {
+    /// The ids of spheres.
+    Ids,
+    /// The depths of hits.
+    Depths,
+    /// The normals of hits.
+    Normals,
+    /// The rays.
+    Rays,
+    /// What depths are.
+    DepthKind,
+}
+
+pub(super) fn refused(field: Option<Field>, message: String) -> ConformanceError {
+    ConformanceError { field, message }
 }
 
 impl Answers<'_> {
     /// Column and row of a pixel.
     pub(super) fn pixel(&self, index: usize) -> [u32; 2] {
-        let width = self.size[0].max(1) as usize;
-        // The sides of a picture are u32.
-        [(index % width) as u32, (index / width) as u32]
+        pixel_at(index, self.size[0])
     }
 
     /// The largest k that an honest f32 renderer needs: see the [module](super).
@@ -174,18 +111,27 @@ impl Answers<'_> {
     pub(super) fn check(&self, scene: &Scene, rays: Rays<'_>) -> Result<(), ConformanceError> {
         let size = self.size;
         let count = u64::from(size[0]) * u64::from(size[1]);
-        let has = |what, found: usize| match found as u64 == count {
-            true => Ok(()),
-            false => Err(ConformanceError::Count { what, found, size }),
+        let [width, height] = size;
+        let has = |what, found: usize| {
+            if found as u64 == count {
+                return Ok(());
+            }
+            let message =
+                format!("there are {found} {what} for a picture of {width}x{height} pixels");
+            Err(refused(None, message))
         };
         has("ids", self.ids.len())?;
         self.depths.map_or(Ok(()), |depths| has("depths", depths.len()))?;
         self.normals.map_or(Ok(()), |normals| has("normals", normals.len()))?;
         match rays {
             Rays::View(view) => {
-                let view = [view.film.width(), view.film.height()];
-                if view != size {
-                    return Err(ConformanceError::Size { found: size, view });
+                let (across, down) = (view.film.width(), view.film.height());
+                if [across, down] != size {
+                    let message = format!(
+                        "the picture is {width}x{height} pixels, but the view is {across}x{down}; render and certify the \
+                         same size"
+                    );
+                    return Err(refused(None, message));
                 }
             }
             Rays::Given(rays) => {
@@ -195,9 +141,16 @@ impl Answers<'_> {
         }
         if self.depths.is_some() && self.depth_kind == DepthKind::AlongAxis && rays.axis().is_none()
         {
-            return Err(ConformanceError::NoAxis);
+            let message = "depths along an axis need a camera with a plane (pinhole, orthographic or thin-lens)";
+            return Err(refused(Some(Field::DepthKind), message.to_owned()));
         }
         self.check_numbers(scene.len())
+    }
+
+    /// The error for a number of a pixel.
+    fn wrong(&self, field: Field, index: usize, what: &str, message: &str) -> ConformanceError {
+        let [column, row] = self.pixel(index);
+        refused(Some(field), format!("the {what} at pixel ({column}, {row}) {message}"))
     }
 
     fn check_ray(
@@ -208,29 +161,42 @@ impl Answers<'_> {
         let length = direction.length();
         if !origin.is_finite() {
             let found = origin.to_array();
-            return Err(ConformanceError::Origin { pixel: self.pixel(index), found });
+            let message = format!("starts at {found:?}; coordinates must be finite");
+            return Err(self.wrong(Field::Rays, index, "ray", &message));
         }
         if (length - 1.0).abs() <= LENGTH_ERROR {
             return Ok(());
         }
-        Err(ConformanceError::Direction { pixel: self.pixel(index), length })
+        let message = format!(
+            "has the length {length}, but must have unit length within 1e-6; divide directions by their lengths"
+        );
+        Err(self.wrong(Field::Rays, index, "direction of the ray", &message))
     }
 
     fn check_numbers(&self, spheres: usize) -> Result<(), ConformanceError> {
         for (index, id) in self.ids.iter().enumerate().filter(|(_, id)| **id != NO_ID) {
-            let pixel = || self.pixel(index);
             if *id as usize >= spheres {
-                return Err(ConformanceError::Id { pixel: pixel(), found: *id, spheres });
+                let plural = if spheres == 1 { "" } else { "s" };
+                let message = format!(
+                    "is {id}, but the scene has {spheres} sphere{plural}; ids count them from 0 in the order of the \
+                     input"
+                );
+                return Err(self.wrong(Field::Ids, index, "id", &message));
             }
             if let Some(depths) = self.depths
                 && !(depths[index].is_finite() && depths[index] >= 0.0)
             {
-                return Err(ConformanceError::Depth { pixel: pixel(), found: depths[index] });
+                let message = format!(
+                    "is {}, but its id is that of a sphere; the depth of a hit must be finite and at least 0",
+                    depths[index]
+                );
+                return Err(self.wrong(Field::Depths, index, "depth", &message));
             }
             if let Some(normals) = self.normals
                 && !DVec3::from(normals[index]).is_finite()
             {
-                return Err(ConformanceError::Normal { pixel: pixel(), found: normals[index] });
+                let message = format!("is {:?}; it must be finite", normals[index]);
+                return Err(self.wrong(Field::Normals, index, "normal", &message));
             }
         }
         Ok(())
@@ -245,5 +211,178 @@ impl Rays<'_> {
         let axis = vectors.up.cross(vectors.right).normalize_or_zero();
         let along = if axis.dot(vectors.forward) < 0.0 { -axis } else { axis };
         view.camera.kind().is_linear().then_some(along)
+    }
+}
+
+/// The largest number of pixels that are explained.
+pub(super) const KEPT: usize = 100;
+
+/// Exponents of two of the first and the last limit of the histogram.
+const FIRST: i32 = -4;
+const LAST: i32 = 24;
+
+/// How well the answers of a renderer hold, pixel by pixel: the result of
+/// [`Checker::certify_answers`](crate::verify::Checker::certify_answers).
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Conformance {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The limit of k.
+    pub at_most: f64,
+    /// The outcome of every pixel, row by row from the top. A pixel is proved if its answer is the only one that is
+    /// legal within the limit, undecided if others are as well, and violated if it needs a larger k.
+    pub outcomes: Vec<Outcome>,
+    /// The least k of every pixel; infinity where no k makes it legal.
+    pub least: Vec<f32>,
+    /// The pixels that need the largest k, the worst first; at most a hundred.
+    pub worst: Vec<Finding>,
+}
+
+/// Why a pixel needs its k.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Finding {
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// The sphere that the renderer found; [`NO_ID`] for a miss.
+    pub id: u32,
+    /// The depth that the renderer found, as it was given.
+    pub depth: Option<f64>,
+    /// The outcome of the pixel.
+    pub outcome: Outcome,
+    /// The least k.
+    pub least: f64,
+    /// The same as a length in scene units: by how much a sphere must be moved.
+    pub margin: f64,
+    /// What needs it.
+    pub reason: Reason,
+    /// The sphere that the exact ray hits, and its distance.
+    pub exact: Option<(u32, f64)>,
+}
+
+/// What is wrong with an answer unless the ray is changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The ray does not hit the sphere.
+    Missed,
+    /// The sphere is hit at another distance.
+    Depth,
+    /// The sphere has another normal there.
+    Normal,
+    /// This sphere is hit first, or is hit although the answer is a miss.
+    Hidden(u32),
+    /// The camera has no ray there.
+    NoRay,
+}
+
+impl Reason {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Missed => "missed",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Hidden(_) => "hidden",
+            Self::NoRay => "no-ray",
+        }
+    }
+}
+
+impl Conformance {
+    /// The number of pixels with an outcome.
+    #[must_use]
+    pub fn count(&self, outcome: Outcome) -> usize {
+        self.outcomes.iter().filter(|of_pixel| **of_pixel == outcome).count()
+    }
+
+    /// The fraction of pixels of which only one answer is legal within the limit, and the renderer gave it.
+    #[must_use]
+    pub fn decided_fraction(&self) -> f64 {
+        self.count(Outcome::Proved) as f64 / self.outcomes.len().max(1) as f64
+    }
+
+    /// The outcome of the picture.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        let violated = self.count(Outcome::Violated) > 0;
+        Outcome::of(violated, self.count(Outcome::Undecided) as u64, self.outcomes.len() as u64)
+    }
+
+    /// The largest k that a pixel needs; 0 without pixels.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.least.iter().copied().fold(0.0, f32::max).into()
+    }
+
+    /// How many pixels need which k: the upper limits of k, which are powers of two from 1/16 on, and the number of
+    /// pixels up to each that are above the one before. It ends with the largest k; the last limit is infinite if that
+    /// is above 2²⁴.
+    #[must_use]
+    pub fn histogram(&self) -> Vec<(f64, usize)> {
+        let limits = (FIRST..=LAST).map(|exponent| 2_f64.powi(exponent)).chain([f64::INFINITY]);
+        let mut bins: Vec<(f64, usize)> = limits.map(|limit| (limit, 0)).collect();
+        for least in &self.least {
+            let bin = bins.partition_point(|(limit, _)| *limit < f64::from(*least));
+            bins[bin].1 += 1;
+        }
+        let used = bins.iter().rposition(|(_, count)| *count > 0).map_or(0, |last| last + 1);
+        bins.truncate(used);
+        bins
+    }
+}
+
+impl fmt::Display for Conformance {
+    /// Writes a table, the histogram, and the worst pixel.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pixels = self.outcomes.len().max(1) as f64;
+        let mut row = |name: &str, count: usize| {
+            writeln!(f, "{name:<16}{count:>12}  {:8.4} %", 100.0 * count as f64 / pixels)
+        };
+        for outcome in Outcome::ALL {
+            row(outcome.name(), self.count(*outcome))?;
+        }
+        for (limit, count) in self.histogram() {
+            row(&format!("k up to {}", limit_in_words(limit)), count)?;
+        }
+        write!(f, "{:<16}{:>12.4}  of {}", "largest k", self.largest(), self.at_most)?;
+        match self.worst.first() {
+            Some(worst) => write!(f, "\nworst: {worst}"),
+            None => Ok(()),
+        }
+    }
+}
+
+fn limit_in_words(limit: f64) -> String {
+    if limit < 1.0 { format!("1/{}", 1.0 / limit) } else { limit.to_string() }
+}
+
+impl fmt::Display for Finding {
+    /// Writes the finding on one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([i, j], id) = (self.pixel, self.id);
+        write!(f, "pixel ({i}, {j}): ")?;
+        match self.depth {
+            _ if id == NO_ID => f.write_str("a miss")?,
+            Some(depth) => write!(f, "sphere {id} at {depth}")?,
+            None => write!(f, "sphere {id}")?,
+        }
+        write!(f, " needs k = {:.4}", self.least)?;
+        if self.margin.is_finite() {
+            write!(f, ", which moves it by {:.3e}", self.margin)?;
+        }
+        match self.reason {
+            Reason::Missed => f.write_str(": the ray misses it")?,
+            Reason::Depth => f.write_str(": it is hit elsewhere")?,
+            Reason::Normal => f.write_str(": its normal is another")?,
+            Reason::Hidden(other) => write!(f, ": sphere {other} is hit")?,
+            Reason::NoRay => return f.write_str(": the camera has no ray there"),
+        }
+        match self.exact {
+            Some((id, t)) => write!(f, "; the exact ray hits sphere {id} at {t:.9e}"),
+            None => f.write_str("; the exact ray misses everything"),
+        }
     }
 }

@@ -107,18 +107,18 @@
 
 mod answers;
 mod pixel;
-mod report;
 mod seen;
 
 pub use answers::{
-    Answers, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, OF_GIVEN_RAYS, Rays,
+    Answers, Conformance, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, Field,
+    Finding, OF_GIVEN_RAYS, Rays, Reason,
 };
-pub use report::{Conformance, Finding, Reason};
 
+use answers::{KEPT, refused};
 use pixel::PixelCheck;
 
+use super::certificate::Outcome;
 use super::checker::Checker;
-use super::outcome::Outcome;
 use crate::parallel::{map_parts, ranges};
 
 /// The number of pixels that a thread takes at a time.
@@ -147,7 +147,8 @@ impl Checker<'_> {
     ) -> Result<Conformance, ConformanceError> {
         let at_most = at_most.unwrap_or_else(|| answers.limit(rays));
         if !(at_most > 0.0 && at_most.is_finite()) {
-            return Err(ConformanceError::Limit { found: at_most });
+            let message = format!("the limit {at_most} must be greater than 0 and finite");
+            return Err(refused(None, message));
         }
         answers.check(self.scene, rays)?;
         let check = PixelCheck {
@@ -200,9 +201,9 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>) -> Part {
 /// Sorts pixels by their k, the largest first, and then by their index, and keeps the first.
 fn keep_worst(pixels: &mut Vec<usize>, least: impl Fn(&usize) -> f32) {
     let order = |a: &usize, b: &usize| least(b).total_cmp(&least(a)).then(a.cmp(b));
-    if pixels.len() > report::KEPT {
-        pixels.select_nth_unstable_by(report::KEPT, order);
-        pixels.truncate(report::KEPT);
+    if pixels.len() > KEPT {
+        pixels.select_nth_unstable_by(KEPT, order);
+        pixels.truncate(KEPT);
     }
     pixels.sort_unstable_by(order);
 }

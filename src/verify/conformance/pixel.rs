@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::answers::{Answers, DepthKind, EPSILON, OF_COORDINATES, Rays};
-use super::report::{Finding, Reason};
 use super::seen::Seen;
 use crate::image::NO_ID;
 use crate::scene::Scene;
-use crate::verify::candidates::Candidates;
-use crate::verify::line::Line;
-use crate::verify::outcome::Outcome;
+use crate::verify::certificate::Outcome;
+use crate::verify::conformance::answers::{Finding, Reason};
+use crate::verify::hit::Candidates;
+use crate::verify::sphere::Line;
 
 /// With this k a centre may be moved by its distance, and every answer is legal that is consistent with one sphere.
 const EVERYTHING: f64 = 1.0 / EPSILON;

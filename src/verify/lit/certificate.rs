@@ -1,11 +1,67 @@
-//! The certificate of lit pictures: the results of the checker.
+//! The stages of a sample that are judged, and the certificate of lit pictures.
 
 use std::fmt;
 
-use super::stage::LitStage;
-use super::upload_error::LitUploadError;
 use crate::verify::bias::Deviations;
-use crate::verify::outcome::Outcome;
+use crate::verify::certificate::Outcome;
+use crate::verify::recording::UploadError;
+
+/// A stage of a sample, along a path or in a studio: a kernel, or a part of its work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LitStage {
+    /// The camera ray of a sample.
+    Start,
+    /// The nearest hit of a ray.
+    Extend,
+    /// The surface at the hit: its point, side and material.
+    Vertex,
+    /// The light that the path hits at its end or at an emissive surface.
+    Radiance,
+    /// The sampled light at a surface.
+    Light,
+    /// The scattered ray, and the throughput of the path.
+    Scatter,
+    /// Whether a surface occludes the sampled light.
+    Occlude,
+    /// The surface that a ray of a studio hits: its colour and lobe, and the light that needs no search.
+    Surface,
+    /// Whether a light is hidden from a surface of a studio.
+    Shadow,
+    /// The light that lights add to a surface of a studio.
+    Illuminate,
+    /// Whether something is near in a direction of ambient light.
+    Ambient,
+    /// The ambient light that directions add to a surface of a studio.
+    Gather,
+    /// The sums of the samples of a pixel.
+    Accumulate,
+}
+
+impl LitStage {
+    /// The number of stages.
+    pub(super) const COUNT: usize = Self::Accumulate as usize + 1;
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Extend => "extend",
+            Self::Vertex => "vertex",
+            Self::Radiance => "radiance",
+            Self::Light => "light",
+            Self::Scatter => "scatter",
+            Self::Occlude => "occlude",
+            Self::Surface => "surface",
+            Self::Shadow => "shadow",
+            Self::Illuminate => "illuminate",
+            Self::Ambient => "ambient",
+            Self::Gather => "gather",
+            Self::Accumulate => "accumulate",
+        }
+    }
+}
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,26 +141,8 @@ pub struct StageCounts {
 pub struct LitCertificate {
     /// The number of samples of pixels; each is a path, or a ray of a studio with all surfaces that it passes.
     pub paths: u64,
-    /// Camera rays of samples.
-    pub start: StageCounts,
-    /// Nearest hits of rays.
-    pub extend: StageCounts,
-    /// Along paths: shading at surfaces, and of rays that hit nothing.
-    pub scatter: StageCounts,
-    /// Along paths: searches for surfaces that occlude a light.
-    pub occlude: StageCounts,
-    /// In studios: surfaces, and rays that hit nothing.
-    pub surface: StageCounts,
-    /// In studios: lights that may be hidden.
-    pub shadow: StageCounts,
-    /// In studios: light of the lights on a surface.
-    pub illuminate: StageCounts,
-    /// In studios: directions of ambient light in which something may be near.
-    pub ambient: StageCounts,
-    /// In studios: ambient light on a surface.
-    pub gather: StageCounts,
-    /// Sums of the samples of a pixel.
-    pub accumulate: StageCounts,
+    /// What was judged of each stage, by its place in [`LitStage`].
+    pub(crate) counts: [StageCounts; LitStage::COUNT],
     /// The number of stages with an illegal result.
     pub violation_count: u64,
     /// The first violations, in the order of samples, surfaces and pixels.
@@ -118,7 +156,7 @@ pub struct LitCertificate {
     /// The number of samples of each pixel that the settings ask for.
     pub film_samples: u32,
     /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
-    pub upload: Option<LitUploadError>,
+    pub upload: Option<UploadError>,
     /// How far the numbers of decided stages are from the middle of their bounds.
     pub deviations: Deviations,
     /// Whether the picture is that of a studio.
@@ -195,21 +233,16 @@ impl LitCertificate {
     /// The counts of the stages of a path, or of those of a studio, with their names, in order.
     #[must_use]
     pub fn named(&self) -> Vec<(&'static str, StageCounts)> {
-        let shading: &[_] = if self.is_studio {
-            &[
-                (LitStage::Surface, self.surface),
-                (LitStage::Shadow, self.shadow),
-                (LitStage::Illuminate, self.illuminate),
-                (LitStage::Ambient, self.ambient),
-                (LitStage::Gather, self.gather),
-            ]
-        } else {
-            &[(LitStage::Scatter, self.scatter), (LitStage::Occlude, self.occlude)]
+        use LitStage::{
+            Accumulate, Ambient, Extend, Gather, Illuminate, Occlude, Scatter, Shadow, Start,
+            Surface,
         };
-        let first = [(LitStage::Start, self.start), (LitStage::Extend, self.extend)];
-        let last = [(LitStage::Accumulate, self.accumulate)];
-        let all = first.iter().chain(shading).chain(&last);
-        all.map(|(stage, counts)| (stage.name(), *counts)).collect()
+        let stages: &[LitStage] = if self.is_studio {
+            &[Start, Extend, Surface, Shadow, Illuminate, Ambient, Gather, Accumulate]
+        } else {
+            &[Start, Extend, Scatter, Occlude, Accumulate]
+        };
+        stages.iter().map(|stage| (stage.name(), self.counts[*stage as usize])).collect()
     }
 
     /// The outcome: violated if the uploaded data are wrong or a stage is not legal, and undecided if too much is
@@ -232,7 +265,7 @@ impl LitCertificate {
 }
 
 impl StageCounts {
-    pub(in crate::verify) fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             checked: self.checked + other.checked,
             decided: self.decided + other.decided,

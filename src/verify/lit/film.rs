@@ -1,12 +1,117 @@
-//! The check of the sums of a pixel's samples. The WGSL twins are `shaders/path/accumulate.wgsl` and
-//! `path/film_sums.wgsl`.
+//! The check of a sample's camera ray, and of the sums of a pixel's samples. The WGSL twins are `shaders/path/start.wgsl`,
+//! `filter.wgsl`, `film_sample.wgsl`, `accumulate.wgsl` and `film_sums.wgsl`.
 
-use super::expected::{Expected, Mismatch};
-use super::judge::Judged;
-use super::recording::{PathState, RecordedFilm, slot};
-use super::stage::LitStage;
+use glam::{DVec2, DVec3};
+
+use crate::camera::film::{Film, YAxis};
+use crate::camera::sampling::{pair, pixel_seed, unit};
+use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
+use crate::verify::camera::{CameraModel, Location};
+use crate::verify::choices::Choices;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::judge::{Expected, Judged, Mismatch, along_choices};
+use crate::verify::lit::kernel::Address;
+use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, RecordedFilm, flag, slot};
 use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+const ORIGIN: (LitStage, &str) = (LitStage::Start, "the ray's origin");
+const DIRECTION: (LitStage, &str) = (LitStage::Start, "the ray's direction");
+const DISTANCE: (LitStage, &str) = (LitStage::Start, "the ray's distance from the camera");
+const FLAGS: (LitStage, &str) = (LitStage::Start, "the path's flags");
+const NOTHING: (LitStage, &str) = (LitStage::Start, "the initial state");
+
+/// Judges the state of a path before anything is traced.
+pub(crate) fn judge_start(
+    inputs: &LitInputs,
+    model: &CameraModel,
+    address: Address,
+    found: &PathState,
+) -> Result<Judged, Mismatch> {
+    along_choices(|choices| {
+        let mut expected = Expected::default();
+        check_start(inputs, model, address, found, &mut expected, choices)?;
+        Ok(expected)
+    })
+}
+
+/// Compares the state of a path before anything is traced.
+fn check_start(
+    inputs: &LitInputs,
+    model: &CameraModel,
+    Address { pixel, sample, .. }: Address,
+    found: &PathState,
+    expected: &mut Expected,
+    choices: &mut Choices,
+) -> Result<(), Mismatch> {
+    let lighting = &inputs.lighting;
+    let seed = pixel_seed(pixel, lighting.seed);
+    let location = location(&inputs.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
+    let ray = model.ray_through_lens(location, DVec2::from(pair(seed, sample, 1).map(unit)));
+    let is_seen = choices.decide(match (ray.may_be_seen, ray.may_be_unseen) {
+        (true, true) => None,
+        (is_seen, _) => Some(is_seen),
+    });
+    let alive = if is_seen { flag::ALIVE } else { 0 };
+    expected.bits(FLAGS, found.flags(), alive | flag::FULL)?;
+    let around = |exact: DVec3, error: DVec3| {
+        Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])))
+    };
+    let size =
+        inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
+    let origin = around(ray.line.origin, ray.origin_error);
+    expected.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
+    let direction = around(ray.line.direction, ray.direction_error);
+    expected.vector(DIRECTION, found.vector(slot::DIRECTION), direction)?;
+    let distance = Number::around(ray.distance, ray.distance_error);
+    expected.number(DISTANCE, found.number(slot::FIRST), distance)?;
+
+    let is_shown = !is_seen && lighting.flags & flag::TRANSPARENT == 0;
+    let radiance = if is_shown { lighting.background } else { [0.0; 3] };
+    let one = 1.0_f32.to_bits();
+    let mut slots = [[0; 4]; PathState::SLOTS];
+    slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
+    let [x, y, z, _] = found.slots[slot::DIRECTION];
+    slots[slot::DIRECTION] = [x, y, z, 0];
+    slots[slot::DEPARTURE] = [NO_ID, 0, 0, NO_EMITTER];
+    slots[slot::THROUGHPUT] = [one; 4];
+    let [r, g, b] = radiance.map(f32::to_bits);
+    slots[slot::RADIANCE] = [r, g, b, 0];
+    slots[slot::SHADOW] = [0, 0, one, 0];
+    slots[slot::FIRST] = [0, 0, 0, found.bits(slot::FIRST)];
+    let legal = PathState { slots };
+    // A studio writes the other slots only once there is a surface.
+    let is_studio = inputs.settings.studio_parameters().is_some();
+    let written = if is_studio { slot::NORMAL } else { PathState::SLOTS };
+    (0..written).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))
+}
+
+/// The relative location of a sample, which is near the pixel's centre.
+fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Location {
+    let sign = match film.y_axis() {
+        YAxis::Up => -1.0,
+        YAxis::Down => 1.0,
+    };
+    let along = |axis: usize, side: u32, sign: f64| {
+        let doubled = 2.0 * f64::from(pixel[axis]) + 1.0 - f64::from(side);
+        let sum = Number::known(doubled) + Number::TWO * offset(table, u[axis]);
+        let Interval { low, high } =
+            (sum / Number::known(side.into()) * Number::known(sign)).interval();
+        (0.5 * (low + high), 0.5 * (high - low) * (1.0 + 1e-12) + 1e-300)
+    };
+    let (x, x_error) = along(0, film.width(), 1.0);
+    let (y, y_error) = along(1, film.height(), sign);
+    Location { exact: DVec2::new(x, y), error: DVec2::new(x_error, y_error) }
+}
+
+/// The distance from the pixel's centre in pixels.
+fn offset(table: &[f32], u: u32) -> Number {
+    let entry = |at: u32| Number::recorded(table.get(at as usize).copied().unwrap_or_default());
+    let (low, high) = (entry(u >> 24), entry((u >> 24) + 1));
+    let fraction = Number::known(f64::from((u >> 8) & 0xffff) / f64::from(1 << 16));
+    (low + (fraction * (high - low).fence()).fence()).fence()
+}
 
 /// The stage and the name of a number, for reports.
 type Name = (LitStage, &'static str);
@@ -18,7 +123,7 @@ const SQUARE: Name = (LitStage::Accumulate, "the sum of squared luminances");
 const REST: Name = (LitStage::Accumulate, "the rounding error of a sum");
 
 /// Judges the sums of the pixel with this index: that of a sample with a color, and those before it.
-pub(in crate::verify) fn check(
+pub(crate) fn check_sums(
     color: Vector,
     state: &PathState,
     film: &RecordedFilm,

@@ -1,27 +1,173 @@
-//! The verdict about a stage, and how it is found and counted.
+//! The comparison of what a kernel wrote with what it may have written, number by number, and the verdict about a stage.
 
-use super::certificate::{LitCertificate, LitOpen, LitViolation, OPEN_KEPT, StageCounts};
-use super::expected::{Expected, Mismatch};
-use super::kernel::Address;
-use super::recording::PathState;
-use super::stage::LitStage;
+use std::fmt;
+
 use crate::parallel::{map_parts, ranges};
+use crate::verify::bias::deviation;
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
+use crate::verify::lit::certificate::{LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT};
+use crate::verify::lit::kernel::Address;
+use crate::verify::lit::recording::PathState;
+use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+/// The relative width above which a bound says nothing.
+const WIDE: f64 = 0.1;
+
+/// A result of a device that is not legal.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mismatch {
+    pub(crate) stage: LitStage,
+    pub(crate) what: &'static str,
+    pub(crate) answer: Answer,
+    /// The number of comparisons that succeeded before.
+    pub(crate) after: u32,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Answer {
+    Number { found: f32, legal: Interval },
+    Bits { found: u32, legal: u32 },
+    Words(String),
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, answer, .. } = self;
+        match answer {
+            Answer::Number { found, legal } => write!(f, "{what} is {found:?}; legal is {legal}"),
+            Answer::Bits { found, legal } => write!(f, "{what} is {found:#x}; legal is {legal:#x}"),
+            Answer::Words(words) => write!(f, "{what}: {words}"),
+        }
+    }
+}
+
+/// Compares results with legal ones, and records whether a bound is too wide to say anything.
+#[derive(Debug, Default)]
+pub(crate) struct Expected {
+    passed: u32,
+    /// Whether some bound was too wide to say anything.
+    pub(crate) is_wide: bool,
+    /// How far numbers are from the middle of their bounds.
+    pub(crate) deviations: Vec<(LitStage, &'static str, f64)>,
+}
+
+impl Expected {
+    fn mismatch(&self, stage: LitStage, what: &'static str, answer: Answer) -> Mismatch {
+        Mismatch { stage, what, answer, after: self.passed }
+    }
+
+    /// Compares integers.
+    pub(crate) fn bits(
+        &mut self,
+        (stage, what): (LitStage, &'static str),
+        found: u32,
+        legal: u32,
+    ) -> Result<(), Mismatch> {
+        if found != legal {
+            return Err(self.mismatch(stage, what, Answer::Bits { found, legal }));
+        }
+        self.passed += 1;
+        Ok(())
+    }
+
+    /// Compares a number; its bound is narrow or wide relative to `scale`.
+    fn within(
+        &mut self,
+        (stage, what): (LitStage, &'static str),
+        found: f32,
+        legal: Interval,
+        scale: f64,
+    ) -> Result<(), Mismatch> {
+        if !legal.contains(found.into()) {
+            return Err(self.mismatch(stage, what, Answer::Number { found, legal }));
+        }
+        self.passed += 1;
+        let deviation = deviation(found.into(), legal);
+        self.deviations.extend(deviation.map(|deviation| (stage, what, deviation)));
+        self.is_wide |= legal.high - legal.low > WIDE * scale + f64::from(f32::MIN_POSITIVE) * 4.0;
+        Ok(())
+    }
+
+    pub(crate) fn number(
+        &mut self,
+        name: (LitStage, &'static str),
+        found: f32,
+        legal: Number,
+    ) -> Result<(), Mismatch> {
+        self.number_of(name, found, legal, 0.0)
+    }
+
+    /// Compares a number; its bound is narrow or wide relative to `size` or to itself.
+    pub(crate) fn number_of(
+        &mut self,
+        name: (LitStage, &'static str),
+        found: f32,
+        legal: Number,
+        size: f64,
+    ) -> Result<(), Mismatch> {
+        let legal = legal.interval();
+        self.within(name, found, legal, legal.high.abs().max(legal.low.abs()).max(size))
+    }
+
+    /// Compares a vector; its bounds are narrow or wide relative to its largest component.
+    pub(crate) fn vector(
+        &mut self,
+        name: (LitStage, &'static str),
+        found: [f32; 3],
+        legal: Vector,
+    ) -> Result<(), Mismatch> {
+        self.vector_of(name, found, legal, 0.0)
+    }
+
+    /// Compares a vector; its bounds are narrow or wide relative to `size` or its largest component.
+    pub(crate) fn vector_of(
+        &mut self,
+        name: (LitStage, &'static str),
+        found: [f32; 3],
+        legal: Vector,
+        size: f64,
+    ) -> Result<(), Mismatch> {
+        let legal = legal.intervals();
+        let scale =
+            legal.iter().map(|axis| axis.high.abs().max(axis.low.abs())).fold(size, f64::max);
+        found
+            .into_iter()
+            .zip(legal)
+            .try_for_each(|(found, legal)| self.within(name, found, legal, scale))
+    }
+
+    /// Checks that a slot has not changed.
+    pub(crate) fn same(
+        &mut self,
+        name: (LitStage, &'static str),
+        [before, after]: [&PathState; 2],
+        slot: usize,
+    ) -> Result<(), Mismatch> {
+        let pairs = after.slots[slot].into_iter().zip(before.slots[slot]);
+        pairs.into_iter().try_for_each(|(found, legal)| self.bits(name, found, legal))
+    }
+
+    pub(crate) fn fail(&self, stage: LitStage, what: &'static str, words: String) -> Mismatch {
+        self.mismatch(stage, what, Answer::Words(words))
+    }
+}
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 256;
 
 /// The verdict about a stage.
-pub(in crate::verify) enum StageOutcome {
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum StageOutcome {
     Decided,
     Open,
     Undecided,
 }
 
 /// A stage without an illegal result.
-pub(in crate::verify) struct Judged {
+pub(crate) struct Judged {
     verdict: StageOutcome,
     /// The legal answers of an open search, in words.
     alternatives: Vec<String>,
@@ -49,16 +195,9 @@ impl LitCertificate {
     /// Adds the results for other samples.
     pub fn join(&mut self, part: Self) {
         self.paths += part.paths;
-        self.start = self.start.plus(part.start);
-        self.extend = self.extend.plus(part.extend);
-        self.scatter = self.scatter.plus(part.scatter);
-        self.occlude = self.occlude.plus(part.occlude);
-        self.surface = self.surface.plus(part.surface);
-        self.shadow = self.shadow.plus(part.shadow);
-        self.illuminate = self.illuminate.plus(part.illuminate);
-        self.ambient = self.ambient.plus(part.ambient);
-        self.gather = self.gather.plus(part.gather);
-        self.accumulate = self.accumulate.plus(part.accumulate);
+        for (counts, more) in self.counts.iter_mut().zip(part.counts) {
+            *counts = counts.plus(more);
+        }
         self.deviations.join(&part.deviations);
         self.is_studio |= part.is_studio;
         self.violation_count += part.violation_count;
@@ -72,37 +211,6 @@ impl LitCertificate {
         let room = KEPT.saturating_sub(self.violations.len());
         self.violations.extend(part.violations.into_iter().take(room));
     }
-}
-
-impl StageCounts {
-    fn count(&mut self, verdict: &StageOutcome) {
-        self.checked += 1;
-        match verdict {
-            StageOutcome::Decided => self.decided += 1,
-            StageOutcome::Open => self.open += 1,
-            StageOutcome::Undecided => self.undecided += 1,
-        }
-    }
-}
-
-impl LitCertificate {
-    /// The counts of the stages among which a stage counts: along paths, its parts count as one.
-    fn counts(&mut self, stage: LitStage) -> &mut StageCounts {
-        match stage {
-            LitStage::Start => &mut self.start,
-            LitStage::Extend => &mut self.extend,
-            LitStage::Vertex | LitStage::Radiance | LitStage::Light | LitStage::Scatter => {
-                &mut self.scatter
-            }
-            LitStage::Occlude => &mut self.occlude,
-            LitStage::Surface => &mut self.surface,
-            LitStage::Shadow => &mut self.shadow,
-            LitStage::Illuminate => &mut self.illuminate,
-            LitStage::Ambient => &mut self.ambient,
-            LitStage::Gather => &mut self.gather,
-            LitStage::Accumulate => &mut self.accumulate,
-        }
-    }
 
     fn add_open(&mut self, open: LitOpen) {
         let of_kind = self.open.iter().filter(|other| other.is_undecided == open.is_undecided);
@@ -112,7 +220,7 @@ impl LitCertificate {
     }
 
     /// Records the verdict about a stage.
-    pub(in crate::verify) fn note(
+    pub(crate) fn note(
         &mut self,
         stage: LitStage,
         Address { pixel, sample, surface }: Address,
@@ -120,9 +228,15 @@ impl LitCertificate {
     ) {
         match result {
             Ok(Judged { verdict, alternatives, deviations }) => {
-                self.counts(stage).count(&verdict);
-                let is_undecided = matches!(verdict, StageOutcome::Undecided);
-                if is_undecided || matches!(verdict, StageOutcome::Open) {
+                let counts = &mut self.counts[stage as usize];
+                counts.checked += 1;
+                match verdict {
+                    StageOutcome::Decided => counts.decided += 1,
+                    StageOutcome::Open => counts.open += 1,
+                    StageOutcome::Undecided => counts.undecided += 1,
+                }
+                if verdict != StageOutcome::Decided {
+                    let is_undecided = verdict == StageOutcome::Undecided;
                     let legal = alternatives;
                     self.add_open(LitOpen { pixel, sample, surface, stage, is_undecided, legal });
                 }
@@ -131,7 +245,7 @@ impl LitCertificate {
                 }
             }
             Err(mismatch) => {
-                self.counts(stage).checked += 1;
+                self.counts[stage as usize].checked += 1;
                 let (stage, message) = (mismatch.stage, mismatch.to_string());
                 self.violations.push(LitViolation { pixel, sample, surface, stage, message });
             }
@@ -140,7 +254,7 @@ impl LitCertificate {
 }
 
 /// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
-pub(in crate::verify) fn along_choices(
+pub(crate) fn along_choices(
     mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
 ) -> Result<Judged, Mismatch> {
     let mut choices = Choices::default();
@@ -167,7 +281,7 @@ pub(in crate::verify) fn along_choices(
 }
 
 /// Judges the samples of all pixels, on all cores. `judge` is called with the index of a pixel.
-pub(in crate::verify) fn judge_pixels(
+pub(crate) fn judge_pixels(
     count: usize,
     judge: impl Fn(usize, &mut LitCertificate, &mut LegalHits) + Sync,
 ) -> LitCertificate {
@@ -188,7 +302,7 @@ pub(in crate::verify) fn judge_pixels(
 }
 
 /// Checks that the state of a ray that has ended does not change.
-pub(in crate::verify) fn unchanged(
+pub(crate) fn unchanged(
     name: (LitStage, &'static str),
     [before, after]: [&PathState; 2],
 ) -> Result<(), Mismatch> {
@@ -197,10 +311,7 @@ pub(in crate::verify) fn unchanged(
 }
 
 /// A search; `alternatives` names the legal answers if there are several.
-pub(in crate::verify) fn searched(
-    is_open: bool,
-    alternatives: impl FnOnce() -> Vec<String>,
-) -> Judged {
+pub(crate) fn searched(is_open: bool, alternatives: impl FnOnce() -> Vec<String>) -> Judged {
     match is_open {
         true => Judged { alternatives: alternatives(), ..StageOutcome::Open.into() },
         false => StageOutcome::Decided.into(),

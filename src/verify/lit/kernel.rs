@@ -1,68 +1,306 @@
-//! One invocation of a shading kernel, which is followed number by number: from its input to its legal output.
+//! One invocation of a shading kernel, which is followed number by number, from its input to its legal output; and where
+//! its ray hits a sphere or the ground. The WGSL twin is `shaders/path/vertex.wgsl`.
 
-use super::expected::Expected;
-use super::recording::{LitInputs, PathState, UploadedLighting};
+use glam::DVec3;
+
+use crate::geometry::math::wide;
+use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
-use crate::verify::number::Number;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::judge::{Expected, Mismatch};
+use crate::verify::lit::recording::{LitInputs, PathState, UploadedLighting, flag, slot};
+use crate::verify::number::{Number, Vector};
+use crate::verify::recording::NO_HIT;
+use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
+use crate::verify::sphere::{Chord, Line, Slack, SphereTest, normal_at};
 
 /// The hit of a ray as the device recorded it.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct Hit {
-    pub(in crate::verify) t: f32,
-    pub(in crate::verify) id: u32,
-    pub(in crate::verify) shape_index: u32,
-    pub(in crate::verify) distance: f32,
+pub(crate) struct Hit {
+    pub(crate) t: f32,
+    pub(crate) id: u32,
+    pub(crate) shape_index: u32,
+    pub(crate) distance: f32,
 }
 
 impl Hit {
-    pub(in crate::verify) fn new([t, id, shape_index, distance]: [u32; 4]) -> Self {
+    pub(crate) fn new([t, id, shape_index, distance]: [u32; 4]) -> Self {
         Self { t: f32::from_bits(t), id, shape_index, distance: f32::from_bits(distance) }
     }
 }
 
 /// The address of a surface: pixel, sample, and index on the path.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct Address {
-    pub(in crate::verify) pixel: [u32; 2],
-    pub(in crate::verify) sample: u32,
-    pub(in crate::verify) surface: u32,
+pub(crate) struct Address {
+    pub(crate) pixel: [u32; 2],
+    pub(crate) sample: u32,
+    pub(crate) surface: u32,
 }
 
 /// One invocation of the kernel, for one combination of its open decisions.
-pub(in crate::verify) struct Kernel<'a> {
-    pub(in crate::verify) scene: &'a Scene,
-    pub(in crate::verify) inputs: &'a LitInputs,
+pub(crate) struct Kernel<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) inputs: &'a LitInputs,
     /// Whether this is the kernel for scenes in which every material is matt or emissive.
-    pub(in crate::verify) is_matt: bool,
-    pub(in crate::verify) address: Address,
-    pub(in crate::verify) before: &'a PathState,
-    pub(in crate::verify) hit: Hit,
-    pub(in crate::verify) after: &'a PathState,
-    pub(in crate::verify) expected: Expected,
-    pub(in crate::verify) choices: &'a mut Choices,
+    pub(crate) is_matt: bool,
+    pub(crate) address: Address,
+    pub(crate) before: &'a PathState,
+    pub(crate) hit: Hit,
+    pub(crate) after: &'a PathState,
+    pub(crate) expected: Expected,
+    pub(crate) choices: &'a mut Choices,
 }
 
 impl<'a> Kernel<'a> {
-    pub(in crate::verify) fn lighting(&self) -> &'a UploadedLighting {
+    pub(crate) fn lighting(&self) -> &'a UploadedLighting {
         &self.inputs.lighting
     }
 
     /// An entry of the tables; zeros beyond their end.
-    pub(in crate::verify) fn table(&self, at: u32) -> [u32; 4] {
+    pub(crate) fn table(&self, at: u32) -> [u32; 4] {
         self.inputs.tables.get(at as usize).copied().unwrap_or_default()
     }
 
-    pub(in crate::verify) fn emitter_words(&self, at: u32) -> [u32; 4] {
+    pub(crate) fn emitter_words(&self, at: u32) -> [u32; 4] {
         self.inputs.emitters.get(at as usize).copied().unwrap_or_default()
     }
 
-    pub(in crate::verify) fn table_numbers(&self, at: u32) -> [f32; 4] {
+    pub(crate) fn table_numbers(&self, at: u32) -> [f32; 4] {
         self.table(at).map(f32::from_bits)
     }
 }
 
 /// The number in [0, 1) that the upper 24 bits stand for, exactly.
-pub(in crate::verify) fn unit(bits: u32) -> Number {
+pub(crate) fn unit(bits: u32) -> Number {
     Number::known(crate::camera::sampling::unit(bits))
+}
+
+/// A surface that was hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    pub(crate) position: Vector,
+    /// Unit normal on the visible side.
+    pub(crate) normal: Vector,
+    /// Whether the visible side is the inside of a sphere.
+    pub(crate) is_back: bool,
+    /// Distance along the ray.
+    pub(crate) distance: Number,
+    /// Centre and radius of the sphere; the radius is 0 for the ground.
+    pub(crate) sphere: [f32; 4],
+    pub(crate) color: [f32; 3],
+    /// Index of the material; the ground has the first.
+    pub(crate) material_index: u32,
+    /// The opacities of the material and of the colour, which the kernel multiplies.
+    pub(crate) opacities: [f32; 2],
+}
+
+impl Vertex {
+    pub(crate) fn is_sphere(&self) -> bool {
+        self.sphere[3] > 0.0
+    }
+
+    /// The distance from a point of a sphere through its inside to the far side; 0 if the direction points outwards.
+    pub(crate) fn exit_distance(&self, direction: Vector) -> Number {
+        let [x, y, z, _] = self.sphere;
+        let to_center = Vector::recorded([x, y, z]) - self.position;
+        (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
+    }
+}
+
+const POSITION: (LitStage, &str) = (LitStage::Vertex, "the point that was hit");
+
+impl Kernel<'_> {
+    /// The surface that the ray hits; `None` for a miss.
+    pub(crate) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let origin = Vector::recorded(before.vector(slot::ORIGIN));
+        let direction = Vector::recorded(before.vector(slot::DIRECTION));
+        // A camera ray starts at the box of the spheres, and may have crossed the ground before.
+        let behind = if self.address.surface == 0 {
+            Number::recorded(before.number(slot::FIRST))
+        } else {
+            Number::ZERO
+        };
+        let ground = if before.has(flag::ON_GROUND) {
+            None
+        } else {
+            self.ground_distance(origin, direction, behind)
+        };
+        let has_sphere = hit.id != NO_ID;
+        let to_sphere = if has_sphere {
+            Number::recorded(hit.distance) + Number::recorded(hit.t)
+        } else {
+            Number::known(NO_HIT.into())
+        };
+        if let Some(distance) = ground
+            && self.choices.decide(distance.is_less(to_sphere))
+        {
+            return self.ground_vertex(origin, direction, distance).map(Some);
+        }
+        if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
+    }
+
+    /// The distance at which a ray hits the ground from above. It may be negative, down to −`behind`.
+    pub(crate) fn ground_distance(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        behind: Number,
+    ) -> Option<Number> {
+        let lighting = self.lighting();
+        if lighting.flags & flag::GROUND == 0 {
+            return None;
+        }
+        let normal = Vector::recorded(lighting.ground_normal);
+        let toward = direction.dot(normal);
+        if !self.choices.decide(toward.is_less(Number::ZERO)) {
+            return None;
+        }
+        let height = (origin - Vector::recorded(lighting.ground_point)).dot(normal);
+        let toward = toward.min(Number::known(-f64::MIN_POSITIVE));
+        let t = height / -toward;
+        self.choices.decide((-behind).is_less(t)).then_some(t)
+    }
+
+    /// Compares the recorded point, and returns it as an exact value.
+    fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
+        let found = self.after.vector(slot::ORIGIN);
+        self.expected.vector_of(POSITION, found, position, size)?;
+        Ok(Vector::recorded(found))
+    }
+
+    fn ground_vertex(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        distance: Number,
+    ) -> Result<Vertex, Mismatch> {
+        let lighting = self.lighting();
+        let normal = Vector::recorded(lighting.ground_normal);
+        let on_ray = origin + direction * distance;
+        let above = (on_ray - Vector::recorded(lighting.ground_point)).dot(normal);
+        let position = (on_ray - normal * above).fence();
+        let size = distance.interval().high;
+        let position = self.compared(position, size)?;
+        Ok(Vertex {
+            position,
+            normal,
+            is_back: false,
+            distance,
+            sphere: [0.0; 4],
+            color: lighting.ground_color,
+            material_index: 0,
+            opacities: [1.0; 2],
+        })
+    }
+
+    fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
+        else {
+            let words = format!("there is no sphere {}", hit.id);
+            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
+        };
+        let (appearance, material_index) = (
+            self.scene.checked_appearance(),
+            self.scene.checked_appearance().material_row(hit.id) + 1,
+        );
+        let surface = appearance.surfaces()[appearance.surface_index(hit.id) as usize];
+        let color = self.scene.color(hit.id).to_array();
+        let opacities = [surface.opacity, appearance.alpha(hit.id)];
+
+        let entered =
+            Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let Entered { line, origin, slack } = &entered;
+        let Some(test) = SphereTest::new(line, sphere, *slack) else {
+            let words = format!("sphere {} cannot be hit", hit.id);
+            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
+        };
+        let center = Vector::recorded([x, y, z]);
+        let direction = Vector::recorded(before.vector(slot::DIRECTION));
+        let middle = (center - *origin).dot(direction);
+        let is_far_side = before.has(flag::INSIDE) && hit.id == before.departure().id;
+        let (half, exact) = if is_far_side {
+            let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
+            (middle.abs().interval(), exact)
+        } else {
+            (test.half, test.exact_half())
+        };
+        let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::recorded(hit.t)));
+        let chord = Chord { half, exact, is_behind };
+        let (normal, error) = normal_at(&test, line, chord, radius, *slack);
+        let mut outward = Vector::around(normal, error);
+
+        let r = Number::recorded(radius);
+        let far = Number::known(64.0) * (Number::recorded(hit.t) + Number::recorded(hit.distance));
+        let is_on_ray = self.choices.decide(r.is_more(far));
+        let position = if is_on_ray {
+            *origin + direction * Number::recorded(hit.t)
+        } else {
+            center + outward * r
+        };
+        let position = self.compared(position.fence(), radius.into())?;
+        if !is_on_ray {
+            outward = self.normal_by_point(outward, position, sphere)?;
+        }
+        let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
+        let normal = if is_back { -outward } else { outward };
+        let sphere = [x, y, z, radius];
+        Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, opacities })
+    }
+}
+
+impl Kernel<'_> {
+    /// The normal, narrowed by the point on the sphere that was computed from it.
+    fn normal_by_point(
+        &mut self,
+        outward: Vector,
+        position: Vector,
+        [x, y, z, radius]: [f32; 4],
+    ) -> Result<Vector, Mismatch> {
+        let (center, r) = (wide([x, y, z]), f64::from(radius));
+        let away = DVec3::from(position.intervals().map(|axis| axis.low)) - center;
+        // The errors of a product and a sum.
+        let size = center.abs() + r * (1.0 + unit_error(r));
+        let error = PAD * gamma(2) * size + DVec3::splat(2.0 * FLUSH);
+        let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
+        if !legal.contains(away.length()) {
+            let words = format!("{:e} from the sphere's centre; legal is {legal}", away.length());
+            return Err(self.expected.fail(POSITION.0, POSITION.1, words));
+        }
+        let by_point = [0, 1, 2].map(|axis| {
+            let (away, error) = (away[axis], error[axis]);
+            Number::between((away - error) / r, (away + error) / r)
+        });
+        Ok(outward.zip(Vector(by_point), Number::narrowed))
+    }
+}
+
+/// A ray that starts where it enters the scene's box, at a known distance.
+struct Entered {
+    line: Line,
+    origin: Vector,
+    slack: Slack,
+}
+
+impl Entered {
+    fn new(origin: [f32; 3], direction: [f32; 3], distance: f32) -> Self {
+        let (start, along) = (wide(origin), wide(direction));
+        let distance = f64::from(distance);
+        let moved = start + distance * along;
+        if distance == 0.0 {
+            let line = Line::new(origin, direction);
+            return Self { line, origin: Vector::recorded(origin), slack: Slack::default() };
+        }
+        let error =
+            PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
+        let [x, y, z] = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
+        let length = error.length() + U * FLUSH;
+        Self {
+            line: Line::exact(moved, along),
+            origin: Vector([x, y, z]),
+            slack: Slack { across: length, along: length, direction: 0.0 },
+        }
+    }
 }

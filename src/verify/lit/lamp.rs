@@ -1,25 +1,110 @@
-//! The check of samples of the lights of the settings. The WGSL twin is `shaders/scene/lamp.wgsl`.
+//! The check of maps from the unit square to directions, and of samples of the lights of the settings. The WGSL twins are
+//! `shaders/math/warp.wgsl`, `math/disk.wgsl` and `scene/lamp.wgsl`.
 
-use super::kernel::Kernel;
-use super::warp::{axes_around, cone_direction, cone_of_sphere};
+use std::f64::consts::PI;
+
+use crate::camera::sampling::unit;
 use crate::light::codes::lamp::{DIRECTIONAL, POINT};
-use crate::verify::number::{Number, Vector};
+use crate::verify::choices::Choices;
+use crate::verify::lit::kernel::Kernel;
+use crate::verify::number::{Number, Vector, sin_cos_eighth};
 use crate::verify::recording::NO_HIT;
 
+/// A tangent frame: two unit vectors perpendicular to a third and to each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axes {
+    x: Vector,
+    y: Vector,
+    z: Vector,
+}
+
+impl Axes {
+    pub(crate) fn to_world(self, v: Vector) -> Vector {
+        let Vector([x, y, z]) = v;
+        (self.x * x + self.y * y + self.z * z).normalized().fence()
+    }
+
+    pub(crate) fn to_local(self, v: Vector) -> Vector {
+        Vector([self.x.dot(v), self.y.dot(v), self.z.dot(v)].map(Number::fence))
+    }
+}
+
+/// π as a constant of the kernels.
+pub(crate) fn pi() -> Number {
+    Number::constant(PI)
+}
+
+pub(crate) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
+    let Vector([x, y, z]) = n;
+    let is_down = choices.decide(z.is_less(Number::ZERO));
+    let (s, z) = if is_down {
+        (Number::known(-1.0), z.min(Number::ZERO))
+    } else {
+        (Number::ONE, z.max(Number::ZERO))
+    };
+    let a = Number::known(-1.0) / (s + z);
+    let b = x * y * a;
+    Axes {
+        x: Vector([Number::ONE + s * x.squared() * a, s * b, -(s * x)]),
+        y: Vector([b, s + y.squared() * a, -y]),
+        z: n,
+    }
+}
+
+/// Maps a point of the unit square to the unit disk.
+pub(crate) fn disk(u: [u32; 2]) -> [Number; 2] {
+    // The numbers are multiples of 2⁻²³ below 1, so they are exact.
+    let [x, y] = u.map(|bits| 2.0 * unit(bits) - 1.0);
+    let is_wide = x.abs() > y.abs();
+    let (radius, along) = if is_wide { (x, y) } else { (y, x) };
+    if radius == 0.0 {
+        return [Number::ZERO; 2];
+    }
+    let radius = Number::known(radius);
+    let part = Number::known(along) / radius;
+    let angle = Number::known(0.25) * pi() * part;
+    let [sine, cosine] = sin_cos_eighth(angle);
+    let [x, y] = if is_wide { [cosine, sine] } else { [sine, cosine] };
+    [radius * x, radius * y]
+}
+
+/// A random direction around z, with the density cosine over π.
+pub(crate) fn cosine_direction(u: [u32; 2]) -> Vector {
+    let [x, y] = disk(u);
+    let square = x.squared() + y.squared();
+    let z = (Number::ONE - square).max(Number::ZERO).sqrt();
+    Vector([x, y, z])
+}
+
+/// A random direction within an angle of z, uniformly distributed; `k` is 1 minus the cosine of the angle.
+pub(crate) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
+    let [x, y] = disk(u);
+    let q = (x.squared() + y.squared()) * k;
+    let aside = (k * (Number::TWO - q)).max(Number::ZERO).sqrt();
+    Vector([x * aside, y * aside, Number::ONE - q])
+}
+
+/// The parameter `k` of [`cone_direction`] for a sphere seen from a distance beyond its radius: 1 minus the cosine of
+/// its angular radius.
+pub(crate) fn cone_of_sphere(radius: Number, distance: Number) -> Number {
+    let square = (radius / distance).squared();
+    square / (Number::ONE + (Number::ONE - square).max(Number::ZERO).sqrt())
+}
+
 /// A point of a light, seen from a surface.
-pub(in crate::verify) struct Lamp {
-    pub(in crate::verify) direction: Vector,
-    pub(in crate::verify) distance: Number,
+pub(crate) struct Lamp {
+    pub(crate) direction: Vector,
+    pub(crate) distance: Number,
     /// The radiance that a white surface facing the light would reflect.
-    pub(in crate::verify) strength: Vector,
+    pub(crate) strength: Vector,
     /// 1 minus the cosine of the angular radius of a sun; 0 for other lights.
-    pub(in crate::verify) sun: Number,
+    pub(crate) sun: Number,
 }
 
 impl Kernel<'_> {
     /// The point of a light that `u` chooses. A direction that the kernel fences is narrowed to the recorded one, if
     /// there is one and it is legal.
-    pub(in crate::verify) fn lamp(
+    pub(crate) fn lamp(
         &mut self,
         light: u32,
         position: Vector,

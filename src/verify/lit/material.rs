@@ -2,40 +2,40 @@
 //! `microfacet.wgsl`.
 
 use super::kernel::Kernel;
-use super::vertex::Vertex;
-use super::warp::{disk, pi};
 use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, EMISSIVE, LAMBERT};
+use crate::verify::lit::kernel::Vertex;
+use crate::verify::lit::lamp::{disk, pi};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
 /// The number of entries of an energy table.
-pub(in crate::verify) const ENERGIES: u32 = crate::light::energy::ENTRIES as u32;
+pub(crate) const ENERGIES: u32 = crate::light::energy::ENTRIES as u32;
 
 /// A material in the tables of the device.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct Material {
+pub(crate) struct Material {
     kind: u32,
-    pub(in crate::verify) parameter: Number,
+    pub(crate) parameter: Number,
     /// The square of the roughness.
-    pub(in crate::verify) alpha: Number,
-    pub(in crate::verify) energies: u32,
-    pub(in crate::verify) absorption: Vector,
+    pub(crate) alpha: Number,
+    pub(crate) energies: u32,
+    pub(crate) absorption: Vector,
 }
 
 impl Material {
-    pub(in crate::verify) fn is_lambert(&self) -> bool {
+    pub(crate) fn is_lambert(&self) -> bool {
         self.kind == LAMBERT
     }
 
-    pub(in crate::verify) fn is_metal(&self) -> bool {
+    pub(crate) fn is_metal(&self) -> bool {
         self.kind == CONDUCTOR
     }
 
-    pub(in crate::verify) fn is_dielectric(&self) -> bool {
+    pub(crate) fn is_dielectric(&self) -> bool {
         self.kind == DIELECTRIC
     }
 
-    pub(in crate::verify) fn is_emissive(&self) -> bool {
+    pub(crate) fn is_emissive(&self) -> bool {
         self.kind == EMISSIVE
     }
 }
@@ -44,7 +44,7 @@ impl Material {
 const LAST: f64 = (ENERGIES - 1) as f64;
 
 impl Kernel<'_> {
-    pub(in crate::verify) fn material_of(&self, vertex: &Vertex) -> Material {
+    pub(crate) fn material_of(&self, vertex: &Vertex) -> Material {
         let at = self.lighting().material_first.saturating_add(2 * vertex.material_index);
         let [kind, _, _, energies] = self.table(at);
         let [_, parameter, alpha, _] = self.table_numbers(at);
@@ -60,7 +60,7 @@ impl Kernel<'_> {
 
     /// The energy that a lobe keeps at a cosine. The interpolation is continuous, so all entries that the interval of
     /// the cosine may select are joined.
-    pub(in crate::verify) fn energy(&self, first: u32, cosine: Number) -> Number {
+    pub(crate) fn energy(&self, first: u32, cosine: Number) -> Number {
         let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
         let Interval { low, high } = along.interval();
         let index = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
@@ -82,7 +82,7 @@ impl Kernel<'_> {
 }
 
 /// Smith's Λ of the GGX distribution at a cosine.
-pub(in crate::verify) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
+pub(crate) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
     let c2 = cosine.squared().max(Number::constant(1e-12));
     // Not negative, because c2 is at most 1 apart from rounding. The quotient is monotonic in the cosine.
     let beyond = (Number::ONE - c2) / c2;
@@ -108,7 +108,7 @@ fn ggx_density(alpha: Number, half: Vector) -> Number {
 }
 
 /// A random microfacet normal, of those that are visible from `out`.
-pub(in crate::verify) fn visible_mirror(
+pub(crate) fn visible_mirror(
     alpha: Number,
     out: Vector,
     u: [u32; 2],
@@ -137,19 +137,14 @@ pub(in crate::verify) fn visible_mirror(
 }
 
 /// The density of directions that are reflected at visible microfacet normals.
-pub(in crate::verify) fn reflected_density(alpha: Number, out: Vector, half: Vector) -> Number {
+pub(crate) fn reflected_density(alpha: Number, out: Vector, half: Vector) -> Number {
     let z = out.0[2];
     let seen = Number::ONE / (Number::ONE + ggx_lambda(alpha, z));
     seen * ggx_density(alpha, half) / (Number::known(4.0) * z)
 }
 
 /// The BRDF of a white rough mirror, times the cosine.
-pub(in crate::verify) fn mirrors_brdf(
-    alpha: Number,
-    out: Vector,
-    toward: Vector,
-    half: Vector,
-) -> Number {
+pub(crate) fn mirrors_brdf(alpha: Number, out: Vector, toward: Vector, half: Vector) -> Number {
     let (z, along) = (out.0[2], toward.0[2]);
     let both = Number::ONE / (Number::ONE + ggx_lambda(alpha, z) + ggx_lambda(alpha, along));
     both * ggx_density(alpha, half) / (Number::known(4.0) * z)

@@ -7,26 +7,12 @@
 //! Kernels that shade are evaluated with intervals, number by number (`verify/number`), once for every combination of
 //! decisions that the intervals leave open, such as which side of a sphere is hit, or which point of a light is chosen.
 
-pub(super) mod alternatives;
-pub(super) mod certificate;
-pub(super) mod expected;
+pub(crate) mod certificate;
 pub(super) mod film;
 pub(super) mod judge;
 pub(super) mod kernel;
 pub(super) mod lamp;
 pub(super) mod material;
-mod near;
-pub(super) mod recording;
+pub(crate) mod recording;
 pub(super) mod search;
-pub(super) mod stage;
-pub(super) mod start;
-mod tables;
 pub(super) mod upload;
-pub(super) mod upload_error;
-pub(super) mod vertex;
-pub(super) mod warp;
-
-pub use certificate::{LitCertificate, LitOpen, LitShare, LitViolation, StageCounts};
-pub use recording::{LitInputs, PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
-pub use stage::LitStage;
-pub use upload_error::LitUploadError;

@@ -2,7 +2,8 @@
 
 use crate::camera::film::Film;
 use crate::render::RenderSettings;
-use crate::verify::recording::{RequestedCamera, UploadedView};
+use crate::verify::certificate::pixel_at;
+use crate::verify::recording::{RequestedCamera, UploadError, UploadedView};
 
 /// The view and the settings of a lit picture, and the numbers that a device was given for a rectangle of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,21 +37,176 @@ pub struct LitInputs {
 
 impl LitInputs {
     /// The pixel of the film with an index in the rectangle.
-    pub(in crate::verify) fn pixel(&self, index: usize) -> [u32; 2] {
-        let width = self.size[0].max(1) as usize;
-        // The sides of a film are u32.
-        [self.origin[0] + (index % width) as u32, self.origin[1] + (index / width) as u32]
+    pub(crate) fn pixel(&self, index: usize) -> [u32; 2] {
+        let [i, j] = pixel_at(index, self.size[0]);
+        [self.origin[0] + i, self.origin[1] + j]
     }
 
     /// First column and row, width and height of the rectangle.
-    pub(in crate::verify) fn rectangle(&self) -> [u32; 4] {
+    pub(crate) fn rectangle(&self) -> [u32; 4] {
         let ([x, y], [width, height]) = (self.origin, self.size);
         [x, y, width, height]
     }
 
     /// The number of pixels in the rectangle.
-    pub(in crate::verify) fn pixels(&self) -> u64 {
+    pub(crate) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
+
+/// A recording of a rectangle of a picture, with surfaces of the integrator `path` or `studio`. The checker needs only
+/// this and the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RectangleRecording<S> {
+    /// What was requested, and the numbers that the device was given.
+    pub given: LitInputs,
+    /// The samples in the order in which they were taken.
+    pub samples: Vec<RectangleSample<S>>,
+}
+
+/// One sample of every pixel of the rectangle. Lists are row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RectangleSample<S> {
+    /// Index of the sample in its pixel.
+    pub sample: u32,
+    /// The state of every path at the camera.
+    pub start: Vec<PathState>,
+    /// The surfaces of the paths in the order in which they are hit, up to the one at which the last path ends.
+    pub surfaces: Vec<S>,
+    /// The sums of the pixels without and with the sample.
+    pub film: RecordedFilm,
+}
+
+/// A recording of paths.
+pub type PathRecording = RectangleRecording<RecordedSurface>;
+
+/// A recording of a picture of a studio.
+pub type StudioRecording = RectangleRecording<StudioSurface>;
+
+/// One sample of every path of a rectangle.
+pub type RecordedSample = RectangleSample<RecordedSurface>;
+
+/// One sample of every ray of a studio in a rectangle.
+pub type StudioSample = RectangleSample<StudioSurface>;
+
+/// A recording of samples of a lit picture.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum LitRecording<'a> {
+    /// Samples of the integrator `path`.
+    Paths(&'a PathRecording),
+    /// Samples of the integrator `studio`.
+    Studio(&'a StudioRecording),
+}
+
+/// The results of all paths at one surface.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordedSurface {
+    /// The hits, as bits: distance, id, index in the structure, and distance from the ray's origin to the scene's box.
+    pub hits: Vec<[u32; 4]>,
+    /// The state of every path after shading.
+    pub scattered: Vec<PathState>,
+    /// The visibility of each path's sampled light, as the bits of a number: 0 if it is occluded.
+    pub open: Vec<u32>,
+}
+
+/// The results of all rays of a studio at one surface.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StudioSurface {
+    /// The hits, as those of paths.
+    pub hits: Vec<[u32; 4]>,
+    /// The state of every ray once the surface is known.
+    pub shaded: Vec<PathState>,
+    /// The lights, 32 at a time.
+    pub lights: Vec<StudioLight>,
+    /// The directions of ambient light, 32 at a time.
+    pub ambient: Vec<StudioLight>,
+}
+
+/// The results of all rays at one surface for up to 32 lights or directions.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StudioLight {
+    /// A bit for each light that is hidden.
+    pub hidden: Vec<u32>,
+    /// Radiance and opacity with the light that is not, as bits.
+    pub radiance: Vec<[u32; 4]>,
+    /// The bits that are left for the next lights, which should be none.
+    pub left: Vec<u32>,
+}
+
+/// The number of lights, or of directions of ambient light, of a [`StudioLight`].
+pub(crate) const BITS: u32 = 32;
+
+/// What is recorded of a surface, along paths or in a studio.
+pub(crate) trait LitSurface: Sync {
+    fn hits(&self) -> &[[u32; 4]];
+
+    /// The states after shading.
+    fn states(&self) -> &[PathState];
+
+    /// Whether there is all light of so many pixels.
+    fn has_light(&self, lighting: &UploadedLighting, pixels: usize) -> bool;
+}
+
+impl LitSurface for RecordedSurface {
+    fn hits(&self) -> &[[u32; 4]] {
+        &self.hits
+    }
+
+    fn states(&self) -> &[PathState] {
+        &self.scattered
+    }
+
+    fn has_light(&self, _: &UploadedLighting, pixels: usize) -> bool {
+        self.open.len() == pixels
+    }
+}
+
+impl LitSurface for StudioSurface {
+    fn hits(&self) -> &[[u32; 4]] {
+        &self.hits
+    }
+
+    fn states(&self) -> &[PathState] {
+        &self.shaded
+    }
+
+    fn has_light(&self, lighting: &UploadedLighting, pixels: usize) -> bool {
+        let are_all = |lights: &[StudioLight], count: u32| {
+            let is_whole = |StudioLight { hidden, radiance, left }: &StudioLight| {
+                [hidden.len(), radiance.len(), left.len()] == [pixels; 3]
+            };
+            lights.len() as u64 == u64::from(count.div_ceil(BITS)) && lights.iter().all(is_whole)
+        };
+        are_all(&self.lights, lighting.light_count)
+            && are_all(&self.ambient, lighting.occlusion_samples)
+    }
+}
+
+impl<S> RectangleRecording<S> {
+    /// Whether every list has an element for each pixel of the rectangle, and every light and direction is in a list.
+    pub(crate) fn check_size(&self) -> Result<(), UploadError>
+    where
+        S: LitSurface,
+    {
+        let count = self.given.pixels();
+        let are_whole =
+            self.samples.iter().all(|RectangleSample { start, surfaces, film, .. }| {
+                let pixels = start.len();
+                let is_whole = |surface: &S| {
+                    [surface.hits().len(), surface.states().len()] == [pixels; 2]
+                        && surface.has_light(&self.given.lighting, pixels)
+                };
+                pixels as u64 == count
+                    && [film.before.len(), film.after.len()] == [pixels; 2]
+                    && surfaces.iter().all(is_whole)
+            });
+        if are_whole {
+            return Ok(());
+        }
+        Err(UploadError(format!(
+            "the recording has a list that does not have {count} pixels, the size of its rectangle"
+        )))
     }
 }
 
@@ -64,13 +220,6 @@ pub struct RecordedFilm {
     pub before: Vec<PixelSums>,
     /// The sums after it.
     pub after: Vec<PixelSums>,
-}
-
-impl RecordedFilm {
-    /// Whether there are sums of so many pixels.
-    pub(in crate::verify) fn has(&self, pixels: u64) -> bool {
-        [&self.before, &self.after].into_iter().all(|sums| sums.len() as u64 == pixels)
-    }
 }
 
 /// The state of a path between two dispatches, as bits: the slots of `shaders/path/state.wgsl`.
@@ -95,7 +244,7 @@ impl PathState {
     pub const NORMAL: usize = 6;
 
     /// The state once the visibility of its light is known. A light that is occluded is not searched again.
-    pub(in crate::verify) fn with_visibility(mut self, open: u32) -> Self {
+    pub(crate) fn with_visibility(mut self, open: u32) -> Self {
         if open != self.bits(slot::PENDING) {
             self.slots[slot::PENDING][3] = open;
             self.slots[slot::SHADOW][3] = 0;
@@ -104,80 +253,78 @@ impl PathState {
     }
 
     /// The state in a studio once the light of some lights is added, with the bits that are left of them.
-    pub(in crate::verify) fn with_light(mut self, radiance: [u32; 4], left: u32) -> Self {
+    pub(crate) fn with_light(mut self, radiance: [u32; 4], left: u32) -> Self {
         self.slots[slot::RADIANCE] = radiance;
         self.slots[slot::NORMAL][3] = left;
         self
     }
 
-    pub(in crate::verify) fn vector(&self, slot: usize) -> [f32; 3] {
+    pub(crate) fn vector(&self, slot: usize) -> [f32; 3] {
         let [x, y, z, _] = self.slots[slot];
         [x, y, z].map(f32::from_bits)
     }
 
-    pub(in crate::verify) fn number(&self, slot: usize) -> f32 {
+    pub(crate) fn number(&self, slot: usize) -> f32 {
         f32::from_bits(self.slots[slot][3])
     }
 
-    pub(in crate::verify) fn bits(&self, slot: usize) -> u32 {
+    pub(crate) fn bits(&self, slot: usize) -> u32 {
         self.slots[slot][3]
     }
 
     /// The surface that the path leaves.
-    pub(in crate::verify) fn departure(&self) -> Departure {
+    pub(crate) fn departure(&self) -> Departure {
         let [id, shape_index, exit_distance, emitter] = self.slots[slot::DEPARTURE];
         Departure { id, shape_index, exit_distance: f32::from_bits(exit_distance), emitter }
     }
 
-    pub(in crate::verify) fn flags(&self) -> u32 {
+    pub(crate) fn flags(&self) -> u32 {
         self.bits(slot::ORIGIN)
     }
 
-    pub(in crate::verify) fn has(&self, flag: u32) -> bool {
+    pub(crate) fn has(&self, flag: u32) -> bool {
         self.flags() & flag != 0
     }
 }
 
 /// The surface that a path leaves: `shaders/path/departure.wgsl`.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct Departure {
+pub(crate) struct Departure {
     /// Id of the sphere; [`NO_ID`](crate::image::NO_ID) for none.
-    pub(in crate::verify) id: u32,
+    pub(crate) id: u32,
     /// Index of the sphere on the device.
-    pub(in crate::verify) shape_index: u32,
+    pub(crate) shape_index: u32,
     /// Exit distance of the sphere if the path goes inside; else 0.
-    pub(in crate::verify) exit_distance: f32,
+    pub(crate) exit_distance: f32,
     /// Index of the sampled emitter, or [`NO_EMITTER`].
-    pub(in crate::verify) emitter: u32,
+    pub(crate) emitter: u32,
 }
 
 /// The value of [`Departure::emitter`] without an emitter.
-pub(in crate::verify) const NO_EMITTER: u32 = u32::MAX;
+pub(crate) const NO_EMITTER: u32 = u32::MAX;
 
 /// The indices of the slots.
-pub(in crate::verify) mod slot {
-    pub(in crate::verify) const ORIGIN: usize = 0;
-    pub(in crate::verify) const DIRECTION: usize = 1;
-    pub(in crate::verify) const DEPARTURE: usize = 2;
-    pub(in crate::verify) const THROUGHPUT: usize = 3;
-    pub(in crate::verify) const RADIANCE: usize = super::PathState::RADIANCE;
-    pub(in crate::verify) const FIRST: usize = 5;
-    pub(in crate::verify) const SHADOW: usize = 6;
-    pub(in crate::verify) const PENDING: usize = super::PathState::PENDING;
-    pub(in crate::verify) const MEDIUM: usize = 8;
-    pub(in crate::verify) const NORMAL: usize = super::PathState::NORMAL;
-    pub(in crate::verify) const ALBEDO: usize = 7;
-    pub(in crate::verify) const LOBE: usize = 8;
+pub(crate) mod slot {
+    pub(crate) const ORIGIN: usize = 0;
+    pub(crate) const DIRECTION: usize = 1;
+    pub(crate) const DEPARTURE: usize = 2;
+    pub(crate) const THROUGHPUT: usize = 3;
+    pub(crate) const RADIANCE: usize = super::PathState::RADIANCE;
+    pub(crate) const FIRST: usize = 5;
+    pub(crate) const SHADOW: usize = 6;
+    pub(crate) const PENDING: usize = super::PathState::PENDING;
+    pub(crate) const MEDIUM: usize = 8;
+    pub(crate) const NORMAL: usize = super::PathState::NORMAL;
+    pub(crate) const ALBEDO: usize = 7;
+    pub(crate) const LOBE: usize = 8;
 }
 
 /// Flags of the state of a path, and flags of the lighting.
-pub(in crate::verify) mod flag {
-    pub(in crate::verify) use crate::light::codes::lighting::{
+pub(crate) mod flag {
+    pub(crate) use crate::light::codes::lighting::{
         CATCHER, GROUND, SHADOWS, SKY_SEEN, TRANSPARENT,
     };
-    pub(in crate::verify) use crate::light::codes::path::{
-        ALIVE, BACK, FULL, INSIDE, ON_GROUND, SCATTERED,
-    };
+    pub(crate) use crate::light::codes::path::{ALIVE, BACK, FULL, INSIDE, ON_GROUND, SCATTERED};
 }
 
 /// The parameters of the lighting on the device: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.

@@ -1,37 +1,52 @@
-//! The check of uploaded data for lit pictures: whether the numbers on the device are those of the requested scene and
-//! settings.
+//! The check of uploaded data for lit pictures: whether the numbers on the device, and its tables of lights, emitters,
+//! materials and energies, are those of the requested scene and settings.
 
-use super::near::{are_near, is_near};
-use super::recording::{LitInputs, UploadedLighting, flag};
-use super::tables;
-use super::upload_error::LitUploadError;
+use std::cmp::Ordering;
+
+use glam::Vec4;
+
 use crate::geometry::math::{unit, wide};
-use crate::image::color::LinearRgb;
-use crate::light::SkyLight;
+use crate::image::color::{LinearRgb, luminance};
+use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
-use crate::render::{DepthCue, Integrator, Occlusion, PathTracing, RenderSettings, Studio};
+use crate::light::{LightKind, SkyLight, codes};
+use crate::render::{
+    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, RenderSettings, Studio,
+};
 use crate::scene::Scene;
-use crate::verify::candidates::Candidates;
-use crate::verify::recording::NO_HIT;
-use crate::verify::rounding::{FLUSH, U};
-use crate::verify::upload::{LEAST_MARGIN, check_view};
+use crate::scene::material::{Material, SurfaceProperties};
+use crate::verify::hit::Candidates;
+use crate::verify::lit::material::ENERGIES;
+use crate::verify::lit::recording::{LitInputs, UploadedLighting, flag};
+use crate::verify::recording::{LEAST_MARGIN, NO_HIT, UploadError, check_view};
+use crate::verify::rounding::{FLUSH, U, are_near, is_near};
 
 /// Compares the recording with the scene and the settings.
-pub(in crate::verify) fn check(
+pub(crate) fn check(
     scene: &Scene,
     candidates: &Candidates,
     inputs: &LitInputs,
-) -> Result<(), LitUploadError> {
+) -> Result<(), UploadError> {
     check_view(scene, candidates, &inputs.camera, &inputs.uploaded)?;
     check_lighting(scene, inputs)?;
-    tables::check(scene, inputs)
+    check_tables(scene, inputs)
 }
 
-fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), LitUploadError> {
+/// The error for a parameter of the lighting.
+fn wrong(what: &str) -> UploadError {
+    UploadError(format!("{what} on the device differs from the settings"))
+}
+
+/// The error for an entry of the tables.
+fn wrong_entry(what: &str, index: usize) -> UploadError {
+    UploadError(format!("{what} {index} on the device differs from the scene and the settings"))
+}
+
+fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { settings, lighting, .. } = inputs;
     match &settings.integrator {
         Integrator::Primary(_) => {
-            return Err(LitUploadError::Lighting { what: "the integrator" });
+            return Err(wrong("the integrator"));
         }
         Integrator::Path(path) => check_path(path, inputs)?,
         Integrator::Studio(studio) => {
@@ -76,14 +91,14 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), LitUploadErro
 }
 
 /// The first parameter that is wrong, of those with their names and whether they are right.
-fn first_wrong(all: &[(&'static str, bool)]) -> Result<(), LitUploadError> {
+fn first_wrong(all: &[(&'static str, bool)]) -> Result<(), UploadError> {
     match all.iter().find(|(_, is_right)| !is_right) {
         None => Ok(()),
-        Some((what, _)) => Err(LitUploadError::Lighting { what }),
+        Some((what, _)) => Err(wrong(what)),
     }
 }
 
-fn check_path(path: &PathTracing, inputs: &LitInputs) -> Result<(), LitUploadError> {
+fn check_path(path: &PathTracing, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { lighting, .. } = inputs;
     first_wrong(&[
         ("the start of roulette", lighting.roulette_from == path.roulette_from),
@@ -92,7 +107,7 @@ fn check_path(path: &PathTracing, inputs: &LitInputs) -> Result<(), LitUploadErr
     ])
 }
 
-fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<(), LitUploadError> {
+fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { lighting, .. } = inputs;
     let is_color =
         |found: [f32; 3], asked: LinearRgb| are_near(found, asked.to_array().map(f64::from));
@@ -122,7 +137,7 @@ fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<()
 }
 
 /// Checks that the box to which the origins of shadow rays are moved contains the spheres that cast shadows.
-fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), LitUploadError> {
+fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let [low, high] = inputs.occluders.map(wide);
     let margin = LEAST_MARGIN * (high - low).length();
     let holds = |[x, y, z, radius]: [f32; 4]| {
@@ -158,4 +173,242 @@ fn is_sky(settings: &RenderSettings, lighting: &UploadedLighting, inputs: &LitIn
                 })
         }
     }
+}
+
+/// The tables on the device.
+struct Tables<'a> {
+    words: &'a [[u32; 4]],
+    lighting: &'a UploadedLighting,
+}
+
+impl Tables<'_> {
+    fn words(&self, at: u32) -> [u32; 4] {
+        self.words.get(at as usize).copied().unwrap_or([u32::MAX; 4])
+    }
+
+    fn numbers(&self, at: u32) -> [f32; 4] {
+        self.words(at).map(f32::from_bits)
+    }
+
+    fn vector(&self, at: u32) -> [f32; 3] {
+        let [x, y, z, _] = self.numbers(at);
+        [x, y, z]
+    }
+}
+
+fn check_tables(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
+    let tables = Tables { words: &inputs.tables, lighting: &inputs.lighting };
+    let lamps = check_lights(&tables, scene, inputs)?;
+    let emitters = check_emitters(scene, inputs)?;
+    check_materials(&tables, scene)?;
+    let is_image = match &inputs.settings.sky.light {
+        SkyLight::Image { environment, strength, .. } => {
+            environment.has_light() && *strength > 0.0 && uses_light_sampling(inputs)
+        }
+        SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
+    };
+    let sources = lamps + u32::from(emitters > 0) + u32::from(is_image);
+    let UploadedLighting { source_count, lamp_sources, emitter_count, .. } = inputs.lighting;
+    if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
+        Ok(())
+    } else {
+        Err(wrong("the number of light sources"))
+    }
+}
+
+fn uses_light_sampling(inputs: &LitInputs) -> bool {
+    match &inputs.settings.integrator {
+        Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
+        Integrator::Primary(_) | Integrator::Studio(_) => false,
+    }
+}
+
+/// Checks the table of lights, and returns how many of them light sampling chooses from.
+fn check_lights(
+    tables: &Tables<'_>,
+    scene: &Scene,
+    inputs: &LitInputs,
+) -> Result<u32, UploadError> {
+    let vectors = &inputs.camera.vectors;
+    let mut lamps = 0_u32;
+    // A studio samples every light.
+    let is_chosen = matches!(inputs.settings.integrator, Integrator::Path(_));
+    let lights = inputs.settings.lights.iter().filter_map(|light| light.in_view(vectors));
+    let mut count = 0;
+    for (light, index) in lights.zip(0_u32..) {
+        count = index + 1;
+        let [position, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
+        let size = tables.numbers(3 * index + 1)[3];
+        let is_kind = tables.words(3 * index)[3] == codes::of_light(&light);
+        let near = |color: crate::image::color::LinearRgb| {
+            are_near(power, color.to_array().map(f64::from))
+        };
+        // The rounding error of f64 if large numbers cancel.
+        let is_at = |point: glam::DVec3| {
+            let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
+            (0..3).all(|axis| {
+                let off = f64::from(position[axis]) - exact[axis];
+                off.abs() <= 2e-7 * exact[axis].abs() + 1e-15 * moved[axis] + 1e-37
+            })
+        };
+        let (is_right, is_lamp) = match light {
+            LightKind::Head { strength } => (is_kind && near(strength), false),
+            LightKind::Directional { toward, strength, angular_radius } => {
+                let k = 1.0 - angular_radius.cos();
+                // The difference cancels here, but not on the device.
+                let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
+                let is_right =
+                    is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
+                (is_right, angular_radius == 0.0 || uses_light_sampling(inputs))
+            }
+            LightKind::Point { position, intensity } => {
+                (is_kind && near(intensity) && is_at(position), true)
+            }
+            LightKind::Sphere { center, radius, radiance } => {
+                let is_right = is_kind && near(radiance) && is_at(center) && is_near(size, radius);
+                (is_right, true)
+            }
+        };
+        let is_lamp = is_lamp && is_chosen;
+        // The indices of the sampled lights are stored one after the other in the third words of the first entries.
+        let is_found = !is_lamp || tables.words(3 * lamps + 2)[0] == index;
+        lamps += u32::from(is_lamp);
+        if !(is_right && is_found) {
+            return Err(wrong_entry("light", index as usize));
+        }
+    }
+    if tables.lighting.light_count != count {
+        return Err(wrong("the number of lights"));
+    }
+    Ok(lamps)
+}
+
+/// Checks the table of emissive spheres, and returns how many of them light sampling chooses from.
+fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError> {
+    if !uses_light_sampling(inputs) {
+        return Ok(0);
+    }
+    let radiance = |id: u32| {
+        let surface = scene.surface(id);
+        let strength = match surface.material {
+            Material::Emissive { strength } => f64::from(strength) * f64::from(surface.opacity),
+            _ => 0.0,
+        };
+        scene.color(id).to_array().map(|c| f64::from(c) * strength)
+    };
+    let weight = |id: u32| {
+        let [r, g, b] = radiance(id);
+        let size = f64::from(scene.spheres()[id as usize][3]);
+        luminance([r, g, b]) * size * size
+    };
+    let mut ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
+    keep_first_of_equals(&mut ids, scene.spheres());
+    let total: f64 = ids.iter().map(|id| weight(*id)).sum();
+    let all = 2_f64.powi(32);
+    // Each emitter has one pick for certain, and its share of the others. Picks are whole numbers, and the sum of all
+    // weights before an emitter is rounded as often as there are terms.
+    let others = all - ids.len() as f64;
+    let slack = 3.0 + 4.0 * f64::EPSILON * all * (ids.len() as f64 + 16.0);
+    let mut before = 0.0;
+    for (index, id) in ids.iter().enumerate() {
+        let words =
+            |at: usize| inputs.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
+        let [found_id, last, probability, _] = words(1);
+        let end = f64::from(last) + 1.0;
+        let probability = f32::from_bits(probability);
+        let sphere = words(0).map(f32::from_bits);
+        let [r, g, b, _] = words(2).map(f32::from_bits);
+        let is_right = found_id == *id
+            && Vec4::from(sphere) == Vec4::from(scene.spheres()[*id as usize])
+            && are_near([r, g, b], radiance(*id))
+            && end > before
+            && (end - before - 1.0 - weight(*id) / total * others).abs() <= slack
+            && is_near(probability, (end - before) / all)
+            && (index + 1 < ids.len() || last == u32::MAX);
+        if !is_right {
+            return Err(wrong_entry("emitter", index));
+        }
+        before = end;
+    }
+    Ok(ids.len() as u32)
+}
+
+/// Keeps the ids of spheres that no earlier sphere of the scene equals. Of equal spheres, rays hit only the first, so
+/// only that one is sampled.
+fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
+    // Compared by value, because the sign of a zero does not matter; no component is NaN.
+    let order = |a: &[f32; 4], b: &[f32; 4]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+    let sphere = |id: u32| &spheres[id as usize];
+    ids.sort_by(|a, b| order(sphere(*a), sphere(*b)));
+    ids.dedup_by(|later, first| order(sphere(*later), sphere(*first)).is_eq());
+    let mut is_hidden = vec![false; ids.len()];
+    for (id, at) in (0_u32..).zip(spheres) {
+        if let Ok(at) = ids.binary_search_by(|other| order(sphere(*other), at)) {
+            is_hidden[at] |= id < ids[at];
+        }
+    }
+    let mut hidden = is_hidden.into_iter();
+    ids.retain(|_| !hidden.next().unwrap_or_default());
+    ids.sort_unstable();
+}
+
+/// Checks the material of the ground, which is the first, and those of the spheres.
+fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), UploadError> {
+    let rows = scene.checked_appearance().material_rows();
+    let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
+    let energies = EnergyTables::of(&surfaces);
+    let ground = SurfaceProperties::default();
+    let records = std::iter::once((&ground, [1.0; 3], None)).chain(
+        rows.iter()
+            .zip(&energies.starts)
+            .map(|(row, start)| (&row.surface, row.color.to_array(), *start)),
+    );
+    for (index, (surface, color, start)) in records.enumerate() {
+        let at = tables.lighting.material_first.saturating_add(2 * index as u32);
+        let [kind, _, _, first] = tables.words(at);
+        let [_, parameter, alpha, _] = tables.numbers(at);
+        let [x, y, z, opacity] = tables.numbers(at.saturating_add(1));
+        let absorption = [x, y, z];
+        let (expected, roughness, absorbed) = match surface.material {
+            Material::Lambert { specular, roughness } => (specular, roughness, [0.0; 3]),
+            Material::Conductor { roughness } => (1.0, roughness, [0.0; 3]),
+            Material::Dielectric { ior, roughness, attenuation_distance } => {
+                let absorbed = attenuation_distance.map_or([0.0; 3], |distance| {
+                    color.map(|c| -f64::from(c).max(1e-4).ln() / f64::from(distance))
+                });
+                (ior, roughness, absorbed)
+            }
+            Material::Emissive { strength } => (strength, 0.0, [0.0; 3]),
+        };
+        let expected_alpha = f64::from(roughness) * f64::from(roughness);
+        let is_right = kind == codes::of_material(&surface.material)
+            && is_near(parameter, expected.into())
+            && is_near(alpha, expected_alpha)
+            && are_near(absorption, absorbed)
+            && is_near(opacity, surface.opacity.into())
+            && start.is_none_or(|start| has_energies(tables, first, &energies, start, surface));
+        if !is_right {
+            return Err(wrong_entry("material", index));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the energy tables of a material are at its index.
+fn has_energies(
+    tables: &Tables<'_>,
+    first: u32,
+    energies: &EnergyTables,
+    start: u32,
+    surface: &SurfaceProperties,
+) -> bool {
+    let count = match surface.material {
+        Material::Dielectric { .. } => 2 * ENERGIES,
+        _ => ENERGIES,
+    };
+    (0..count).all(|entry| {
+        let found = tables.numbers(first.saturating_add(entry / 4))[(entry % 4) as usize];
+        let asked = energies.entries.get((start + entry) as usize);
+        asked.is_some_and(|asked| found.to_bits() == asked.to_bits())
+    })
 }

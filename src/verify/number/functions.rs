@@ -7,14 +7,14 @@ use crate::verify::rounding::{FLUSH, Interval, PAD, SQRT, U};
 
 impl Number {
     /// The square root; that of zero is zero. Negative values in the interval are ignored.
-    pub(in crate::verify) fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         let Interval { low, high } = self.interval();
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         Self::between(low * (1.0 - SQRT) / PAD, high * (1.0 + SQRT) * PAD)
     }
 
     /// The exponential, to within 3 + 2|x| ULP.
-    pub(in crate::verify) fn exp(self) -> Self {
+    pub(crate) fn exp(self) -> Self {
         let Interval { low, high } = self.interval();
         let relative = |x: f64| PAD * (3.0 + 2.0 * x.abs()) * U;
         let (least, most) = (low.exp(), high.exp());
@@ -34,14 +34,14 @@ impl Number {
     }
 
     /// The lowest and the highest whole number that `floor` may return.
-    pub(in crate::verify) fn floor(self) -> [f64; 2] {
+    pub(crate) fn floor(self) -> [f64; 2] {
         let Interval { low, high } = self.interval();
         [low.floor(), high.floor()]
     }
 }
 
 /// Sine and cosine of an angle of at most an eighth of a turn.
-pub(in crate::verify) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
+pub(crate) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
     let angle = angle.fence();
     let z = angle.squared().fence();
     let sine = z * z.polynomial(&[-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0]);
@@ -51,7 +51,7 @@ pub(in crate::verify) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
 }
 
 /// Sine and cosine of an angle in turns.
-pub(in crate::verify) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> [Number; 2] {
+pub(crate) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> [Number; 2] {
     let quarter = choices.pick((Number::known(4.0) * turns + Number::HALF).floor());
     // The difference of numbers that are nearly equal is exact, unless a compiler rearranges it.
     let Interval { low, high } = turns.interval();
@@ -71,7 +71,7 @@ pub(in crate::verify) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> 
 }
 
 /// The angle of a vector in turns.
-pub(in crate::verify) fn atan2_turns(y: Number, x: Number, choices: &mut Choices) -> Number {
+pub(crate) fn atan2_turns(y: Number, x: Number, choices: &mut Choices) -> Number {
     const SERIES: [f64; 9] = [
         0.159_154_94,
         -0.053_051_233,

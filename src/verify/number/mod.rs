@@ -16,15 +16,15 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 
-pub(super) use functions::{atan2_turns, sin_cos_eighth, sin_cos_turns};
-pub(super) use vector::Vector;
+pub(crate) use functions::{atan2_turns, sin_cos_eighth, sin_cos_turns};
+pub(crate) use vector::Vector;
 
 /// A limit above every f32; products of two such numbers are still finite.
 const LARGEST: f64 = 1e90;
 
 /// A number that a kernel has computed and not yet fenced.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Number {
+pub(crate) struct Number {
     /// The interval of exact arithmetic.
     low: f64,
     high: f64,
@@ -41,18 +41,18 @@ pub(super) struct Number {
 }
 
 impl Number {
-    pub(super) const ZERO: Self = Self::known(0.0);
-    pub(super) const ONE: Self = Self::known(1.0);
-    pub(super) const TWO: Self = Self::known(2.0);
-    pub(super) const HALF: Self = Self::known(0.5);
+    pub(crate) const ZERO: Self = Self::known(0.0);
+    pub(crate) const ONE: Self = Self::known(1.0);
+    pub(crate) const TWO: Self = Self::known(2.0);
+    pub(crate) const HALF: Self = Self::known(0.5);
 
     /// A number that f32 represents exactly.
-    pub(super) const fn known(value: f64) -> Self {
+    pub(crate) const fn known(value: f64) -> Self {
         Self::between(value, value)
     }
 
     /// A number that the device recorded; it may count as zero if it is subnormal.
-    pub(super) fn recorded(value: f32) -> Self {
+    pub(crate) fn recorded(value: f32) -> Self {
         let wide = f64::from(value);
         if wide.abs() < FLUSH {
             return Self::between(wide.min(0.0), wide.max(0.0));
@@ -61,19 +61,19 @@ impl Number {
     }
 
     /// A constant from a kernel's text, which is rounded.
-    pub(super) fn constant(value: f64) -> Self {
+    pub(crate) fn constant(value: f64) -> Self {
         Self { products: 1, ..Self::known(value) }
     }
 
     /// All numbers of an interval.
-    pub(super) const fn between(low: f64, high: f64) -> Self {
+    pub(crate) const fn between(low: f64, high: f64) -> Self {
         let size = if high > -low { high } else { -low };
         let is_positive = low >= 0.0;
         Self { low, high, size, flushed: 0.0, terms: 1, products: 0, is_positive }
     }
 
     /// All numbers within `error` of `value`.
-    pub(super) const fn around(value: f64, error: f64) -> Self {
+    pub(crate) const fn around(value: f64, error: f64) -> Self {
         Self::between(value - error, value + error)
     }
 
@@ -93,7 +93,7 @@ impl Number {
     }
 
     /// The number with all rounding errors added, as after `fence`.
-    pub(super) fn fence(self) -> Self {
+    pub(crate) fn fence(self) -> Self {
         let steps = self.products + self.terms - 1;
         if steps == 0 {
             return self;
@@ -110,18 +110,18 @@ impl Number {
     }
 
     /// The interval of values that a device may have.
-    pub(super) fn interval(self) -> Interval {
+    pub(crate) fn interval(self) -> Interval {
         let Self { low, high, .. } = self.fence();
         Interval { low, high }
     }
 
     /// Whether it is zero on every device; a sum that only may cancel is not.
-    pub(super) fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.size == 0.0
     }
 
     /// Whether it is less than another number; `None` if undecided.
-    pub(super) fn is_less(self, other: Self) -> Option<bool> {
+    pub(crate) fn is_less(self, other: Self) -> Option<bool> {
         let (a, b) = (self.interval(), other.interval());
         if a.high < b.low {
             Some(true)
@@ -133,30 +133,30 @@ impl Number {
     }
 
     /// Whether it is more than another number; `None` if undecided.
-    pub(super) fn is_more(self, other: Self) -> Option<bool> {
+    pub(crate) fn is_more(self, other: Self) -> Option<bool> {
         other.is_less(self)
     }
 
     /// Whether it is positive; `None` if undecided.
-    pub(super) fn is_above_zero(self) -> Option<bool> {
+    pub(crate) fn is_above_zero(self) -> Option<bool> {
         self.is_more(Self::ZERO)
     }
 
-    pub(super) fn min(self, other: Self) -> Self {
+    pub(crate) fn min(self, other: Self) -> Self {
         let (a, b) = (self.interval(), other.interval());
         Self::between(a.low.min(b.low), a.high.min(b.high))
     }
 
-    pub(super) fn max(self, other: Self) -> Self {
+    pub(crate) fn max(self, other: Self) -> Self {
         let (a, b) = (self.interval(), other.interval());
         Self::between(a.low.max(b.low), a.high.max(b.high))
     }
 
-    pub(super) fn clamp(self, low: f64, high: f64) -> Self {
+    pub(crate) fn clamp(self, low: f64, high: f64) -> Self {
         self.max(Self::known(low)).min(Self::known(high))
     }
 
-    pub(super) fn abs(self) -> Self {
+    pub(crate) fn abs(self) -> Self {
         let Interval { low, high } = self.interval();
         if low >= 0.0 {
             Self::between(low, high)
@@ -166,19 +166,19 @@ impl Number {
     }
 
     /// The product with itself.
-    pub(super) fn squared(self) -> Self {
+    pub(crate) fn squared(self) -> Self {
         let fenced = self.abs();
         fenced * fenced
     }
 
     /// The smallest interval that contains the values of both.
-    pub(super) fn union(self, other: Self) -> Self {
+    pub(crate) fn union(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().union(other.interval());
         Self::between(low, high)
     }
 
     /// The values in both intervals; itself, if there are none.
-    pub(super) fn narrowed(self, other: Self) -> Self {
+    pub(crate) fn narrowed(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().intersection(other.interval());
         if low <= high { Self::between(low, high) } else { self }
     }

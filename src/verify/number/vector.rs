@@ -9,52 +9,52 @@ use crate::verify::rounding::Interval;
 
 /// A vector or a colour that a kernel has computed.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::verify) struct Vector(pub(in crate::verify) [Number; 3]);
+pub(crate) struct Vector(pub(crate) [Number; 3]);
 
 impl Vector {
-    pub(in crate::verify) const ZERO: Self = Self([Number::ZERO; 3]);
-    pub(in crate::verify) const ONE: Self = Self([Number::ONE; 3]);
+    pub(crate) const ZERO: Self = Self([Number::ZERO; 3]);
+    pub(crate) const ONE: Self = Self([Number::ONE; 3]);
 
     /// A vector that the device recorded.
-    pub(in crate::verify) fn recorded(vector: [f32; 3]) -> Self {
+    pub(crate) fn recorded(vector: [f32; 3]) -> Self {
         Self(vector.map(Number::recorded))
     }
 
     /// All vectors within `error` of `exact` along each axis.
-    pub(in crate::verify) fn around(exact: DVec3, error: f64) -> Self {
+    pub(crate) fn around(exact: DVec3, error: f64) -> Self {
         Self(exact.to_array().map(|x| Number::around(x, error)))
     }
 
-    pub(in crate::verify) fn map(self, f: impl Fn(Number) -> Number) -> Self {
+    pub(crate) fn map(self, f: impl Fn(Number) -> Number) -> Self {
         Self(self.0.map(f))
     }
 
-    pub(in crate::verify) fn zip(self, other: Self, f: impl Fn(Number, Number) -> Number) -> Self {
+    pub(crate) fn zip(self, other: Self, f: impl Fn(Number, Number) -> Number) -> Self {
         let ([a, b, c], [p, q, r]) = (self.0, other.0);
         Self([f(a, p), f(b, q), f(c, r)])
     }
 
     /// The product of each pair of components.
-    pub(in crate::verify) fn times(self, other: Self) -> Self {
+    pub(crate) fn times(self, other: Self) -> Self {
         self.zip(other, |a, b| a * b)
     }
 
-    pub(in crate::verify) fn fence(self) -> Self {
+    pub(crate) fn fence(self) -> Self {
         self.map(Number::fence)
     }
 
-    pub(in crate::verify) fn dot(self, other: Self) -> Number {
+    pub(crate) fn dot(self, other: Self) -> Number {
         let Self([x, y, z]) = self.times(other);
         x + y + z
     }
 
-    pub(in crate::verify) fn squared(self) -> Number {
+    pub(crate) fn squared(self) -> Number {
         let Self([x, y, z]) = self.map(Number::squared);
         x + y + z
     }
 
     /// The vector divided by its length; if the length may be zero, any vector of about unit length.
-    pub(in crate::verify) fn normalized(self) -> Self {
+    pub(crate) fn normalized(self) -> Self {
         let v = self.fence();
         let length = v.squared().sqrt();
         v.map(|x| {
@@ -64,12 +64,12 @@ impl Vector {
         })
     }
 
-    pub(in crate::verify) fn largest(self) -> Number {
+    pub(crate) fn largest(self) -> Number {
         let Self([x, y, z]) = self;
         x.max(y).max(z)
     }
 
-    pub(in crate::verify) fn intervals(self) -> [Interval; 3] {
+    pub(crate) fn intervals(self) -> [Interval; 3] {
         self.0.map(Number::interval)
     }
 }

@@ -3,23 +3,23 @@
 
 use super::kernel::Surface;
 use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::lamp::{cosine_direction, pi};
 use crate::verify::lit::material::{
     ENERGIES, Material, ggx_lambda, mirrors_brdf, reflected_density, visible_mirror,
 };
-use crate::verify::lit::warp::{cosine_direction, pi};
 use crate::verify::number::{Number, Vector};
 
 /// The BSDF times the cosine, and the density with which the direction is sampled.
-pub(super) struct Reflection {
-    pub(super) value: Vector,
-    pub(super) density: Number,
+pub(crate) struct Reflection {
+    pub(crate) value: Vector,
+    pub(crate) density: Number,
 }
 
 /// A scattered direction in the tangent frame, its weight, and its density.
-pub(super) struct Scattered {
-    pub(super) direction: Vector,
-    pub(super) weight: Vector,
-    pub(super) density: Number,
+pub(crate) struct Scattered {
+    pub(crate) direction: Vector,
+    pub(crate) weight: Vector,
+    pub(crate) density: Number,
 }
 
 /// The density as a divisor: at least 10⁻³⁰.
@@ -40,7 +40,7 @@ fn compensation(color: Vector, kept: Number) -> Vector {
 }
 
 impl Kernel<'_> {
-    pub(super) fn reflect_toward(
+    pub(crate) fn reflect_toward(
         &mut self,
         material: &Material,
         color: Vector,
@@ -79,7 +79,7 @@ impl Kernel<'_> {
         Reflection { value: color * matt + lobe * (share * mirrors), density }
     }
 
-    pub(super) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
+    pub(crate) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
         let color = Vector::recorded(at.vertex.color);
         let Surface { material, out, .. } = at;
         if material.is_dielectric() {

@@ -3,23 +3,23 @@
 
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
-use crate::verify::lit::expected::Mismatch;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::judge::Mismatch;
+use crate::verify::lit::kernel::Vertex;
 use crate::verify::lit::kernel::{Address, Kernel, unit};
+use crate::verify::lit::lamp::{Axes, axes_around};
 use crate::verify::lit::material::Material;
 use crate::verify::lit::recording::{PathState, flag, slot};
-use crate::verify::lit::stage::LitStage;
-use crate::verify::lit::vertex::Vertex;
-use crate::verify::lit::warp::Axes;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, U};
 
 /// A point of a surface that scatters light.
-pub(super) struct Surface {
-    pub(super) vertex: Vertex,
-    pub(super) material: Material,
-    pub(super) axes: Axes,
+pub(crate) struct Surface {
+    pub(crate) vertex: Vertex,
+    pub(crate) material: Material,
+    pub(crate) axes: Axes,
     /// The direction back along the arriving ray, in the tangent frame.
-    pub(super) out: Vector,
+    pub(crate) out: Vector,
 }
 
 /// The stage and the name of a number, for reports.
@@ -41,17 +41,17 @@ const MEDIUM: Name = (LitStage::Scatter, "the absorption along the next ray");
 const FIRST: Name = (LitStage::Vertex, "the first surface's color");
 
 impl Kernel<'_> {
-    pub(super) fn pair(&self, number: u32) -> [u32; 2] {
+    pub(crate) fn pair(&self, number: u32) -> [u32; 2] {
         let Address { pixel, sample, surface } = self.address;
         pair(pixel_seed(pixel, self.lighting().seed), sample, number + 8 * surface)
     }
 
-    pub(super) fn is_last(&self) -> bool {
+    pub(crate) fn is_last(&self) -> bool {
         self.address.surface >= self.inputs.max_surfaces
     }
 
     /// Follows the kernel, and compares its output.
-    pub(super) fn follow(&mut self) -> Result<(), Mismatch> {
+    pub(crate) fn follow(&mut self) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
         let radiance_so_far = self.radiance_so_far();
         let alpha = before.number(slot::RADIANCE);
@@ -86,7 +86,7 @@ impl Kernel<'_> {
             self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
             return self.stop();
         }
-        let axes = self.axes_around(vertex.normal);
+        let axes = axes_around(vertex.normal, self.choices);
         let out = axes.to_local(-Vector::recorded(before.vector(slot::DIRECTION)));
         let at = Surface { vertex, material, axes, out };
         let light = self.head_light(&at, is_seen);
@@ -130,7 +130,7 @@ impl Kernel<'_> {
         radiance_so_far(self.before)
     }
 
-    pub(super) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
+    pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
         let states = [self.before, self.after];
         slots.iter().try_for_each(|slot| self.expected.same(KEPT, states, *slot))
@@ -143,7 +143,7 @@ impl Kernel<'_> {
     }
 
     /// Compares the pending light, and whether it must be tested for occlusion: 1 or 0.
-    pub(super) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
+    pub(crate) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
         let after = self.after;
         self.expected.vector(PENDING, after.vector(slot::PENDING), light)?;
         self.expected.number(LIGHT, after.number(slot::PENDING), open)
@@ -246,7 +246,7 @@ impl Kernel<'_> {
 }
 
 /// The radiance of a path, including the pending light if it is not occluded.
-pub(super) fn radiance_so_far(state: &PathState) -> Vector {
+pub(crate) fn radiance_so_far(state: &PathState) -> Vector {
     let open = Number::recorded(state.number(slot::PENDING));
     Vector::recorded(state.vector(slot::RADIANCE))
         + Vector::recorded(state.vector(slot::PENDING)) * open

@@ -5,10 +5,5 @@
 //! which lobe, reflection or refraction, which texel, and whether the path ends.
 
 mod bsdf;
-mod check;
-mod kernel;
+pub(super) mod kernel;
 mod light;
-mod recording;
-mod sky;
-
-pub use recording::{PathRecording, RecordedSample, RecordedSurface};

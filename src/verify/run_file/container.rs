@@ -5,19 +5,22 @@
 //! checks, so that malicious files could make it panic. Therefore only its types for the header and their validation
 //! are used.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use bytemuck::{Pod, Zeroable};
+use safetensors::Dtype;
 use safetensors::tensor::{Metadata, TensorInfo};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::error::{RunFileError, VERSION, hex};
-use super::numbers::{Array, Number, Sink};
 use crate::parallel::try_map;
+use crate::scene::Scene;
 use crate::text::shortened;
+use crate::verify::run_file::error::{RunFileError, VERSION, hex};
 
 /// The first bytes of every header.
 const START: &[u8] = br#"{"__metadata__":{"#;
@@ -252,21 +255,13 @@ impl<'a> Container<'a> {
                 E::DTYPE
             )));
         }
-        let memory =
-            |bytes: usize| RunFileError::Memory { name: name.to_owned(), bytes: bytes as u64 };
         let length = info.data_offsets.1 - info.data_offsets.0;
-        let mut bytes = Vec::new();
-        bytes.try_reserve_exact(length).map_err(|_| memory(length))?;
-        self.emit(name, &mut |piece| {
-            bytes.extend_from_slice(piece);
-            Ok(())
-        })?;
-        let item = |i: usize| {
-            let item = &bytes[i * N * E::WIDTH..];
-            std::array::from_fn(|column| E::read(&item[column * E::WIDTH..]))
-        };
         // The header's validation has ensured that shape and length agree.
-        try_map(length / (N * E::WIDTH), item).map_err(|_| memory(length))
+        let mut items = try_map(length / size_of::<[E; N]>(), |_| [E::zeroed(); N])
+            .map_err(|_| RunFileError::Memory { name: name.to_owned(), bytes: length as u64 })?;
+        let mut rest: &mut [u8] = bytemuck::cast_slice_mut(items.as_flattened_mut());
+        self.emit(name, &mut |piece| rest.write_all(piece))?;
+        Ok(items)
     }
 
     /// The items of an array with one number each; see [`Container::items`].
@@ -285,5 +280,99 @@ impl<'a> Container<'a> {
     ) -> Result<[[E; N]; M], RunFileError> {
         let items = self.items(name, if M > 1 { &[M] } else { &[] })?;
         items.try_into().map_err(|_| contradiction(format!("the array `{name}` is too short")))
+    }
+}
+
+/// The number of items that are converted to bytes at a time.
+const CHUNK: usize = 1 << 12;
+
+// The format has the lowest byte first, so that numbers are copied as they lie in memory.
+const _: () = assert!(cfg!(target_endian = "little"), "run files need the lowest byte first");
+
+/// A type of numbers in arrays.
+pub(super) trait Number: Pod + Send + Sync {
+    /// The name of the type in the format.
+    const DTYPE: Dtype;
+}
+
+impl Number for f32 {
+    const DTYPE: Dtype = Dtype::F32;
+}
+
+impl Number for f64 {
+    const DTYPE: Dtype = Dtype::F64;
+}
+
+impl Number for u32 {
+    const DTYPE: Dtype = Dtype::U32;
+}
+
+impl Number for u8 {
+    const DTYPE: Dtype = Dtype::U8;
+}
+
+/// A byte that should be a truth value, 0 or 1.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(transparent)]
+pub(super) struct Flag(pub(super) u8);
+
+impl Number for Flag {
+    const DTYPE: Dtype = Dtype::BOOL;
+}
+
+/// A function that takes bytes piece by piece.
+pub(super) type Sink<'a> = dyn FnMut(&[u8]) -> io::Result<()> + 'a;
+
+/// A function that writes all bytes of an array to a sink.
+type Emit<'a> = dyn Fn(&mut Sink<'_>) -> io::Result<()> + 'a;
+
+/// An array to be written; its bytes are generated as they are needed.
+pub(super) struct Array<'a> {
+    pub(super) name: Cow<'static, str>,
+    pub(super) dtype: Dtype,
+    pub(super) shape: Vec<usize>,
+    emit: Box<Emit<'a>>,
+}
+
+impl<'a> Array<'a> {
+    /// An array with `N` numbers for each item; `shape` is the shape of the items.
+    pub(super) fn new<T, E: Number, const N: usize>(
+        name: &'static str,
+        shape: &[usize],
+        items: &'a [T],
+        numbers: impl Fn(&T) -> [E; N] + 'a,
+    ) -> Self {
+        let emit = move |sink: &mut Sink<'_>| {
+            items.chunks(CHUNK).try_for_each(|chunk| {
+                let chunk: Vec<[E; N]> = chunk.iter().map(&numbers).collect();
+                sink(bytemuck::cast_slice(chunk.as_flattened()))
+            })
+        };
+        let columns = (N > 1).then_some(N);
+        let shape = shape.iter().copied().chain(columns).collect();
+        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
+    }
+
+    /// An array whose bytes a function writes.
+    pub(super) fn emitted<E: Number>(
+        name: String,
+        shape: Vec<usize>,
+        emit: impl Fn(&mut Sink<'_>) -> io::Result<()> + 'a,
+    ) -> Self {
+        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
+    }
+
+    /// The array of spheres, which is also the input of the scene's digest.
+    pub(super) fn spheres(scene: &'a Scene) -> Self {
+        Self::new("spheres", &[scene.len()], scene.spheres(), |sphere| *sphere)
+    }
+
+    /// The number of bytes of the array.
+    pub(super) fn bytes(&self) -> usize {
+        self.shape.iter().product::<usize>() * self.dtype.bitsize() / 8
+    }
+
+    pub(super) fn emit(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        (self.emit)(sink)
     }
 }

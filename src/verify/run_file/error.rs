@@ -62,6 +62,6 @@ impl From<std::io::Error> for RunFileError {
 }
 
 /// A finished digest in hexadecimal digits.
-pub(in crate::verify) fn hex(digest: Sha256) -> String {
+pub(crate) fn hex(digest: Sha256) -> String {
     data_encoding::HEXLOWER.encode(&digest.finalize())
 }

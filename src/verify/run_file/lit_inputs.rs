@@ -8,15 +8,14 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::container::{Container, contradiction, sink_into};
+use super::container::{Array, Container, contradiction, sink_into};
 use super::error::{RunFileError, hex};
-use super::numbers::Array;
 use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
 use crate::light::environment::Environment;
 use crate::render::RenderSettings;
 use crate::text::shortened;
-use crate::verify::lit::{LitInputs, UploadedLighting, UploadedSky};
+use crate::verify::lit::recording::{LitInputs, UploadedLighting, UploadedSky};
 use crate::verify::recording::UploadedView;
 
 /// The metadata key of the digest of what was requested.

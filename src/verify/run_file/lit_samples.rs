@@ -1,15 +1,19 @@
-//! Samples of a lit picture on their way into a run file: they are too many for the memory, so that they are kept in a
-//! file until the recording is complete.
+//! Samples of a lit picture on their way into a run file, and back, one after the other. They are too many for the memory,
+//! so that they are kept in a file until the recording is complete.
 
 use std::cell::RefCell;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use super::container::in_pieces;
-use super::numbers::{Array, Number};
-use crate::verify::LitRecording;
-use crate::verify::lit::{LitInputs, PathState, RecordedFilm};
-use crate::verify::paths::RecordedSample;
-use crate::verify::studio::StudioSample;
+use crate::render::Integrator;
+use crate::scene::Scene;
+use crate::verify::lit::recording::{
+    BITS, LitInputs, LitRecording, LitSurface, PathState, RecordedFilm, RecordedSurface,
+    RectangleRecording, RectangleSample, StudioLight, StudioSurface, UploadedLighting,
+};
+use crate::verify::recording::Recording;
+use crate::verify::run_file::container::{Array, Container, contradiction, in_pieces};
+use crate::verify::run_file::error::RunFileError;
+use crate::verify::run_file::lit_inputs;
 
 /// The largest number of samples in a run file.
 pub const MAX_SAMPLES: u32 = 4096;
@@ -52,10 +56,44 @@ impl LitSamples {
     /// Returns an error if the samples cannot be kept, if they are of different pictures, too many or too large, or if
     /// a list does not have the size of the rectangle.
     pub fn add(&mut self, recording: LitRecording<'_>) -> io::Result<()> {
-        let given = match recording {
-            LitRecording::Paths(paths) => &paths.given,
-            LitRecording::Studio(studio) => &studio.given,
-        };
+        match recording {
+            LitRecording::Paths(paths) => {
+                self.add_samples(paths, 0, |samples, surfaces, [count, pixels]| {
+                    let open = surfaces.iter().flat_map(|surface| &surface.open);
+                    samples.keep("open", &[count, pixels], open.copied())
+                })
+            }
+            LitRecording::Studio(studio) => {
+                let UploadedLighting { light_count, occlusion_samples, .. } = studio.given.lighting;
+                let batches = light_count.div_ceil(BITS) + occlusion_samples.div_ceil(BITS);
+                let batches = batches as usize;
+                self.add_samples(studio, batches, |samples, surfaces, [count, pixels]| {
+                    let lights = || {
+                        surfaces
+                            .iter()
+                            .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
+                    };
+                    let batches = if count > 0 { batches } else { 0 };
+                    let shape = [count, batches, pixels];
+                    let hidden = lights().flat_map(|light| &light.hidden).copied();
+                    samples.keep("hidden", &shape, hidden)?;
+                    let radiance = lights().flat_map(|light| light.radiance.as_flattened());
+                    samples.keep("radiance", &[count, batches, pixels, 4], radiance.copied())?;
+                    samples.keep("left", &shape, lights().flat_map(|light| &light.left).copied())
+                })
+            }
+        }
+    }
+
+    /// Adds samples with so many batches of lights for each surface. `keep_light` keeps those of its surfaces, of which it
+    /// is given the number of surfaces and of pixels.
+    fn add_samples<S: LitSurface>(
+        &mut self,
+        recording: &RectangleRecording<S>,
+        batches: usize,
+        keep_light: impl Fn(&mut Self, &[S], [usize; 2]) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let given = &recording.given;
         match &mut self.given {
             Some(known) => {
                 (known.origin, known.size) = (given.origin, given.size);
@@ -65,51 +103,24 @@ impl LitSamples {
             }
             None => self.given = Some(given.clone()),
         }
-        let is_whole = match recording {
-            LitRecording::Paths(paths) => paths.check_size(),
-            LitRecording::Studio(studio) => studio.check_size(),
-        };
-        is_whole.map_err(io::Error::other)?;
-        let place = [given.origin, given.size].concat();
-        match recording {
-            LitRecording::Paths(paths) => paths.samples.iter().try_for_each(|sample| {
-                let RecordedSample { sample, start, surfaces, film } = sample;
-                self.check(start.len(), surfaces.len(), 0)?;
-                self.keep_sample([&[*sample], &place[..]].concat(), start, film)?;
-                let shape = [surfaces.len(), start.len()];
-                let hits = surfaces.iter().flat_map(|surface| &surface.hits);
-                let states = surfaces.iter().flat_map(|surface| words_of(&surface.scattered));
-                self.keep_hits(shape, hits.flatten().copied(), states)?;
-                let open = surfaces.iter().flat_map(|surface| &surface.open);
-                self.keep("open", &shape, open.copied())?;
-                self.count += 1;
-                Ok(())
-            }),
-            LitRecording::Studio(studio) => studio.samples.iter().try_for_each(|sample| {
-                let StudioSample { sample, start, surfaces, film } = sample;
-                let of_first = surfaces.first();
-                let batches = of_first.map_or(0, |first| first.lights.len() + first.ambient.len());
-                self.check(start.len(), surfaces.len(), batches)?;
-                self.keep_sample([&[*sample], &place[..]].concat(), start, film)?;
-                let shape = [surfaces.len(), start.len()];
-                let hits = surfaces.iter().flat_map(|surface| &surface.hits);
-                let states = surfaces.iter().flat_map(|surface| words_of(&surface.shaded));
-                self.keep_hits(shape, hits.flatten().copied(), states)?;
-                let lights = || {
-                    surfaces
-                        .iter()
-                        .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
-                };
-                let shape = [surfaces.len(), batches, start.len()];
-                self.keep("hidden", &shape, lights().flat_map(|light| &light.hidden).copied())?;
-                let radiance = lights().flat_map(|light| light.radiance.as_flattened());
-                let of_radiance = [&shape[..], &[4]].concat();
-                self.keep("radiance", &of_radiance, radiance.copied())?;
-                self.keep("left", &shape, lights().flat_map(|light| &light.left).copied())?;
-                self.count += 1;
-                Ok(())
-            }),
+        recording.check_size().map_err(io::Error::other)?;
+        let ([x, y], [width, height]) = (given.origin, given.size);
+        for RectangleSample { sample, start, surfaces, film } in &recording.samples {
+            let (count, pixels) = (surfaces.len(), start.len());
+            self.check(pixels, count, batches)?;
+            self.keep("place", &[5], [*sample, x, y, width, height].into_iter())?;
+            self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
+            for (name, sums) in [("before", &film.before), ("after", &film.after)] {
+                self.keep(name, &[pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
+            }
+            let hits = surfaces.iter().flat_map(S::hits).flatten().copied();
+            self.keep("hits", &[count, pixels, 4], hits)?;
+            let states = surfaces.iter().flat_map(|surface| words_of(surface.states()));
+            self.keep("states", &[count, pixels, PathState::SLOTS, 4], states)?;
+            keep_light(self, surfaces, [count, pixels])?;
+            self.count += 1;
         }
+        Ok(())
     }
 
     fn check(&self, pixels: usize, surfaces: usize, batches: usize) -> io::Result<()> {
@@ -121,31 +132,6 @@ impl LitSamples {
         } else {
             Ok(())
         }
-    }
-
-    fn keep_sample(
-        &mut self,
-        place: Vec<u32>,
-        start: &[PathState],
-        film: &RecordedFilm,
-    ) -> io::Result<()> {
-        let pixels = start.len();
-        self.keep("place", &[place.len()], place.into_iter())?;
-        self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
-        for (name, sums) in [("before", &film.before), ("after", &film.after)] {
-            self.keep(name, &[pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
-        }
-        Ok(())
-    }
-
-    fn keep_hits(
-        &mut self,
-        [surfaces, pixels]: [usize; 2],
-        hits: impl Iterator<Item = u32>,
-        states: impl Iterator<Item = u32>,
-    ) -> io::Result<()> {
-        self.keep("hits", &[surfaces, pixels, 4], hits)?;
-        self.keep("states", &[surfaces, pixels, PathState::SLOTS, 4], states)
     }
 
     /// Writes an array to the end of the spool.
@@ -162,7 +148,7 @@ impl LitSamples {
         let mut end = self.end;
         for word in words {
             out.write_all(&word.to_le_bytes())?;
-            end += u32::WIDTH as u64;
+            end += size_of::<u32>() as u64;
         }
         out.flush()?;
         self.arrays.push((name, shape.to_vec(), self.end));
@@ -183,7 +169,7 @@ impl LitSamples {
 
     pub(super) fn arrays(&self) -> impl Iterator<Item = Array<'_>> {
         self.arrays.iter().map(move |(name, shape, start)| {
-            let bytes = (shape.iter().product::<usize>() * u32::WIDTH) as u64;
+            let bytes = (shape.iter().product::<usize>() * size_of::<u32>()) as u64;
             Array::emitted::<u32>(name.clone(), shape.clone(), move |sink| {
                 let mut spool = self.spool.borrow_mut();
                 spool.seek(SeekFrom::Start(*start))?;
@@ -214,4 +200,155 @@ pub(super) fn bytes_in_memory([pixels, surfaces, batches]: [u64; 3]) -> u64 {
     let of_surface = state.saturating_add(20).saturating_add(batches.saturating_mul(24));
     let of_pixel = surfaces.saturating_mul(of_surface).saturating_add(state + 96);
     pixels.saturating_mul(of_pixel)
+}
+
+/// The metadata key of the number of samples.
+pub(super) const SAMPLES: &str = "lit_samples";
+
+/// Reads all samples, and calls `each` with a recording of every one. Returns whether the file has light.
+pub(super) fn each_sample(
+    file: &Container<'_>,
+    scene: &Scene,
+    picture: &Recording,
+    each: &mut dyn FnMut(LitRecording<'_>),
+) -> Result<bool, RunFileError> {
+    if !file.has_text(SAMPLES) {
+        return Ok(false);
+    }
+    let count = file.whole(SAMPLES)?;
+    if !(1..=MAX_SAMPLES).contains(&count) {
+        return Err(contradiction(format!(
+            "there are {count} samples; there must be 1 to {MAX_SAMPLES}"
+        )));
+    }
+    let mut given = lit_inputs::read(file, picture)?;
+    given.settings.check(scene).map_err(|error| contradiction(format!("the settings: {error}")))?;
+    for index in 0..count {
+        let sample = Sample { file, index };
+        let number = sample.place(&mut given)?;
+        match given.settings.integrator {
+            Integrator::Studio(_) => {
+                let samples = vec![sample.whole(number, &given, sample.studio(&given)?)?];
+                let recording = RectangleRecording { given, samples };
+                each(LitRecording::Studio(&recording));
+                given = recording.given;
+            }
+            Integrator::Path(_) | Integrator::Primary(_) => {
+                let samples = vec![sample.whole(number, &given, sample.paths(&given)?)?];
+                let recording = RectangleRecording { given, samples };
+                each(LitRecording::Paths(&recording));
+                given = recording.given;
+            }
+        }
+    }
+    Ok(true)
+}
+
+/// One sample in a file.
+#[derive(Clone, Copy)]
+struct Sample<'a, 'b> {
+    file: &'a Container<'b>,
+    index: u32,
+}
+
+impl Sample<'_, '_> {
+    fn name(self, array: &str) -> String {
+        name_of(self.index, array)
+    }
+
+    /// Reads the rectangle of a sample, and returns the sample's number.
+    fn place(self, given: &mut LitInputs) -> Result<u32, RunFileError> {
+        let [sample, x, y, width, height] =
+            self.file.fixed::<u32, 1, 5>(&self.name("place"))?.map(|[number]| number);
+        let is_inside = |first: u32, size: u32, side: u32| {
+            size > 0 && first.checked_add(size).is_some_and(|end| end <= side)
+        };
+        let film = &given.film;
+        if !is_inside(x, width, film.width()) || !is_inside(y, height, film.height()) {
+            return Err(contradiction(format!(
+                "the rectangle of sample {} is not in the picture",
+                self.index
+            )));
+        }
+        (given.origin, given.size) = ([x, y], [width, height]);
+        Ok(sample)
+    }
+
+    fn states(self, array: &str, shape: &[usize]) -> Result<Vec<PathState>, RunFileError> {
+        let shape = [shape, &[PathState::SLOTS]].concat();
+        let slots = self.file.items::<u32, 4>(&self.name(array), &shape)?;
+        let (all, _) = slots.as_chunks();
+        Ok(all.iter().map(|slots| PathState { slots: *slots }).collect())
+    }
+
+    fn sums(self, array: &str, count: usize) -> Result<Vec<[[u32; 4]; 3]>, RunFileError> {
+        let sums = self.file.items::<u32, 4>(&self.name(array), &[count, 3])?;
+        Ok(sums.as_chunks().0.to_vec())
+    }
+
+    /// The numbers of surfaces and of pixels of a sample.
+    fn shape(self, given: &LitInputs, batches: usize) -> Result<[usize; 2], RunFileError> {
+        let shape = self.file.shape(&self.name("hits"))?;
+        let surfaces = shape.first().copied().unwrap_or_default();
+        let bytes = bytes_in_memory([given.pixels(), surfaces as u64, batches as u64]);
+        if bytes > MAX_SAMPLE_BYTES {
+            return Err(RunFileError::Memory { name: self.name("states"), bytes });
+        }
+        Ok([surfaces, given.pixels() as usize])
+    }
+
+    /// A sample with its surfaces.
+    fn whole<S>(
+        self,
+        sample: u32,
+        given: &LitInputs,
+        surfaces: Vec<S>,
+    ) -> Result<RectangleSample<S>, RunFileError> {
+        let pixels = given.pixels() as usize;
+        let start = self.states("start", &[pixels])?;
+        let (before, after) = (self.sums("before", pixels)?, self.sums("after", pixels)?);
+        Ok(RectangleSample { sample, start, surfaces, film: RecordedFilm { before, after } })
+    }
+
+    fn paths(self, given: &LitInputs) -> Result<Vec<RecordedSurface>, RunFileError> {
+        let Self { file, .. } = self;
+        let shape @ [_, pixels] = self.shape(given, 0)?;
+        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
+        let states = self.states("states", &shape)?;
+        let open = file.numbers::<u32>(&self.name("open"), &shape)?;
+        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).zip(open.chunks(pixels));
+        let surface = |((hits, scattered), open): ((&[_], &[_]), &[_])| RecordedSurface {
+            hits: hits.to_vec(),
+            scattered: scattered.to_vec(),
+            open: open.to_vec(),
+        };
+        Ok(surfaces.map(surface).collect())
+    }
+
+    fn studio(self, given: &LitInputs) -> Result<Vec<StudioSurface>, RunFileError> {
+        let Self { file, .. } = self;
+        let batches = file.shape(&self.name("hidden"))?.get(1).copied().unwrap_or_default();
+        let shape @ [surfaces, pixels] = self.shape(given, batches)?;
+        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
+        let states = self.states("states", &shape)?;
+        let of_lights = [surfaces, batches, pixels];
+        let hidden = file.numbers::<u32>(&self.name("hidden"), &of_lights)?;
+        let radiance = file.items::<u32, 4>(&self.name("radiance"), &of_lights)?;
+        let left = file.numbers::<u32>(&self.name("left"), &of_lights)?;
+        let lights = hidden.chunks(pixels).zip(radiance.chunks(pixels)).zip(left.chunks(pixels));
+        let mut lights = lights.map(|((hidden, radiance), left)| StudioLight {
+            hidden: hidden.to_vec(),
+            radiance: radiance.to_vec(),
+            left: left.to_vec(),
+        });
+        // The others are of ambient light.
+        let of_lights = (given.lighting.light_count.div_ceil(BITS) as usize).min(batches);
+        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).map(|(hits, shaded)| {
+            let (hits, shaded) = (hits.to_vec(), shaded.to_vec());
+            let mut next = |count| lights.by_ref().take(count).collect();
+            let (lights, ambient) = (next(of_lights), next(batches - of_lights));
+            StudioSurface { hits, shaded, lights, ambient }
+        });
+        Ok(surfaces.collect())
+    }
 }

@@ -72,12 +72,8 @@
 mod container;
 mod error;
 mod lit_inputs;
-mod lit_read;
 mod lit_samples;
-mod numbers;
-mod pictures;
 mod read;
-mod surfaces;
 mod write;
 
 use std::collections::BTreeMap;
@@ -86,15 +82,13 @@ use sha2::{Digest, Sha256};
 
 use super::recording::Recording;
 use crate::scene::Scene;
-use container::sink_into;
+use container::{Array, sink_into};
 pub(super) use error::hex;
-use numbers::Array;
 
 pub use error::{RunFileError, VERSION};
 pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
-pub use pictures::ShownPicture;
 pub use read::{RunFile, read};
-pub use write::{Extras, write, write_with};
+pub use write::{Extras, ShownPicture, write, write_with};
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
@@ -132,16 +126,16 @@ pub struct Provenance {
 
 impl Provenance {
     /// Every text field with its key.
-    fn texts(&self) -> [(&'static str, &String); 8] {
+    fn texts(&mut self) -> [(&'static str, &mut String); 8] {
         [
-            ("version", &self.version),
-            ("command", &self.command),
-            ("adapter", &self.adapter),
-            ("backend", &self.backend),
-            ("device_type", &self.device_type),
-            ("driver", &self.driver),
-            ("driver_info", &self.driver_info),
-            ("structure", &self.structure),
+            ("version", &mut self.version),
+            ("command", &mut self.command),
+            ("adapter", &mut self.adapter),
+            ("backend", &mut self.backend),
+            ("device_type", &mut self.device_type),
+            ("driver", &mut self.driver),
+            ("driver_info", &mut self.driver_info),
+            ("structure", &mut self.structure),
         ]
     }
 }

@@ -4,19 +4,21 @@ use std::io::{Cursor, Read, Seek};
 
 use glam::DVec3;
 
-use super::container::{Container, contradiction};
-use super::numbers::Flag;
-use super::pictures::{self, ShownPicture};
-use super::surfaces::with_surfaces;
-use super::{LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_read, scene_sha256};
 use crate::camera::film::{Film, YAxis};
 use crate::camera::{CameraKind, CameraVectors};
-use crate::image::Image;
 use crate::image::color::LinearRgb;
+use crate::image::denoise::GUIDES;
+use crate::image::{Image, LayerSet};
 use crate::parallel::try_map;
 use crate::render::{PrimarySettings, Shading};
-use crate::scene::{Colors, Scene};
+use crate::scene::material::{Material, SurfaceProperties};
+use crate::scene::{Appearance, Colors, Scene};
 use crate::text::shortened;
+use crate::verify::run_file::container::{Container, Flag, contradiction};
+use crate::verify::run_file::write::ShownPicture;
+use crate::verify::run_file::{
+    LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256,
+};
 use crate::verify::{LitRecording, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay};
 
 /// A run file that is open: complete and unaltered, but perhaps with contents that are not valid.
@@ -61,7 +63,7 @@ impl<'a> RunFile<'a> {
         run: &Run,
         each: &mut dyn FnMut(LitRecording<'_>),
     ) -> Result<bool, RunFileError> {
-        lit_read::each_sample(&self.file, &run.scene, &run.recording, each)
+        lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
     }
 
     /// Reads the noisy picture that the device denoised, and what it made of it; `None` if the file has none.
@@ -69,7 +71,7 @@ impl<'a> RunFile<'a> {
     /// # Errors
     /// Returns an error if their shapes are not valid.
     pub fn denoised(&self) -> Result<Option<[Image; 2]>, RunFileError> {
-        pictures::denoised(&self.file)
+        denoised(&self.file)
     }
 
     /// Reads the lit picture that people are shown; `None` if the file has none.
@@ -77,7 +79,7 @@ impl<'a> RunFile<'a> {
     /// # Errors
     /// Returns an error if its shape is not valid.
     pub fn shown(&self) -> Result<Option<ShownPicture>, RunFileError> {
-        pictures::shown(&self.file)
+        shown(&self.file)
     }
 }
 
@@ -177,13 +179,12 @@ fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError>
 }
 
 fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
-    let [height, width, _] = *file.shape("color")? else {
-        return Err(contradiction("the array `color` does not have the shape (H, W, 3)"));
-    };
-    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-    let film = Film::new(side(width), side(height))
-        .map_err(|error| contradiction(format!("the picture: {error}")))?;
-    Ok(film.with_y_axis(named(file, "y_axis", &[YAxis::Up, YAxis::Down], YAxis::name)?))
+    Ok(film_of(file, "color", "the picture")?.with_y_axis(named(
+        file,
+        "y_axis",
+        &[YAxis::Up, YAxis::Down],
+        YAxis::name,
+    )?))
 }
 
 fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
@@ -248,7 +249,6 @@ impl Rays {
 }
 
 fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
-    let text = |key| file.text(key).map(str::to_owned);
     let limits = file.texts().filter_map(|(key, value)| {
         Some(match (key.strip_prefix(LIMIT)?, value.parse()) {
             (name, Ok(limit)) => Ok((name.to_owned(), limit)),
@@ -257,17 +257,12 @@ fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
             }
         })
     });
-    Ok(Provenance {
-        version: text("version")?,
-        command: text("command")?,
-        adapter: text("adapter")?,
-        backend: text("backend")?,
-        device_type: text("device_type")?,
-        driver: text("driver")?,
-        driver_info: text("driver_info")?,
-        structure: text("structure")?,
-        limits: limits.collect::<Result<_, _>>()?,
-    })
+    let limits = limits.collect::<Result<_, _>>()?;
+    let mut provenance = Provenance { limits, ..Provenance::default() };
+    for (key, text) in provenance.texts() {
+        file.text(key)?.clone_into(text);
+    }
+    Ok(provenance)
 }
 
 fn color(name: &str, rgb: [f32; 3]) -> Result<LinearRgb, RunFileError> {
@@ -286,4 +281,89 @@ fn named<T: Copy>(
         .copied()
         .find(|one| name(*one) == text)
         .ok_or_else(|| contradiction(format!("there is no {key} `{}`", shortened(text))))
+}
+
+/// Reads the noisy picture and the denoised one.
+fn denoised(file: &Container<'_>) -> Result<Option<[Image; 2]>, RunFileError> {
+    if !file.has("noisy_color") {
+        return Ok(None);
+    }
+    let film = film_of(file, "noisy_color", "the array `noisy_color`")?;
+    let size = [film.width(), film.height()];
+    let all = [size[1] as usize, size[0] as usize];
+    let other = || contradiction("the pictures of the denoiser have no valid size");
+    let empty = |layers: LayerSet| Image::new(size[0], size[1], layers).map_err(|_| other());
+    let (mut noisy, mut denoised) = (empty(GUIDES)?, empty(LayerSet::COLOR)?);
+    let vectors = |name| file.items::<f32, 3>(name, &all);
+    let numbers = |name| file.numbers::<f32>(name, &all);
+    noisy.set_guides(
+        [vectors("noisy_color")?, vectors("noisy_normal")?, vectors("noisy_albedo")?],
+        [numbers("noisy_depth")?, numbers("noisy_variance")?],
+    );
+    denoised.color_mut().copy_from_slice(&vectors("denoised_color")?);
+    Ok(Some([noisy, denoised]))
+}
+
+/// The film of a picture of three channels, and what that is called in errors.
+fn film_of(file: &Container<'_>, name: &str, what: &str) -> Result<Film, RunFileError> {
+    let [height, width, _] = *file.shape(name)? else {
+        return Err(contradiction(format!("the array `{name}` does not have the shape (H, W, 3)")));
+    };
+    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+    Film::new(side(width), side(height)).map_err(|error| contradiction(format!("{what}: {error}")))
+}
+
+/// Reads the lit picture that people are shown.
+fn shown(file: &Container<'_>) -> Result<Option<ShownPicture>, RunFileError> {
+    if !file.has("shown") {
+        return Ok(None);
+    }
+    let film = film_of(file, "shown", "the array `shown`")?;
+    let size = [film.width(), film.height()];
+    let srgb = file.items("shown", &[size[1] as usize, size[0] as usize])?;
+    let (samples, wanted) = (file.whole("shown_samples")?, file.whole("shown_wanted")?);
+    Ok(Some(ShownPicture { size, srgb, samples, wanted }))
+}
+
+/// The inverse of [`SurfaceProperties::bits`]; `None` if there is no such kind.
+fn surface([kind, a, b, c, opacity]: [f32; 5]) -> Option<SurfaceProperties> {
+    let material = match kind.to_bits() {
+        0 => Material::Lambert { specular: a, roughness: b },
+        bits if bits == 1_f32.to_bits() => Material::Conductor { roughness: a },
+        bits if bits == 2_f32.to_bits() => {
+            let attenuation_distance = (c.to_bits() != 0).then_some(c);
+            Material::Dielectric { ior: a, roughness: b, attenuation_distance }
+        }
+        bits if bits == 3_f32.to_bits() => Material::Emissive { strength: a },
+        _ => return None,
+    };
+    Some(SurfaceProperties { material, opacity })
+}
+
+/// Adds the surfaces of a file with so many spheres; without any, they are the default.
+fn with_surfaces(
+    file: &Container<'_>,
+    appearance: Appearance,
+    spheres: usize,
+) -> Result<Appearance, RunFileError> {
+    if !file.has("surfaces") {
+        return Ok(appearance);
+    }
+    let count = file.shape("surfaces")?.first().copied().unwrap_or_default();
+    let numbers = file.items::<f32, 5>("surfaces", &[count])?;
+    let surfaces = (0..).zip(numbers).map(|(index, numbers): (usize, _)| {
+        let no = |error: String| contradiction(format!("the surface {index}: {error}"));
+        let surface = surface(numbers).ok_or_else(|| no("there is no such material".to_owned()))?;
+        surface.check().map_err(|error| no(error.to_string()))?;
+        Ok(surface)
+    });
+    let surfaces: Vec<_> = surfaces.collect::<Result<_, RunFileError>>()?;
+    if file.has("surface_index") {
+        let indices = file.numbers("surface_index", &[spheres])?;
+        return Ok(appearance.with_surfaces(surfaces, indices));
+    }
+    match surfaces[..] {
+        [surface] => Ok(appearance.with_surface(surface)),
+        _ => Err(contradiction("there are several surfaces, but no array `surface_index`")),
+    }
 }

@@ -1,18 +1,16 @@
 //! Writing of run files.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::io;
+use std::io::Write;
 
-use super::lit_inputs::{LitArrays, view_numbers};
-use super::lit_read::SAMPLES;
-use super::lit_samples::LitSamples;
-use super::numbers::{Array, Flag};
-use super::pictures::{self, ShownPicture};
-use super::surfaces::surface_numbers;
-use super::{LIMIT, Provenance, container, scene_sha256};
 use crate::image::Image;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::{Colors, Scene};
+use crate::verify::run_file::container::{Array, Flag};
+use crate::verify::run_file::lit_inputs::{LitArrays, view_numbers};
+use crate::verify::run_file::lit_samples::{LitSamples, SAMPLES};
+use crate::verify::run_file::{LIMIT, Provenance, container, scene_sha256};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
 /// What a run file may hold besides the picture by one ray for each pixel.
@@ -24,6 +22,19 @@ pub struct Extras<'a> {
     pub denoised: Option<[&'a Image; 2]>,
     /// The lit picture as it is shown to people.
     pub shown: Option<&'a ShownPicture>,
+}
+
+/// A lit picture as people see it. It is not judged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShownPicture {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
+    pub srgb: Vec<[u8; 3]>,
+    /// The number of samples of each pixel.
+    pub samples: u32,
+    /// The number of samples that the scene asks for.
+    pub wanted: u32,
 }
 
 /// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 to 24
@@ -55,20 +66,15 @@ pub fn write_with(
 ) -> io::Result<()> {
     let Recording { camera, uploaded, film, primary, pixels, image, rendered } = recording;
     let shape = [film.height() as usize, film.width() as usize];
-    let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id()) else {
-        return Err(io::Error::other("the recording lacks a layer"));
-    };
-    let count = film.pixel_count();
-    if pixels.len() as u64 != count || [image.height(), image.width()].map(|n| n as usize) != shape
-    {
+    let layers = layers_of(image, shape, "recording", ["color", "depth", "normal", "id"])?;
+    if pixels.len() as u64 != film.pixel_count() {
         return Err(io::Error::other("the recording has another size than its film"));
     }
 
     let mut texts: BTreeMap<String, String> =
-        provenance.texts().map(|(key, text)| (key.to_owned(), text.clone())).into();
-    for (name, limit) in &provenance.limits {
-        texts.insert(format!("{LIMIT}{name}"), limit.to_string());
-    }
+        provenance.clone().texts().map(|(key, text)| (key.to_owned(), text.clone())).into();
+    let limits = provenance.limits.iter();
+    texts.extend(limits.map(|(name, limit)| (format!("{LIMIT}{name}"), limit.to_string())));
     for (key, text) in [
         ("camera", camera.kind.name()),
         ("y_axis", film.y_axis().name()),
@@ -76,15 +82,12 @@ pub fn write_with(
     ] {
         texts.insert(key.to_owned(), text.to_owned());
     }
-    match rendered {
-        Rendered::None => {}
-        Rendered::Same => {
-            texts.insert("rendered".to_owned(), "same".to_owned());
-        }
-        Rendered::Other(_) => {
-            texts.insert("rendered".to_owned(), "other".to_owned());
-        }
-    }
+    let is_rendered = match rendered {
+        Rendered::None => None,
+        Rendered::Same => Some("same"),
+        Rendered::Other(_) => Some("other"),
+    };
+    texts.extend(is_rendered.map(|text| ("rendered".to_owned(), text.to_owned())));
     texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
 
     let vectors = &camera.vectors;
@@ -108,7 +111,8 @@ pub fn write_with(
     };
     let indices = indices.filter(|indices| !indices.is_empty());
     let appearance = scene.appearance();
-    let surfaces: Vec<[f32; 5]> = appearance.surfaces().iter().map(surface_numbers).collect();
+    let surfaces: Vec<[f32; 5]> =
+        appearance.surfaces().iter().map(|surface| surface.bits().map(f32::from_bits)).collect();
     let given = light.and_then(LitSamples::given);
     let lit = given.map(LitArrays::new);
     let mut arrays = vec![
@@ -126,25 +130,11 @@ pub fn write_with(
         Array::new("shading_distance", &shape, pixels, move |pixel| [shading(pixel).distance]),
         Array::new("hit_t", &shape, pixels, |pixel| [pixel.t]),
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
-        Array::new("color", &shape, image.color(), |color| *color),
-        Array::new("depth", &shape, depth, |depth| [*depth]),
-        Array::new("normal", &shape, normal, |normal| *normal),
-        Array::new("id", &shape, id, |id| [*id]),
     ];
+    arrays.extend(layers);
     if let Rendered::Other(image) = rendered {
-        let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id())
-        else {
-            return Err(io::Error::other("the rendered picture lacks a layer"));
-        };
-        if [image.height(), image.width()].map(|n| n as usize) != shape {
-            return Err(io::Error::other("the rendered picture has another size than its film"));
-        }
-        arrays.extend([
-            Array::new("rendered_color", &shape, image.color(), |color| *color),
-            Array::new("rendered_depth", &shape, depth, |depth| [*depth]),
-            Array::new("rendered_normal", &shape, normal, |normal| *normal),
-            Array::new("rendered_id", &shape, id, |id| [*id]),
-        ]);
+        let names = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
+        arrays.extend(layers_of(image, shape, "rendered picture", names)?);
     }
     arrays.extend(
         palette.map(|palette| {
@@ -180,10 +170,73 @@ pub fn write_with(
         arrays.extend(samples.arrays());
     }
     if let Some(denoised) = denoised {
-        pictures::add_denoised(denoised, &mut arrays)?;
+        add_denoised(denoised, &mut arrays)?;
     }
     if let Some(shown) = shown {
-        pictures::add_shown(shown, &mut arrays, &mut texts)?;
+        add_shown(shown, &mut arrays, &mut texts)?;
     }
     container::write(texts, arrays, out)
+}
+
+/// The layers of a picture as arrays with these names.
+fn layers_of<'a>(
+    image: &'a Image,
+    shape: [usize; 2],
+    what: &str,
+    names: [&'static str; 4],
+) -> io::Result<[Array<'a>; 4]> {
+    let (Some(depths), Some(normals), Some(ids)) = (image.depth(), image.normal(), image.id())
+    else {
+        return Err(io::Error::other(format!("the {what} lacks a layer")));
+    };
+    if [image.height(), image.width()].map(|n| n as usize) != shape {
+        return Err(io::Error::other(format!("the {what} has another size than its film")));
+    }
+    let [color, depth, normal, id] = names;
+    Ok([
+        Array::new(color, &shape, image.color(), |color| *color),
+        Array::new(depth, &shape, depths, |depth| [*depth]),
+        Array::new(normal, &shape, normals, |normal| *normal),
+        Array::new(id, &shape, ids, |id| [*id]),
+    ])
+}
+
+fn shape(image: &Image) -> [usize; 2] {
+    [image.height() as usize, image.width() as usize]
+}
+
+fn add_denoised<'a>(
+    [noisy, denoised]: [&'a Image; 2],
+    arrays: &mut Vec<Array<'a>>,
+) -> io::Result<()> {
+    let layers = (noisy.normal(), noisy.depth(), noisy.albedo(), noisy.variance());
+    let (Some(normal), Some(depth), Some(albedo), Some(variance)) = layers else {
+        return Err(io::Error::other("the noisy picture lacks a layer"));
+    };
+    let size = shape(noisy);
+    arrays.extend([
+        Array::new("noisy_color", &size, noisy.color(), |color| *color),
+        Array::new("noisy_normal", &size, normal, |normal| *normal),
+        Array::new("noisy_depth", &size, depth, |depth| [*depth]),
+        Array::new("noisy_albedo", &size, albedo, |albedo| *albedo),
+        Array::new("noisy_variance", &size, variance, |variance| [*variance]),
+        Array::new("denoised_color", &shape(denoised), denoised.color(), |color| *color),
+    ]);
+    Ok(())
+}
+
+fn add_shown<'a>(
+    shown: &'a ShownPicture,
+    arrays: &mut Vec<Array<'a>>,
+    texts: &mut BTreeMap<String, String>,
+) -> io::Result<()> {
+    let ShownPicture { size: [width, height], srgb, samples, wanted } = shown;
+    if u64::from(*width) * u64::from(*height) != srgb.len() as u64 {
+        return Err(io::Error::other("the shown picture does not have the size that it names"));
+    }
+    let size = [*height as usize, *width as usize];
+    arrays.push(Array::new("shown", &size, srgb, |pixel| *pixel));
+    texts.insert("shown_samples".to_owned(), samples.to_string());
+    texts.insert("shown_wanted".to_owned(), wanted.to_string());
+    Ok(())
 }

@@ -1,29 +1,30 @@
-//! The check of light that is added to a surface. The WGSL twins are `shaders/studio/illuminate.wgsl`, `gather.wgsl` and
-//! `reflected.wgsl`.
+//! The check of light that is added to a surface, and of shadow catchers. The WGSL twins are
+//! `shaders/studio/illuminate.wgsl`, `gather.wgsl`, `reflected.wgsl` and `catcher.wgsl`.
 
-use crate::light::codes::lamp::HEAD;
+use crate::image::color::LUMINANCE;
+use crate::light::codes::lamp::{DIRECTIONAL, HEAD, SPHERE};
 use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::lamp::{cone_of_sphere, pi};
 use crate::verify::lit::material::mirrors_brdf;
-use crate::verify::lit::recording::slot;
-use crate::verify::lit::warp::pi;
+use crate::verify::lit::recording::{flag, slot};
 use crate::verify::number::{Number, Vector};
 
 /// A change of radiance and opacity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Change {
-    pub(super) radiance: Vector,
-    pub(super) opacity: Number,
+pub(crate) struct Change {
+    pub(crate) radiance: Vector,
+    pub(crate) opacity: Number,
 }
 
 impl Change {
-    pub(super) const NONE: Self = Self { radiance: Vector::ZERO, opacity: Number::ZERO };
+    pub(crate) const NONE: Self = Self { radiance: Vector::ZERO, opacity: Number::ZERO };
 
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self { radiance: self.radiance + other.radiance, opacity: self.opacity + other.opacity }
     }
 
     /// The changes between both.
-    pub(super) fn union(self, other: Self) -> Self {
+    pub(crate) fn union(self, other: Self) -> Self {
         Self {
             radiance: self.radiance.zip(other.radiance, Number::union),
             opacity: self.opacity.union(other.opacity),
@@ -33,7 +34,7 @@ impl Change {
 
 impl Kernel<'_> {
     /// What a light adds. `total` is the luminance of all lights on a shadow catcher.
-    pub(super) fn light_added(&mut self, light: u32, is_hidden: bool, total: Number) -> Change {
+    pub(crate) fn light_added(&mut self, light: u32, is_hidden: bool, total: Number) -> Change {
         if self.is_caught() {
             if !is_hidden {
                 return Change::NONE;
@@ -59,7 +60,7 @@ impl Kernel<'_> {
     }
 
     /// What directions of ambient light add, of which some are hidden.
-    pub(super) fn ambient_added(&mut self, count: u32, hidden: u32, total: Number) -> Change {
+    pub(crate) fn ambient_added(&mut self, count: u32, hidden: u32, total: Number) -> Change {
         let lighting = self.lighting();
         let share = Number::ONE / Number::known(lighting.occlusion_samples.max(1).into());
         let hidden_count = Number::known(hidden.into());
@@ -103,4 +104,72 @@ impl Kernel<'_> {
 
 fn cross(Vector([a, b, c]): Vector, Vector([x, y, z]): Vector) -> Vector {
     Vector([b * z - c * y, c * x - a * z, a * y - b * x])
+}
+
+fn luminance(color: [f32; 3]) -> Number {
+    Vector::recorded(color).dot(Vector(LUMINANCE.map(Number::constant)))
+}
+
+impl Kernel<'_> {
+    /// Whether only shadows are seen of the surface.
+    pub(crate) fn is_caught(&self) -> bool {
+        self.before.number(slot::ALBEDO) > 0.0
+    }
+
+    /// The luminance of ambient light.
+    pub(crate) fn ambient_luminance(&self) -> Number {
+        luminance(self.lighting().ambient)
+    }
+
+    /// The luminance that the centre of a light contributes to the ground.
+    pub(crate) fn central_light(&mut self, light: u32) -> Number {
+        let at = light.saturating_mul(3);
+        let [x, y, z, _] = self.table_numbers(at);
+        let [r, g, b, size] = self.table_numbers(at.saturating_add(1));
+        let (place, size) = (Vector::recorded([x, y, z]), Number::recorded(size));
+        let kind = self.table(at)[3];
+        if kind == HEAD {
+            return Number::ZERO;
+        }
+        let position = Vector::recorded(self.before.vector(slot::ORIGIN));
+        let (axis, strength) = if kind == DIRECTIONAL {
+            (place, Number::TWO / (Number::TWO - size))
+        } else {
+            let toward = place - position;
+            let distance = toward.fence().squared().max(Number::constant(1e-30)).sqrt();
+            let strength = if kind == SPHERE {
+                let is_outside = self.choices.decide(size.is_less(distance));
+                let cone = if is_outside { cone_of_sphere(size, distance) } else { Number::TWO };
+                Number::TWO * cone
+            } else {
+                Number::ONE / distance.squared()
+            };
+            (toward.fence().map(|c| c / distance), strength)
+        };
+        let normal = Vector::recorded(self.lighting().ground_normal);
+        luminance([r, g, b]) * strength * normal.dot(axis).max(Number::ZERO)
+    }
+
+    /// The luminance that all lights together contribute, or 1 if there is no light.
+    pub(crate) fn light_to_catch(&mut self) -> Number {
+        if !self.is_caught() {
+            return Number::ONE;
+        }
+        let lights = 0..self.lighting().light_count;
+        let sum =
+            lights.fold(self.ambient_luminance(), |sum, light| sum + self.central_light(light));
+        // No term is negative.
+        let is_none = if sum.is_zero() { Some(true) } else { sum.is_above_zero().map(|is| !is) };
+        if self.choices.decide(is_none) { Number::ONE } else { sum }
+    }
+
+    /// The change of radiance and opacity if a share of all light is missing on the ground.
+    pub(crate) fn caught(&self, share: Number) -> (Vector, Number) {
+        let lighting = self.lighting();
+        let alpha = Number::recorded(self.before.number(slot::ALBEDO)) * share;
+        if lighting.flags & flag::TRANSPARENT != 0 {
+            return (Vector::ZERO, alpha);
+        }
+        (-(Vector::recorded(lighting.background) * alpha), alpha)
+    }
 }

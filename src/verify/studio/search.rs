@@ -1,34 +1,36 @@
 //! The check of whether light is hidden from a surface. The WGSL twins are `shaders/studio/hidden_light.wgsl`,
-//! `shadow.wgsl` and `ambient.wgsl`.
+//! `shadow.wgsl` and `ambient.wgsl`. Rays towards lights are not stored: where such a ray starts is known exactly, its
+//! direction up to an error.
 
-use super::occlusion::Aimed;
+use glam::DVec3;
+
 use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
-use crate::verify::candidates::Candidates;
-use crate::verify::hit::legal_hit;
-use crate::verify::lit::alternatives::Doubts;
+use crate::verify::camera::{BoxCrossing, Crossed, SMALLEST_COMPONENT};
+use crate::verify::hit::{Candidates, legal_hit};
 use crate::verify::lit::kernel::Kernel;
-use crate::verify::lit::lamp::Lamp;
+use crate::verify::lit::lamp::{Lamp, axes_around, cosine_direction};
 use crate::verify::lit::recording::{flag, slot};
-use crate::verify::lit::search::{hides, is_same};
-use crate::verify::lit::warp::{axes_around, cosine_direction};
+use crate::verify::lit::search::{Doubts, hides, is_same};
 use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
+use crate::verify::sphere::{Line, Slack};
 
 /// Whether light may be hidden, and whether it must be.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Hidden {
-    pub(super) may: bool,
-    pub(super) must: bool,
+pub(crate) struct Hidden {
+    pub(crate) may: bool,
+    pub(crate) must: bool,
     /// The spheres that may hide it and need not.
-    pub(super) doubts: Doubts,
+    pub(crate) doubts: Doubts,
 }
 
 impl Hidden {
-    pub(super) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
+    pub(crate) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
     const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
 
     /// The answers to several questions of which one is asked.
-    pub(super) fn or(self, other: Self) -> Self {
+    pub(crate) fn or(self, other: Self) -> Self {
         Self {
             may: self.may || other.may,
             must: self.must && other.must,
@@ -38,16 +40,16 @@ impl Hidden {
 }
 
 /// The first pair of random numbers of a surface. `shaders/studio/shadow.wgsl` has the same numbers.
-pub(super) const PAIRS: u32 = 4096;
+pub(crate) const PAIRS: u32 = 4096;
 
 impl Kernel<'_> {
     /// Whether lights of this kind are searched for.
-    pub(super) fn casts_shadow(&self, light: u32) -> bool {
+    pub(crate) fn casts_shadow(&self, light: u32) -> bool {
         self.lighting().flags & flag::SHADOWS != 0 && self.table(light.saturating_mul(3))[3] != HEAD
     }
 
     /// The point of a light, as it is chosen for this surface.
-    pub(super) fn lamp_of_surface(&mut self, light: u32) -> Lamp {
+    pub(crate) fn lamp_of_surface(&mut self, light: u32) -> Lamp {
         let number = 2 + PAIRS.wrapping_mul(self.address.surface).wrapping_add(light);
         let u = self.numbers(self.address.sample, number);
         let position = Vector::recorded(self.before.vector(slot::ORIGIN));
@@ -61,7 +63,7 @@ impl Kernel<'_> {
     }
 
     /// Whether a light is hidden from the surface; a light behind it is not searched for.
-    pub(super) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Hidden {
+    pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Hidden {
         let Lamp { direction, distance, .. } = self.lamp_of_surface(light);
         let normal = Vector::recorded(self.before.vector(slot::NORMAL));
         if !self.choices.decide(normal.dot(direction).is_above_zero()) {
@@ -71,7 +73,7 @@ impl Kernel<'_> {
     }
 
     /// Whether something is near in a direction of ambient light.
-    pub(super) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Hidden {
+    pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Hidden {
         let lighting = self.lighting();
         let sample =
             self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
@@ -141,4 +143,96 @@ impl Kernel<'_> {
         found.must &= !ray.may_miss_box && rest.low > 0.0;
         found
     }
+}
+
+/// The largest error of a direction, above which nothing is said.
+const MOST_TURNED: f64 = 0.01;
+
+/// The largest distance of a box, above which nothing is said. All lengths are smaller.
+const MOST_DISTANT: f64 = 1e30;
+
+/// A ray that starts where it enters the box of the spheres that cast shadows.
+pub(crate) struct Aimed {
+    pub(crate) line: Line,
+    pub(crate) slack: Slack,
+    /// The distance at which the ray enters the box.
+    pub(crate) enter: Interval,
+    /// Whether the device may find that the ray hits the box, and whether it may find that it does not.
+    pub(crate) may_hit_box: bool,
+    pub(crate) may_miss_box: bool,
+}
+
+impl Aimed {
+    /// All rays from a point in a direction; `None` if the direction is hardly known, or where they enter the box.
+    pub(crate) fn new([low, high]: [DVec3; 2], origin: DVec3, direction: Vector) -> Option<Self> {
+        let axes = direction.intervals();
+        let middle = DVec3::from(axes.map(|axis| 0.5 * (axis.low + axis.high)));
+        let half = DVec3::from(axes.map(|axis| 0.5 * (axis.high - axis.low)));
+        // The error of the middle is that of an addition in f64.
+        let turned = PAD * half.length() + 4.0 * f64::EPSILON * middle.length();
+        // False also for NaN.
+        let is_known = turned <= MOST_TURNED;
+        if !is_known {
+            return None;
+        }
+        let mut crossing = BoxCrossing::default();
+        for axis in 0..3 {
+            crossing.cut(slab([low[axis], high[axis]], origin[axis], axes[axis]));
+        }
+        let BoxCrossing { enter, leave } = crossing;
+        if enter.high > MOST_DISTANT {
+            return None;
+        }
+        // The squared length of the device's direction d', which has about unit length and is within `turned` of the
+        // middle d, is off by no more than that of d by 2 turned + turned². Searches of the checker widen boxes by
+        // twice the bend times the longest vector, which is therefore more than the ray is beside.
+        let mut line = Line::exact(origin, middle);
+        line.bend += 2.5 * turned;
+        let (may_hit_box, may_miss_box) = (enter.low <= leave.high, enter.high > leave.low);
+        let (mut across, mut along) = (0.0, 0.0);
+        if enter.high > 0.0 {
+            let start = 0.5 * (enter.low + enter.high);
+            let moved = start * middle;
+            // The error of the start: two roundings of a product and a sum, and the error of the direction.
+            let rounded = PAD * gamma(6) * (origin.abs() + moved.abs()) + DVec3::splat(2.0 * FLUSH);
+            across = rounded.length() + PAD * enter.high * turned;
+            along = across + enter.high - start;
+            line.origin = origin + moved;
+        }
+        let slack = Slack { across, along, direction: turned };
+        Some(Self { line, slack, enter, may_hit_box, may_miss_box })
+    }
+}
+
+/// The distances at which a ray meets the planes that bound a box along an axis: the nearer and the farther one.
+fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> Crossed {
+    let sizes =
+        [direction.low.abs(), direction.high.abs()].map(|size| size.max(SMALLEST_COMPONENT));
+    let is_positive = direction.low >= 0.0;
+    if !is_positive && direction.high >= 0.0 {
+        // The sign of the direction is unknown. From between the planes one of them lies behind and one ahead.
+        let is_between = low < origin && origin < high;
+        let nearest = (origin - low).min(high - origin) / sizes[0].max(sizes[1]);
+        let everything = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        return if is_between {
+            let behind = Interval { low: f64::NEG_INFINITY, high: 0.0 };
+            Crossed {
+                near: behind,
+                far: Interval { low: nearest * (1.0 - 8.0 * U), high: f64::INFINITY },
+            }
+        } else {
+            Crossed { near: everything, far: everything }
+        };
+    }
+    let [least, most] = [sizes[0].min(sizes[1]), sizes[0].max(sizes[1])];
+    let sign = if is_positive { 1.0 } else { -1.0 };
+    let plane = |plane: f64| {
+        let away = sign * (plane - origin);
+        let ends = [away / least, away / most];
+        let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        // Errors of the difference, the reciprocal of the direction and their product.
+        let error = |end: f64| PAD * (DIVIDE + 5.0 * U) * end.abs() + 2.0 * FLUSH / least + FLUSH;
+        Interval { low: a - error(a), high: b + error(b) }
+    };
+    Crossed::between(plane(low), plane(high))
 }

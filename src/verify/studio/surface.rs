@@ -2,12 +2,12 @@
 //! `shaders/studio/surface.wgsl`.
 
 use crate::image::NO_ID;
-use crate::verify::lit::expected::Mismatch;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::judge::Mismatch;
 use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::kernel::Vertex;
 use crate::verify::lit::material::Material;
 use crate::verify::lit::recording::{flag, slot};
-use crate::verify::lit::stage::LitStage;
-use crate::verify::lit::vertex::Vertex;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
@@ -31,7 +31,7 @@ const KEPT: Name = (LitStage::Surface, "an unchanged part of the ray's state");
 
 /// What a ray has met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Met {
+pub(crate) enum Met {
     Nothing,
     /// A surface that shines and is not lit.
     Emitter,
@@ -41,7 +41,7 @@ pub(super) enum Met {
 
 impl Kernel<'_> {
     /// Follows the kernel, and compares its output.
-    pub(super) fn follow_surface(&mut self, is_last: bool) -> Result<Met, Mismatch> {
+    pub(crate) fn follow_surface(&mut self, is_last: bool) -> Result<Met, Mismatch> {
         let (before, after, lighting) = (self.before, self.after, self.lighting());
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
         let shown = Vector::recorded(if is_transparent { [0.0; 3] } else { lighting.background });

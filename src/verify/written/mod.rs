@@ -1,7 +1,7 @@
 //! Pictures as they stand in files: whether every sample is one that a conforming device may have led to.
 //!
 //! A file has no rays, depths or normals. So a pixel is judged against all rays together that a device may compute for
-//! it (`verify/camera/any.rs`), the spheres that these may hit, the normals that the kernel may find there, and the
+//! it (`verify/camera/entered.rs`), the spheres that these may hit, the normals that the kernel may find there, and the
 //! colours that follow. An interval of colours becomes an interval of samples, because exposure, tone curve and the
 //! transfer function of sRGB are computed by the host, in the same way everywhere. For most pixels of a picture with 8
 //! bits it holds one or two samples.
@@ -9,21 +9,17 @@
 //! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). Pictures with light are estimates; they
 //! are judged by [`means`](super::means).
 
-mod color;
 mod samples;
 
 use std::fmt;
 
 pub use samples::{Samples, WrittenError, WrittenPicture};
 
-use color::PictureCheck;
-use samples::{LegalSample, Mapping};
+use samples::{LegalSample, Mapping, PictureCheck};
 
-use super::certificate::{KEPT, Verdict};
+use super::certificate::{KEPT, Outcome, Verdict, channel_name, pixel_at};
 use super::checker::Checker;
 use super::hit::LegalHits;
-use super::outcome::Outcome;
-use super::violation::channel_name;
 use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::render::PrimarySettings;
@@ -74,13 +70,13 @@ impl WrittenCertificate {
     /// The number of pixels with a verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
-        self.verdicts.iter().filter(|of_pixel| **of_pixel == verdict).count()
+        verdict.count(&self.verdicts)
     }
 
     /// The number of pixels for which several answers are legal, of which the picture shows one.
     #[must_use]
     pub fn undecided(&self) -> usize {
-        self.count(Verdict::Silhouette) + self.count(Verdict::Tie)
+        Verdict::undecided(&self.verdicts)
     }
 
     /// The outcome of the picture.
@@ -89,13 +85,6 @@ impl WrittenCertificate {
         let all = self.verdicts.len() as u64;
         Outcome::of(!self.violations.is_empty(), self.undecided() as u64, all)
     }
-}
-
-/// What was found about a range of pixels.
-#[derive(Default)]
-struct Part {
-    verdicts: Vec<Verdict>,
-    violations: Vec<WrittenViolation>,
 }
 
 impl Checker<'_> {
@@ -113,13 +102,13 @@ impl Checker<'_> {
         picture.check(size)?;
         let check = PictureCheck::new(self, view, primary);
         let mapping = Mapping::new(picture, primary);
-        let width = size[0] as usize;
-        let count = width * size[1] as usize;
+        let empty = || WrittenCertificate { size, verdicts: Vec::new(), violations: Vec::new() };
+        let count = size[0] as usize * size[1] as usize;
         let parts = map_parts(ranges(count, CHUNK), |range| {
-            let mut part = Part::default();
+            let mut part = empty();
             let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
             for index in range {
-                let pixel = [(index % width) as u32, (index / width) as u32];
+                let pixel = pixel_at(index, size[0]);
                 let verdict = check.legal(pixel, &mut hits, &mut colors);
                 let allowed: Vec<_> = colors.iter().map(|color| mapping.samples(color)).collect();
                 let found = picture.at(index, mapping.channels());
@@ -135,11 +124,7 @@ impl Checker<'_> {
             part.violations.truncate(KEPT);
             part
         });
-        let mut certificate = WrittenCertificate {
-            size,
-            verdicts: Vec::with_capacity(count),
-            violations: Vec::new(),
-        };
+        let mut certificate = empty();
         for part in parts {
             certificate.verdicts.extend(part.verdicts);
             let room = KEPT.saturating_sub(certificate.violations.len());
@@ -154,11 +139,11 @@ impl Checker<'_> {
     pub fn ties(&self, view: &View<'_>) -> Vec<bool> {
         let primary = PrimarySettings::default();
         let check = PictureCheck::new(self, view, &primary);
-        let width = view.film.width() as usize;
-        let parts = map_parts(ranges(width * view.film.height() as usize, CHUNK), |range| {
+        let count = view.film.pixel_count() as usize;
+        let parts = map_parts(ranges(count, CHUNK), |range| {
             let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
             let is_tie = |index: usize| {
-                let pixel = [(index % width) as u32, (index / width) as u32];
+                let pixel = pixel_at(index, view.film.width());
                 check.legal(pixel, &mut hits, &mut colors) == Verdict::Tie
             };
             range.map(is_tie).collect::<Vec<bool>>()

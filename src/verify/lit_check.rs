@@ -1,45 +1,77 @@
-//! The check of all stages of all samples of a recording.
+//! The check of all stages of all samples of a recording, along paths or in a studio.
 
-use super::light::Change;
-use super::recording::{BITS, StudioLight, StudioRecording, StudioSample};
-use super::search::Hidden;
-use super::surface::Met;
-use crate::verify::camera::CameraModel;
-use crate::verify::checker::Checker;
-use crate::verify::choices::Choices;
-use crate::verify::hit::LegalHits;
-use crate::verify::lit::certificate::LitCertificate;
-use crate::verify::lit::expected::{Expected, Mismatch};
-use crate::verify::lit::judge::{
-    Judged, StageOutcome, along_choices, judge_pixels, searched, unchanged,
+use super::camera::CameraModel;
+use super::checker::Checker;
+use super::choices::Choices;
+use super::hit::LegalHits;
+use super::lit::certificate::{LitCertificate, LitStage};
+use super::lit::film::{check_sums, judge_start};
+use super::lit::judge::{
+    Expected, Judged, Mismatch, StageOutcome, along_choices, judge_pixels, searched, unchanged,
 };
-use crate::verify::lit::kernel::{Address, Hit, Kernel};
-use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
-use crate::verify::lit::search::{self, Searched};
-use crate::verify::lit::stage::LitStage;
-use crate::verify::lit::{film, start, upload};
-use crate::verify::number::{Number, Vector};
+use super::lit::kernel::{Address, Hit, Kernel};
+use super::lit::recording::{
+    BITS, LitInputs, LitRecording, LitSurface, NO_EMITTER, PathRecording, PathState,
+    RecordedSample, RectangleRecording, RectangleSample, StudioLight, StudioRecording,
+    StudioSample, flag, slot,
+};
+use super::lit::search::{Searched, check_hit, check_open};
+use super::lit::upload;
+use super::number::{Number, Vector};
+use super::paths::kernel::radiance_so_far;
+use super::studio::light::Change;
+use super::studio::search::Hidden;
+use super::studio::surface::Met;
+use crate::scene::material::{Material, SurfaceProperties};
 
-const ENDED: (LitStage, &str) = (LitStage::Surface, "a ray that has ended");
+/// The stage and the name of a number, for reports.
+type Name = (LitStage, &'static str);
+
+const ENDED_PATH: Name = (LitStage::Scatter, "a path that has ended");
+const ENDED_RAY: Name = (LitStage::Surface, "a ray that has ended");
 
 /// The data with which samples are judged.
-struct StudioCheck<'a> {
+struct LitCheck<'a> {
     checker: &'a Checker<'a>,
     inputs: &'a LitInputs,
     model: CameraModel,
-}
-
-/// Which of two kinds of light a [`StudioLight`] holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Lights,
-    Ambient,
+    is_matt: bool,
 }
 
 impl Checker<'_> {
     /// Judges every stage of every sample. The recording must be of the scene of this checker.
     #[must_use]
+    pub fn certify_lit(&self, recording: LitRecording<'_>) -> LitCertificate {
+        match recording {
+            LitRecording::Paths(recording) => self.certify_paths(recording),
+            LitRecording::Studio(recording) => self.certify_studio(recording),
+        }
+    }
+
+    /// Judges every stage of every path. The recording must be of the scene of this checker.
+    #[must_use]
+    pub fn certify_paths(&self, recording: &PathRecording) -> LitCertificate {
+        self.certify_samples(recording, |check, sample, index, part, legal| {
+            check.judge_path(sample, index, part, legal);
+        })
+    }
+
+    /// Judges every stage of every sample. The recording must be of the scene of this checker.
+    #[must_use]
     pub fn certify_studio(&self, recording: &StudioRecording) -> LitCertificate {
+        let certificate = self.certify_samples(recording, |check, sample, index, part, legal| {
+            check.judge_sample(sample, index, part, legal);
+        });
+        LitCertificate { is_studio: true, ..certificate }
+    }
+
+    /// `judge` is called with the index of a pixel.
+    fn certify_samples<S: LitSurface>(
+        &self,
+        recording: &RectangleRecording<S>,
+        judge: impl Fn(&LitCheck<'_>, &RectangleSample<S>, usize, &mut LitCertificate, &mut LegalHits)
+        + Sync,
+    ) -> LitCertificate {
         let given = &recording.given;
         let upload = upload::check(self.scene, &self.candidates, given)
             .and_then(|()| recording.check_size())
@@ -48,25 +80,75 @@ impl Checker<'_> {
             upload,
             film_pixels: given.film.pixel_count(),
             film_samples: given.settings.sampling.samples,
-            is_studio: true,
             rectangles: vec![given.rectangle()],
             ..LitCertificate::default()
         };
         if certificate.upload.is_some() {
             return certificate;
         }
-        let model = CameraModel::new(given.camera.kind, &given.uploaded, &given.film);
-        let check = StudioCheck { checker: self, inputs: given, model };
+        let is_matt = |surface: &SurfaceProperties| match surface.material {
+            Material::Lambert { specular, .. } => specular == 0.0,
+            Material::Emissive { .. } => true,
+            Material::Conductor { .. } | Material::Dielectric { .. } => false,
+        };
+        let check = LitCheck {
+            checker: self,
+            inputs: given,
+            model: CameraModel::new(given.camera.kind, &given.uploaded, &given.film),
+            is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
+        };
         for sample in &recording.samples {
             certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
-                check.judge_sample(sample, index, part, legal);
+                judge(&check, sample, index, part, legal);
             }));
         }
         certificate
     }
 }
 
-impl StudioCheck<'_> {
+impl LitCheck<'_> {
+    fn judge_path(
+        &self,
+        recorded: &RecordedSample,
+        index: usize,
+        part: &mut LitCertificate,
+        legal: &mut LegalHits,
+    ) {
+        let (mut address, mut state) = self.start(recorded, index, part);
+        let mut last = None;
+        for (surface, stage) in (0..).zip(&recorded.surfaces) {
+            address.surface = surface;
+            let after = stage.scattered[index];
+            if state.has(flag::ALIVE) {
+                let hit = Hit::new(stage.hits[index]);
+                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
+                part.note(LitStage::Scatter, address, self.scatter(address, &state, hit, &after));
+                last = Some(hit);
+            } else if let Err(mismatch) = unchanged(ENDED_PATH, [&state, &after]) {
+                part.note(LitStage::Scatter, address, Err(mismatch));
+            }
+            let open = f32::from_bits(stage.open[index]);
+            let is_searched = surface < self.inputs.max_surfaces
+                && self.inputs.lighting.source_count > 0
+                && after.number(slot::SHADOW) > 0.0;
+            if is_searched {
+                part.note(LitStage::Occlude, address, self.occlude(&after, open));
+            } else if stage.open[index] != after.bits(slot::PENDING) {
+                let words = format!("{open:?}, without a search");
+                let what = "the visibility of the light";
+                let fail = Expected::default().fail(LitStage::Occlude, what, words);
+                part.note(LitStage::Occlude, address, Err(fail));
+            }
+            state = after.with_visibility(stage.open[index]);
+        }
+        let color = radiance_so_far(&state);
+        if state.has(flag::ALIVE) {
+            part.note(LitStage::Extend, address, Err(unfinished("path")));
+        }
+        let sums = check_sums(color, &state, &recorded.film, index);
+        part.note(LitStage::Accumulate, address, sums);
+    }
+
     fn judge_sample(
         &self,
         recorded: &StudioSample,
@@ -74,11 +156,7 @@ impl StudioCheck<'_> {
         part: &mut LitCertificate,
         legal: &mut LegalHits,
     ) {
-        let pixel = self.inputs.pixel(index);
-        let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
-        let mut state = recorded.start[index];
-        let started = start::judge(self.inputs, &self.model, address, &state);
-        part.note(LitStage::Start, address, started);
+        let (mut address, mut state) = self.start(recorded, index, part);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -91,7 +169,7 @@ impl StudioCheck<'_> {
                 let (result, found) = self.surface(address, &state, hit, &after);
                 part.note(LitStage::Surface, address, result);
                 (met, last) = (found, Some(hit));
-            } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
+            } else if let Err(mismatch) = unchanged(ENDED_RAY, [&state, &after]) {
                 part.note(LitStage::Surface, address, Err(mismatch));
             }
             for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
@@ -104,13 +182,31 @@ impl StudioCheck<'_> {
             state = after;
         }
         if state.has(flag::ALIVE) {
-            let words = "the ray was not followed to its end".to_owned();
-            let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
-            part.note(LitStage::Extend, address, Err(fail));
+            part.note(LitStage::Extend, address, Err(unfinished("ray")));
         }
         let color = Vector::recorded(state.vector(slot::RADIANCE));
-        let sums = film::check(color, &state, &recorded.film, index);
+        let sums = check_sums(color, &state, &recorded.film, index);
         part.note(LitStage::Accumulate, address, sums);
+    }
+
+    /// Judges the state of a path at the camera, and returns it with its address.
+    fn start<S>(
+        &self,
+        recorded: &RectangleSample<S>,
+        index: usize,
+        part: &mut LitCertificate,
+    ) -> (Address, PathState) {
+        let pixel = self.inputs.pixel(index);
+        let address = Address { pixel, sample: recorded.sample, surface: 0 };
+        let state = recorded.start[index];
+        let started = judge_start(self.inputs, &self.model, address, &state);
+        part.note(LitStage::Start, address, started);
+        (address, state)
+    }
+
+    fn searched(&self) -> Searched<'_> {
+        let Checker { scene, candidates, .. } = self.checker;
+        Searched { model: &self.model, scene, candidates }
     }
 
     fn extend(
@@ -120,11 +216,36 @@ impl StudioCheck<'_> {
         hit: Hit,
         legal: &mut LegalHits,
     ) -> Result<Judged, Mismatch> {
-        let Checker { scene, candidates, .. } = self.checker;
-        let given = Searched { model: &self.model, scene, candidates };
         let mut expected = Expected::default();
-        let is_open = search::check_hit(given, state, last, hit, &mut expected, legal)?;
+        let is_open = check_hit(self.searched(), state, last, hit, &mut expected, legal)?;
         Ok(searched(is_open, || legal.alternatives()))
+    }
+
+    fn scatter(
+        &self,
+        address: Address,
+        before: &PathState,
+        hit: Hit,
+        after: &PathState,
+    ) -> Result<Judged, Mismatch> {
+        along_choices(|choices| {
+            let mut kernel = self.kernel(address, before, choices);
+            (kernel.hit, kernel.after) = (hit, after);
+            kernel.follow()?;
+            Ok(kernel.expected)
+        })
+    }
+
+    fn occlude(&self, state: &PathState, open: f32) -> Result<Judged, Mismatch> {
+        let mut expected = Expected::default();
+        let LitInputs { emitters, .. } = self.inputs;
+        let emitter = state.departure().emitter;
+        let sphere_of_light = (emitter != NO_EMITTER)
+            .then(|| emitters.get((emitter as usize).saturating_mul(3)))
+            .flatten()
+            .map(|sphere| sphere.map(f32::from_bits));
+        let doubts = check_open(self.searched(), state, sphere_of_light, open, &mut expected)?;
+        Ok(searched(doubts.is_some(), || doubts.unwrap_or_default().alternatives()))
     }
 
     /// Judges what is seen of a surface, and says what was met, if that is known.
@@ -146,7 +267,7 @@ impl StudioCheck<'_> {
         (result, met)
     }
 
-    /// A kernel that only reads the state of a ray.
+    /// A kernel that reads the state of a ray, and as yet has no hit and changes nothing.
     fn kernel<'b>(
         &'b self,
         address: Address,
@@ -156,7 +277,7 @@ impl StudioCheck<'_> {
         Kernel {
             scene: self.checker.scene,
             inputs: self.inputs,
-            is_matt: false,
+            is_matt: self.is_matt,
             address,
             before: state,
             hit: Hit::new([0; 4]),
@@ -272,27 +393,27 @@ impl StudioCheck<'_> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
-        let names = match found.kind {
-            Kind::Lights => [
-                (LitStage::Illuminate, "the radiance with these lights"),
-                (LitStage::Illuminate, "the opacity with these lights"),
-                (LitStage::Illuminate, "the bits that are left"),
-            ],
-            Kind::Ambient => [
-                (LitStage::Gather, "the radiance with ambient light"),
-                (LitStage::Gather, "the opacity with ambient light"),
-                (LitStage::Gather, "the bits that are left"),
-            ],
+        let (stage, radiance, opacity) = match found.kind {
+            Kind::Lights => (
+                LitStage::Illuminate,
+                "the radiance with these lights",
+                "the opacity with these lights",
+            ),
+            Kind::Ambient => (
+                LitStage::Gather,
+                "the radiance with ambient light",
+                "the opacity with ambient light",
+            ),
         };
         let mut expected = Expected::default();
         let before = state.vector(slot::RADIANCE);
-        let [r, g, b, opacity] = found.light.radiance[found.index].map(f32::from_bits);
+        let [r, g, b, found_opacity] = found.light.radiance[found.index].map(f32::from_bits);
         let size = before.into_iter().fold(0.0, |size: f64, c| size.max(f64::from(c.abs())));
-        let radiance = Vector::recorded(before) + sum.radiance;
-        expected.vector_of(names[0], [r, g, b], radiance, size)?;
+        let legal = Vector::recorded(before) + sum.radiance;
+        expected.vector_of((stage, radiance), [r, g, b], legal, size)?;
         let alpha = Number::recorded(state.number(slot::RADIANCE)) + sum.opacity;
-        expected.number(names[1], opacity, alpha)?;
-        expected.bits(names[2], found.light.left[found.index], 0)?;
+        expected.number((stage, opacity), found_opacity, alpha)?;
+        expected.bits((stage, "the bits that are left"), found.light.left[found.index], 0)?;
         Ok(expected.into())
     }
 
@@ -321,6 +442,13 @@ impl StudioCheck<'_> {
             light.map(|light| sum.plus(light))
         })
     }
+}
+
+/// The kind of light that a [`StudioLight`] holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Lights,
+    Ambient,
 }
 
 /// The light of a pixel from a batch.
@@ -355,4 +483,9 @@ impl Light<'_> {
             .zip(state.slots[slot::RADIANCE])
             .try_for_each(|(found, legal)| expected.bits(KEPT, found, legal))
     }
+}
+
+fn unfinished(what: &str) -> Mismatch {
+    let words = format!("the {what} was not followed to its end");
+    Expected::default().fail(LitStage::Extend, "the hit", words)
 }
