@@ -78,6 +78,17 @@ impl SphereArray {
         }
     }
 
+    /// Multiplies every radius by `factor`; the precision of the array stays the same.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn scale_radii(&mut self, factor: f64) {
+        match self {
+            Self::F32(spheres) => {
+                spheres.iter_mut().for_each(|s| s[3] = (f64::from(s[3]) * factor) as f32);
+            }
+            Self::F64(spheres) => spheres.iter_mut().for_each(|s| s[3] *= factor),
+        }
+    }
+
     /// Iterates over the spheres, all of them with one colour.
     pub fn with_color(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let sphere = move |[x, y, z, radius]: [f64; 4]| Sphere::new([x, y, z], radius, color);

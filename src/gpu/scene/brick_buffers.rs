@@ -119,7 +119,7 @@ impl Upload<'_> {
                 record.crowd_max = near.max.to_array();
                 words = Some(bytemuck::cast_slice(tree.nodes()));
             }
-            Index::RayQuery(own) => boxes = Some(own.boxes()),
+            Index::RayQuery(own) => boxes = Some(&own[..]),
         }
         self.first_shape += record.shape_count;
         for (what, bytes) in [
