@@ -25,8 +25,13 @@ pub enum Index {
     Grid(Grid),
     /// A tree with eight children for each node.
     WideTree(WideTree),
-    /// Boxes from which a driver builds a structure. The host searches without one.
-    RayQuery(QueryBoxes),
+    /// The least coordinates and the greatest of a box for each sphere, from which a driver builds a structure of its own
+    /// for ray queries. The kernels are in `shaders/accel/ray_query.wgsl`. The host searches without one.
+    ///
+    /// Vulkan says of a box only that it is reported if the ray meets it, not how the meeting is rounded. So each box holds
+    /// its sphere and the margin of trees, which is more than the error of any arithmetic that rounds as WGSL allows
+    /// (`slab.rs`); whether a driver's own arithmetic is as good is for the certificate to say.
+    RayQuery(Vec<[f32; 6]>),
 }
 
 /// A part of a scene with its acceleration structure.
@@ -90,34 +95,13 @@ impl Accel {
     }
 }
 
-/// A box for each sphere, in the order of a brick, from which a driver builds a structure of its own for ray queries. The
-/// kernels are in `shaders/accel/ray_query.wgsl`.
-///
-/// Vulkan says of a box only that it is reported if the ray meets it, not how the meeting is rounded. So each box holds
-/// its sphere and the margin of trees, which is more than the error of any arithmetic that rounds as WGSL allows
-/// (`slab.rs`); whether a driver's own arithmetic is as good is for the certificate to say.
-#[derive(Clone, Debug, PartialEq)]
-pub struct QueryBoxes {
-    boxes: Vec<[f32; 6]>,
-}
-
-impl QueryBoxes {
-    /// The boxes of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
-    #[must_use]
-    pub fn of(spheres: &[[f32; 4]], margin: f32) -> Self {
-        let items = Item::all(spheres, &Margins::one(margin));
-        let of_item = |item: &Item| {
-            let ([x, y, z], reach) = (item.center, item.reach);
-            [x - reach, y - reach, z - reach, x + reach, y + reach, z + reach]
-        };
-        Self { boxes: items.iter().map(of_item).collect() }
-    }
-
-    /// The least coordinates and the greatest of each box.
-    #[must_use]
-    pub fn boxes(&self) -> &[[f32; 6]] {
-        &self.boxes
-    }
+/// The boxes for ray queries of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
+fn query_boxes(spheres: &[[f32; 4]], margin: f32) -> Vec<[f32; 6]> {
+    let of_item = |item: &Item| {
+        let ([x, y, z], reach) = (item.center, item.reach);
+        [x - reach, y - reach, z - reach, x + reach, y + reach, z + reach]
+    };
+    Item::all(spheres, &Margins::one(margin)).iter().map(of_item).collect()
 }
 
 /// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are
@@ -227,7 +211,7 @@ impl Bricks<'_> {
             }
             Structure::RayQuery => {
                 let spheres: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-                let boxes = QueryBoxes::of(&spheres, plan.box_margin * margin);
+                let boxes = query_boxes(&spheres, plan.box_margin * margin);
                 Brick { index: Index::RayQuery(boxes), spheres, ids }
             }
         }

@@ -26,7 +26,7 @@ pub(crate) mod wide_tree_visit;
 
 #[cfg(feature = "gpu")]
 pub(crate) use bricks::BrickBounds;
-pub use bricks::{Accel, Brick, Bricks, Index, QueryBoxes};
+pub use bricks::{Accel, Brick, Bricks, Index};
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelPlan, PlannedBuffer};

@@ -37,7 +37,8 @@ pub struct PlannedBuffer {
 
 impl PlannedBuffer {
     /// A buffer of `bytes` bytes in a single binding.
-    pub(crate) const fn one(name: &'static str, bytes: u64) -> Self {
+    #[must_use]
+    pub const fn one(name: &'static str, bytes: u64) -> Self {
         Self { name, bytes, bytes_per_binding: bytes }
     }
 }

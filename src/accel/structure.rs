@@ -92,7 +92,8 @@ impl Structure {
 
     /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
     /// spheres; `None` for the list, which always terminates.
-    pub(crate) const fn instead(self) -> Option<AccelChoice> {
+    #[must_use]
+    pub const fn instead(self) -> Option<AccelChoice> {
         match self {
             Self::List => None,
             Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
@@ -135,7 +136,7 @@ pub struct BrickKind {
 
 impl BrickKind {
     /// All combinations of the given structures and primitives that are supported.
-    pub(crate) fn of<'a>(
+    pub fn of<'a>(
         structures: &'a [Structure],
         primitives: &'a [Primitive],
     ) -> impl Iterator<Item = Self> + 'a {

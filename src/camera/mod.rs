@@ -145,13 +145,10 @@ impl CameraVectors {
         // The numbers are lengths, or quotients of two lengths.
         const LARGEST: f64 = 2.0 * MAX_LENGTH * MAX_LENGTH;
         let numbers = numbers.to_array();
-        match numbers.into_iter().find(|number| !(-LARGEST..=LARGEST).contains(number)) {
-            None => Ok(Self { origin, right, up, forward, numbers }),
-            Some(value) => {
-                let (parameter, low, high) = ("number of the camera", -LARGEST, LARGEST);
-                Err(CameraError::Range { parameter, value, low, high })
-            }
+        for number in numbers {
+            checked_range("number of the camera", number, [-LARGEST, LARGEST])?;
         }
+        Ok(Self { origin, right, up, forward, numbers })
     }
 }
 
@@ -231,14 +228,22 @@ fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraErr
     Ok(half_extent)
 }
 
-/// Returns an error for a margin that would leave too little of the picture.
-fn checked_margin(value: f64) -> Result<f64, CameraError> {
-    let (low, high) = (0.0, framing::MOST_MARGIN);
+/// Returns an error for a number that is NaN or not in a range.
+fn checked_range(
+    parameter: &'static str,
+    value: f64,
+    [low, high]: [f64; 2],
+) -> Result<f64, CameraError> {
     if (low..=high).contains(&value) {
         Ok(value)
     } else {
-        Err(CameraError::Range { parameter: "`margin`", value, low, high })
+        Err(CameraError::Range { parameter, value, low, high })
     }
+}
+
+/// Returns an error for a margin that would leave too little of the picture.
+fn checked_margin(value: f64) -> Result<f64, CameraError> {
+    checked_range("`margin`", value, [0.0, framing::MOST_MARGIN])
 }
 
 fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {

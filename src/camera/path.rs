@@ -6,7 +6,7 @@ use std::fmt;
 use glam::{DQuat, DVec3};
 
 use super::path_curve::{Curve, Track};
-use super::{CameraError, Pose, Viewpoint};
+use super::{CameraError, Pose, Viewpoint, checked_range};
 
 /// What the times of keyframes count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,13 +197,8 @@ fn is_view(key: &CameraKey) -> bool {
 /// Checks one key by itself.
 fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
     let most = CameraPath::MOST;
-    let within = |parameter, value: f64, [low, high]: [f64; 2]| {
-        if (low..=high).contains(&value) {
-            Ok(())
-        } else {
-            let error = CameraError::Range { parameter, value, low, high };
-            Err(CameraPathError::of(key, error))
-        }
+    let within = |parameter, value, range| {
+        checked_range(parameter, value, range).map_err(|error| CameraPathError::of(key, error))
     };
     within("time", now.time, [-most, most])?;
     if let Some(zoom) = now.zoom {

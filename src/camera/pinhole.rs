@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
-    checked_length, checked_margin, framing, stereo_lengths,
+    checked_length, checked_margin, checked_range, framing, stereo_lengths,
 };
 use crate::geometry::math::MAX_LENGTH;
 use crate::geometry::ray::Ray;
@@ -104,10 +104,7 @@ impl PinholeCamera {
         let (separation, convergence) = stereo_lengths(separation, convergence)?;
         let eye = |aside: f64| {
             let shift = self.shift - aside * (self.distance / convergence);
-            if !(-MAX_LENGTH..=MAX_LENGTH).contains(&shift) {
-                let (parameter, low, high) = ("shift of the view plane", -MAX_LENGTH, MAX_LENGTH);
-                return Err(CameraError::Range { parameter, value: shift, low, high });
-            }
+            checked_range("shift of the view plane", shift, [-MAX_LENGTH, MAX_LENGTH])?;
             Ok(Self { pose: self.pose.moved(aside * self.pose.basis().u())?, shift, ..*self })
         };
         Ok([eye(-0.5 * separation)?, eye(0.5 * separation)?])

@@ -110,10 +110,12 @@ impl Pose {
         checked_point("the eye", eye)?;
         checked_point("the look-at point", look_at)?;
         checked_direction("up", up)?;
-        if eye == look_at {
+        // Halved, so that points apart by the least number are the same.
+        let backwards = eye * 0.5 - look_at * 0.5;
+        if backwards == DVec3::ZERO {
             return Err(CameraError::EyeAtTarget { eye });
         }
-        let basis = OrthonormalBasis::from_vectors(eye - look_at, up)
+        let basis = OrthonormalBasis::from_vectors(backwards, up)
             .ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }

@@ -3,7 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::pose::checked_point;
-use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length};
+use super::{
+    Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length, checked_range,
+};
 use crate::geometry::math::MIN_LENGTH;
 use crate::geometry::math::concentric_disk;
 use crate::geometry::ray::Ray;
@@ -37,10 +39,7 @@ impl ThinLensCamera {
         focus_distance: f64,
     ) -> Result<Self, CameraError> {
         let high = checked_length("`focus_distance`", focus_distance)?;
-        if !(MIN_LENGTH..=high).contains(&aperture_radius) {
-            let (parameter, value, low) = ("`aperture_radius`", aperture_radius, MIN_LENGTH);
-            return Err(CameraError::Range { parameter, value, low, high });
-        }
+        checked_range("`aperture_radius`", aperture_radius, [MIN_LENGTH, high])?;
         Ok(Self { pinhole: pinhole.with_distance(focus_distance)?, aperture_radius })
     }
 

@@ -60,7 +60,8 @@ impl Layer {
     }
 
     /// Whether its values belong to the ray through the centre of each pixel, also where other layers are means over samples.
-    pub(crate) const fn is_of_one_ray(self) -> bool {
+    #[must_use]
+    pub const fn is_of_one_ray(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Id | Self::Position)
     }
 

@@ -59,7 +59,8 @@ impl Emitters {
 
     /// For each entry of [`Emitters::ids`], the largest u32 that picks it: 2³² times the cumulative probability, less
     /// one. Ascending; the last entry is 2³² − 1.
-    pub(crate) fn last_picks(&self) -> &[u32] {
+    #[must_use]
+    pub fn last_picks(&self) -> &[u32] {
         &self.last
     }
 

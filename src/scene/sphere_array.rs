@@ -79,7 +79,8 @@ impl SphereArray {
     }
 
     /// Multiplies every radius by `factor`; the precision of the array stays the same.
-    pub fn scale_radii(&mut self, factor: f64) {
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn scale_radii(&mut self, factor: f64) {
         match self {
             Self::F32(spheres) => {
                 spheres.iter_mut().for_each(|s| s[3] = (f64::from(s[3]) * factor) as f32);

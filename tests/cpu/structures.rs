@@ -59,7 +59,7 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     match &brick.index {
         Index::List | Index::Grid(_) => {}
         Index::WideTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
-        Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(boxes.boxes()) as u64)),
+        Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(&boxes[..]) as u64)),
     }
     buffers
 }
@@ -109,7 +109,7 @@ fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
             assert_eq!(own, brick.spheres, "{name}");
         }
         if let Index::RayQuery(boxes) = &brick.index {
-            let boxes = boxes.boxes().iter().zip(&brick.spheres);
+            let boxes = boxes.iter().zip(&brick.spheres);
             for ([x0, y0, z0, x1, y1, z1], [x, y, z, radius]) in boxes {
                 let reach = f64::from(radius + margin);
                 let holds = |low: &f32, center: &f32, high: &f32| {

@@ -171,7 +171,7 @@ impl<'a> SceneUpload<'a> {
                 record.crowd_max = near.max.to_array();
                 words = Some(bytemuck::cast_slice(tree.nodes()));
             }
-            Index::RayQuery(own) => boxes = Some(own.boxes()),
+            Index::RayQuery(own) => boxes = Some(&own[..]),
         }
         let appearances = bytemuck::cast_slice(&appearances.words);
         let all_ids = with_ids.iter().map(|of| of.len()).sum();
