@@ -74,7 +74,6 @@ fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
 }
 
 impl Bonds {
-    /// Adds the bonds between spheres.
     pub(super) fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
         let count = base.spheres.len();
         let points: Vec<DVec3> = (0..count).map(|index| center(base.spheres, index).0).collect();
@@ -136,7 +135,6 @@ fn check(what: &str, value: f64) -> Result<(), AddError> {
     }
 }
 
-/// The data does not say which elements the spheres are.
 fn no_elements() -> AddError {
     AddError(
         "the data does not say which chemical elements its spheres are, from which the lengths of bonds follow; give the \

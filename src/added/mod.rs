@@ -66,7 +66,6 @@ impl Additions {
         }
     }
 
-    /// Makes the spheres that are added to others.
     pub(crate) fn add(&self, base: &Base<'_>) -> Result<Added, AddError> {
         let mut added = Added::default();
         if let Some(bonds) = &self.bonds {
@@ -106,7 +105,6 @@ impl CellEdges {
         Self { width: Some(width) }
     }
 
-    /// Adds the edges.
     fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
         let edges = base.cell.ok_or_else(|| {
             AddError(

@@ -17,12 +17,10 @@ pub struct Added {
     spheres: Vec<[f64; 4]>,
     /// One after the other, how many spheres have one look, and which.
     runs: Vec<(usize, Look)>,
-    /// The number of bonds.
     pub(super) bonds: usize,
     pub(super) notes: Vec<String>,
 }
 
-/// What added spheres look like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Look {
     /// Like the sphere of the data with this index.
@@ -78,19 +76,16 @@ impl Added {
         &self.notes
     }
 
-    /// Adds spheres that have one look.
     pub(super) fn push(&mut self, spheres: impl Iterator<Item = [f64; 4]>, look: Look) {
         let before = self.spheres.len();
         self.spheres.extend(spheres);
         self.runs.push((self.spheres.len() - before, look));
     }
 
-    /// The look of each added sphere.
     fn looks(&self) -> impl Iterator<Item = Look> {
         self.runs.iter().flat_map(|(count, look)| std::iter::repeat_n(*look, *count))
     }
 
-    /// Adds the spheres to an array.
     pub(crate) fn extend_array(&self, array: &mut SphereArray) {
         match array {
             SphereArray::F32(all) => {

@@ -59,7 +59,6 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The index of the first byte of a pixel.
     fn start(&self, x: i64, y: i64) -> Option<usize> {
         let [width, height] = self.size.map(i64::from);
         let is_inside = (0..width).contains(&x) && (0..height).contains(&y);
@@ -90,7 +89,6 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// The colour of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Paint {
     /// That of text, which depends on what lies behind.
@@ -119,7 +117,6 @@ pub(super) fn line_width(em: f32) -> f32 {
     (em / 14.0).round().max(1.0)
 }
 
-/// An annotation with its size.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Block {
     pub(super) width: f32,
@@ -135,7 +132,6 @@ impl Block {
         self.shapes.push(Shape::Text { text, at, em });
     }
 
-    /// Adds the lines of a text below the block.
     pub(super) fn lines(&mut self, text: &str, em: f32) {
         for line in text.lines() {
             self.text(line, [0.0, self.height + 0.95 * em], em);
@@ -143,7 +139,6 @@ impl Block {
         }
     }
 
-    /// Adds a rectangle.
     pub(super) fn rect(&mut self, rect: [f32; 4], paint: Paint) {
         self.shapes.push(Shape::Rect { rect, paint });
     }

@@ -47,7 +47,6 @@ impl Legend {
 /// The distance between rows, relative to the size of text.
 const ROW: f32 = 1.5;
 
-/// Columns of categories at most.
 const MOST_COLUMNS: usize = 3;
 
 /// The radius of a disk, relative to the size of text.

@@ -14,7 +14,6 @@ pub(super) const GAP: f32 = 0.9;
 /// How far a panel reaches beyond its annotation, relative to the size of text.
 pub(super) const PADDING: f32 = 0.6;
 
-/// How opaque a panel is.
 const PANEL_OPACITY: f32 = 0.8;
 
 const BLACK: [u8; 3] = [0; 3];
@@ -163,29 +162,24 @@ impl Anchor {
     /// The name on the command line and in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::TopLeft => "top-left",
-            Self::Top => "top",
-            Self::TopRight => "top-right",
-            Self::Left => "left",
-            Self::Right => "right",
-            Self::BottomLeft => "bottom-left",
-            Self::Bottom => "bottom",
-            Self::BottomRight => "bottom-right",
-        }
+        self.row().0
     }
 
     /// The fractions of the picture's width and height, from the top left.
-    pub(super) const fn fractions(self) -> [f32; 2] {
+    const fn fractions(self) -> [f32; 2] {
+        self.row().1
+    }
+
+    const fn row(self) -> (&'static str, [f32; 2]) {
         match self {
-            Self::TopLeft => [0.0, 0.0],
-            Self::Top => [0.5, 0.0],
-            Self::TopRight => [1.0, 0.0],
-            Self::Left => [0.0, 0.5],
-            Self::Right => [1.0, 0.5],
-            Self::BottomLeft => [0.0, 1.0],
-            Self::Bottom => [0.5, 1.0],
-            Self::BottomRight => [1.0, 1.0],
+            Self::TopLeft => ("top-left", [0.0, 0.0]),
+            Self::Top => ("top", [0.5, 0.0]),
+            Self::TopRight => ("top-right", [1.0, 0.0]),
+            Self::Left => ("left", [0.0, 0.5]),
+            Self::Right => ("right", [1.0, 0.5]),
+            Self::BottomLeft => ("bottom-left", [0.0, 1.0]),
+            Self::Bottom => ("bottom", [0.5, 1.0]),
+            Self::BottomRight => ("bottom-right", [1.0, 1.0]),
         }
     }
 }

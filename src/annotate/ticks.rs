@@ -2,7 +2,6 @@
 
 use crate::color_by::Scale;
 
-/// The ticks of a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ticks {
     /// Numbers with texts, in ascending order.
@@ -117,7 +116,6 @@ fn logarithmic([low, high]: [f64; 2], most: usize) -> Option<Ticks> {
     })
 }
 
-/// A number as an exponent: raised digits.
 pub(super) fn raised(exponent: i32) -> String {
     let raised = |c| match c {
         '-' => '⁻',

@@ -51,7 +51,6 @@ impl ColorBy {
         !different.is_empty()
     }
 
-    /// Colours numbers by their position on the scale.
     pub(super) fn color_numbers(
         &self,
         column: &str,
@@ -140,7 +139,6 @@ impl ColorBy {
         Ok(scale)
     }
 
-    /// Notes how many spheres have no value.
     pub(super) fn note_missing(
         &self,
         column: &str,
@@ -161,7 +159,6 @@ impl ColorBy {
     }
 }
 
-/// The column has no value that can be shown.
 fn no_value(column: &str, what: &str) -> ColorByError {
     ColorByError::Values(format!("the column `{column}` has no {what}, so it gives no colors"))
 }
@@ -178,7 +175,6 @@ fn around(value: f64, is_log: bool) -> [f64; 2] {
 /// Different numbers that a palette may be used for.
 const MOST_NUMBERS: usize = 256;
 
-/// The index of no category.
 const NONE: u32 = u32::MAX;
 
 impl ColorBy {
@@ -214,7 +210,6 @@ impl ColorBy {
         self.color_categories(column, categories, indices, 0, left_out)
     }
 
-    /// Colours whole numbers, each as a category.
     pub(super) fn color_whole_numbers(
         &self,
         column: &str,
@@ -265,7 +260,6 @@ impl ColorBy {
         self.color_categories(column, named, indices, others, left_out)
     }
 
-    /// Refuses options that need a scale.
     fn refuse_scale(&self, why: impl Fn() -> String) -> Result<(), ColorByError> {
         let given =
             [("a logarithmic scale", self.is_log), ("a range", self.limits != Limits::default())];

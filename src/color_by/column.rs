@@ -144,7 +144,6 @@ fn built_in_values(name: &str, spheres: &SphereArray) -> Vec<f64> {
     }
 }
 
-/// A column of numbers, and the numbers.
 type Component<'a> = (&'a Column, &'a [f64]);
 
 /// Returns the name of a vector, spelled as in the data, and its three components.

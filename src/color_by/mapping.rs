@@ -197,7 +197,6 @@ impl Mapped {
         self.of_levels(base, levels)
     }
 
-    /// The levels of strength and opacity of a sphere.
     fn levels(&self, index: usize) -> [Option<u8>; 2] {
         let strength = self.strengths.as_ref().and_then(|s| s.indices.get(index).copied());
         let opacity = self.opacities.as_ref().and_then(|levels| levels.get(index).copied());
@@ -252,7 +251,6 @@ pub struct EmissionBy {
     pub factor: f64,
 }
 
-/// The largest strength of a material that emits light.
 const STRONGEST: f64 = 1e6;
 
 /// Levels of opacity for numbers from 0 to 1: byte 0 is clear, byte 255 is opaque. Numbers outside are clamped, and
@@ -339,7 +337,6 @@ pub(super) fn strengths(
     })
 }
 
-/// Refuses a factor that is not a positive number.
 pub(super) fn check_factor(column: &str, value: f64) -> Result<(), ColorByError> {
     if value.is_finite() && value > 0.0 {
         return Ok(());

@@ -6,7 +6,6 @@ use colorous::Gradient;
 
 use crate::text::one_line;
 
-/// Entries of a colour map.
 const ENTRIES: usize = 256;
 
 /// The maps of Crameri's Scientific colour maps (Crameri, "Scientific colour maps", Zenodo,
@@ -192,7 +191,6 @@ impl MapName {
     pub(super) const OKABE_ITO: Self = Self { name: "okabe-ito", is_reversed: false };
 }
 
-/// A palette with a name.
 struct Palette {
     name: &'static str,
     /// In 8-bit sRGB, as `0xrrggbb`.

@@ -132,7 +132,6 @@ fn is_kept(left_out: &[bool], index: usize) -> bool {
     !left_out.get(index).copied().unwrap_or(false)
 }
 
-/// Writes a colour as `#rrggbb`.
 fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -90,14 +90,6 @@ impl Scale {
         };
         Some(along.clamp(0.0, 1.0))
     }
-
-    /// The number at a position from 0 to 1, the inverse of [`Scale::position`].
-    pub(crate) fn value_at(&self, position: f64) -> f64 {
-        let [low, high] = if self.is_log { [self.low.ln(), self.high.ln()] } else { self.range() };
-        let value = low * (1.0 - position) + high * position;
-        let value = if self.is_log { value.exp() } else { value };
-        value.clamp(self.low, self.high)
-    }
 }
 
 /// Whether a number has a position: it is not NaN and, on a logarithmic scale, is positive.
@@ -255,10 +247,8 @@ mod tests {
             assert_eq!(scale.position(value), Some(position), "{value}");
         }
         assert_eq!(scale.position(f64::NAN), None);
-        assert_eq!([0.0, 0.25, 1.0].map(|at| scale.value_at(at)), [-1.0, 0.0, 3.0]);
         let widest = Scale::new([f64::MIN, f64::MAX], false).unwrap();
         assert_eq!(widest.position(0.0), Some(0.5));
-        assert_eq!(widest.value_at(0.5), 0.0);
     }
 
     #[test]
@@ -266,8 +256,6 @@ mod tests {
         let scale = Scale::new([0.01, 100.0], true).unwrap();
         for (value, position) in [(0.01, 0.0), (0.1, 0.25), (1.0, 0.5), (10.0, 0.75), (1e9, 1.0)] {
             assert!((scale.position(value).unwrap() - position).abs() < 1e-15, "{value}");
-            let back = scale.value_at(position);
-            assert!((back / value.min(100.0) - 1.0).abs() < 1e-14, "{value}: {back}");
         }
         for value in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
             assert_eq!(scale.position(value), None, "{value}");

@@ -13,7 +13,6 @@ use crate::scene::sphere_array::SphereArray;
 use crate::text::listed;
 use element::Residue;
 
-/// An atom of a file.
 pub(super) struct Atom<'a> {
     pub(super) place: [f64; 3],
     pub(super) occupancy: f64,
@@ -59,7 +58,6 @@ pub(super) struct Atoms {
 }
 
 impl Atoms {
-    /// Makes room for about so many atoms.
     pub(super) fn with_capacity(atoms: usize) -> Self {
         let labels = || LabelsBuilder::with_capacity(atoms);
         Self {
@@ -225,7 +223,6 @@ impl Atoms {
     }
 }
 
-/// The elements of the atoms.
 #[derive(Default)]
 struct Species {
     labels: LabelsBuilder,
@@ -266,7 +263,6 @@ impl Species {
         self.appearances = former.iter().filter_map(appearance).collect();
     }
 
-    /// Returns the species that are not elements.
     fn unknown(&self) -> Option<UnknownSpecies> {
         let appearances = self.labels.names.iter().zip(&self.appearances);
         let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);

@@ -8,7 +8,8 @@ use super::error::LoadError;
 use super::format::Options;
 use super::labels::LabelsBuilder;
 use super::loaded::{ColumnValues, Loaded};
-use super::rows::{Lines, Values, number};
+use super::numbers::number;
+use super::rows::{Lines, Values};
 use super::table::{Table, TableColumn};
 use super::{rows, table};
 use crate::text::without_byte_order_mark;
@@ -42,7 +43,6 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     rows::into_loaded(table, options, line_of)
 }
 
-/// The values of a column so far.
 struct Building {
     is_text: bool,
     numbers: Vec<f64>,
@@ -156,7 +156,6 @@ impl First<'_> {
     }
 }
 
-/// What separates the values of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Separator {
     Blank,
@@ -172,7 +171,6 @@ struct First<'a> {
     lines_before: usize,
 }
 
-/// A line and its number.
 #[derive(Clone, Copy)]
 struct Line<'a> {
     text: &'a [u8],
@@ -306,7 +304,6 @@ fn values_of(line: &[u8], separator: Separator) -> Vec<String> {
     }
 }
 
-/// Whether a text is a value rather than a name.
 fn is_value(text: &str) -> bool {
     number(text.as_bytes()).is_some()
 }

@@ -10,14 +10,13 @@
 use std::ops::Range;
 
 use super::atoms::edges_of;
-use super::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use super::loaded::Loaded;
+use super::numbers::{Order, Reader, numbers, wrong_position, wrong_start};
 use super::source::Bytes;
 use super::topology::{Positions, Topology};
 
-/// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Positions { find };
 
 fn find(
@@ -138,11 +137,9 @@ impl Dcd {
     }
 }
 
-/// Bytes of the first record.
 const HEADER_BYTES: u64 = 84;
 const NAME: &[u8] = b"CORD";
 
-/// Bytes of the record of a unit cell.
 const CELL_BYTES: u64 = 48;
 
 /// What a file says about its frames.
@@ -183,7 +180,6 @@ fn marker(bytes: &[u8], order: Order, marker_bytes: u64) -> u64 {
     }
 }
 
-/// Whether the first bytes are those of a DCD file.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     layout(bytes).is_some()
 }
@@ -259,12 +255,10 @@ impl Header {
         Ok(header)
     }
 
-    /// Number of atoms that a frame has.
     fn moving(&self, frame: usize) -> usize {
         if frame == 0 || self.free.is_empty() { self.atoms } else { self.free.len() }
     }
 
-    /// Bytes of a frame.
     fn frame_bytes(&self, frame: usize) -> u64 {
         let markers = 2 * self.marker_bytes;
         let cell = if self.has_cell { CELL_BYTES + markers } else { 0 };
@@ -297,7 +291,6 @@ impl Header {
         }
     }
 
-    /// Skips the rest of a record.
     fn end_of_record(
         &self,
         reader: &mut Reader<'_>,

@@ -27,14 +27,12 @@ const FALLBACK_RADIUS: f64 = 2.0;
 /// Colour of a species that is not an element or has no tabulated colour: Jmol's deep pink.
 const FALLBACK_COLOR: [u8; 3] = [255, 20, 147];
 
-/// Radius and colour of the atoms of one species.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Appearance {
     /// Van der Waals radius in Å (Alvarez 2013).
     pub(super) radius: f64,
     /// Jmol's element colour, which extends the convention of Corey, Pauling and Koltun.
     pub(super) color: LinearRgb,
-    /// Whether the species is a chemical element.
     pub(super) is_element: bool,
 }
 
@@ -82,7 +80,6 @@ const COVALENT: [u16; 96] = [
 ];
 
 #[cfg(feature = "scene-file")]
-/// What is known of the bonds of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Covalent {
     /// The covalent radius in Å.

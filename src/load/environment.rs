@@ -46,7 +46,6 @@ fn cut_off(format: &str, bytes: usize) -> LoadError {
     LoadError::new(message).of_kind(LoadErrorKind::CutOff)
 }
 
-/// The decoder cannot read the file.
 fn damaged(format: &str, message: &str) -> LoadError {
     LoadError::new(format!(
         "the {format} file is damaged or of a kind that cannot be read: {message}"
@@ -130,7 +129,6 @@ fn refusal(
 
 const OPENEXR: &str = "OpenEXR";
 
-/// Names of the channels that are read.
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {

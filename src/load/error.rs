@@ -73,29 +73,22 @@ pub enum Place {
 }
 
 impl LoadError {
-    /// An error that concerns the whole file.
     pub(crate) fn new(message: impl Into<String>) -> Self {
         Self::at(Place::Whole, message)
     }
 
-    /// An error at a place.
     pub(crate) fn at(place: Place, message: impl Into<String>) -> Self {
         Self { kind: LoadErrorKind::Other, place, message: message.into() }
     }
 
-    /// An error in a line.
-    #[allow(dead_code, reason = "not every build has a format of lines")]
     pub(crate) fn line(line: usize, message: impl Into<String>) -> Self {
         Self::at(Place::Line(line), message)
     }
 
-    /// An error at a byte.
-    #[allow(dead_code, reason = "not every build has a binary format")]
     pub(crate) fn byte(byte: u64, message: impl Into<String>) -> Self {
         Self::at(Place::Byte(byte), message)
     }
 
-    /// The same error with another kind.
     pub(crate) fn of_kind(self, kind: LoadErrorKind) -> Self {
         Self { kind, ..self }
     }
@@ -135,7 +128,6 @@ impl fmt::Display for LoadError {
 }
 
 /// The first five names, and how many more there are.
-#[allow(dead_code, reason = "not every build has a format of names")]
 pub(super) fn first_names(names: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 5;
     let more = names.len().saturating_sub(MOST);

@@ -19,7 +19,6 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Contents of such a file, in a few words for users.
     pub about: &'static str,
-    /// How a file is read.
     pub(super) reading: Reading,
     /// Whether a file has positions alone, so that [`Options::topology`] names a file that says what the spheres are.
     pub needs_topology: bool,
@@ -37,7 +36,6 @@ pub struct Format {
     pub(super) extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
 }
 
-/// How a file of a format is read.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Reading {
     /// As a whole.
@@ -64,13 +62,9 @@ pub(super) enum Frames {
     /// The same of positions alone, where another file, the topology, says what the spheres are.
     Positions {
         /// Finds all frames, or those up to one that is wanted; an error if there is no topology.
-        find: FindPositions,
+        find: fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>,
     },
 }
-
-/// Finds frames of positions alone, which the topology completes.
-pub(super) type FindPositions =
-    fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
 
 /// Reads frames of binary data, with what was found out about the file.
 pub(super) trait FrameReader: fmt::Debug + Send + Sync {
@@ -84,7 +78,6 @@ pub(super) trait FrameReader: fmt::Debug + Send + Sync {
     ) -> Result<Loaded, LoadError>;
 }
 
-/// Where the frames of a file are.
 #[derive(Debug, Default)]
 pub(super) struct FrameIndex {
     /// Bytes before the first frame that every frame needs.
@@ -96,7 +89,6 @@ pub(super) struct FrameIndex {
     pub(super) problem: Option<LoadError>,
     /// Whether a complete frame is right whatever follows it, as in binary data that say how long they are.
     pub(super) stands_alone: bool,
-    /// Notes for the user on every frame.
     pub(super) notes: Vec<String>,
     /// Reads the frames, if they are binary data.
     pub(super) reader: Option<Box<dyn FrameReader>>,
@@ -177,15 +169,12 @@ impl Options {
     }
 }
 
-/// Where a frame is in its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct FrameSpan {
     pub(super) bytes: Range<u64>,
-    /// Number of lines before the frame.
     pub(super) lines_before: usize,
 }
 
-/// The text of one frame.
 #[derive(Debug)]
 pub(super) struct FrameText<'a> {
     pub(super) head: &'a [u8],

@@ -8,14 +8,13 @@ mod xtc;
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
 
-use super::binary::{Order, Reader};
 use super::error::{LoadError, LoadErrorKind};
 use super::format::{FrameIndex, FrameReader, FrameSpan, Options};
 use super::loaded::Loaded;
+use super::numbers::{Order, Reader};
 use super::source::Bytes;
 use super::topology::{Positions, Topology};
 
-/// Å in a nm.
 const ANGSTROMS: f64 = 10.0;
 
 /// Checks a frame's header, and returns where the frame ends and whether it has positions.

@@ -9,16 +9,15 @@ pub(super) use index::starts;
 
 use std::collections::BTreeSet;
 
-use super::binary::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::elements::appearance;
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
+use super::numbers::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::source::Bytes;
 use super::table::{Table, TableColumn};
 use index::{Chunk, Index};
 
-/// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
 
 /// More components of a vector than this are not made columns.

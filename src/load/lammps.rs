@@ -11,7 +11,8 @@ mod tests;
 
 use super::error::LoadError;
 use super::loaded::ColumnValues;
-use super::rows::{Values, number};
+use super::numbers::number;
+use super::rows::Values;
 use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::shortened;
@@ -32,7 +33,7 @@ fn too_few_atoms(line: usize, declared: usize, found: usize) -> LoadError {
 enum Shape {
     /// Low and high end along x, y and z.
     Orthogonal,
-    /// The same of the box around the cell, each followed by one of the tilt factors xy, xz and yz.
+    /// Ends of the box around the cell, each pair followed by one of the tilt factors xy, xz and yz.
     Triclinic,
     /// The components of an edge and one component of the origin.
     General,

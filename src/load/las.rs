@@ -16,12 +16,10 @@ const LENGTHS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 /// The most that a colour of eight bits is, which many programs write into the sixteen bits of LAS.
 const EIGHT_BITS: f64 = 255.0;
 
-/// Whether the first bytes are those of LAS or LAZ.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")
 }
 
-/// Reads the points of a file.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let points = Points::new(bytes)?;
     let mut notes = Vec::new();

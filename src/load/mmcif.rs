@@ -26,7 +26,6 @@ use tokens::{
     Columns, Header, Place, SLOTS, Token, Tokens, cut_row, decimal, is_unknown, not_a_number,
 };
 
-/// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
 
 /// Whether the first line that is neither blank nor a comment begins a data block.
@@ -154,7 +153,6 @@ fn read_rows(
     }
 }
 
-/// Appends the atom of a row.
 fn push(
     atoms: &mut Atoms,
     values: &Values<'_>,

@@ -14,7 +14,6 @@
 //! ```
 
 mod atoms;
-mod binary;
 pub mod csv;
 mod dcd;
 mod elements;
@@ -32,6 +31,7 @@ mod loaded;
 pub mod mmcif;
 pub mod npy;
 pub mod npz;
+mod numbers;
 mod open;
 pub mod pdb;
 #[cfg(any(feature = "png", feature = "exr"))]

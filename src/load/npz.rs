@@ -3,6 +3,8 @@
 //! One array has the positions, or `x`, `y` and `z` do. The others, with a row for each sphere, are columns whose names say
 //! what they mean, as in all tables: `radius`, `colors`, `opacity` and so on.
 
+use std::borrow::Cow;
+use std::fmt::Display;
 use std::io::Read;
 
 use flate2::bufread::DeflateDecoder;
@@ -122,12 +124,63 @@ struct Entry {
 }
 
 impl Entry {
+    /// The bytes of the array, which are borrowed from the archive if they are not compressed.
     fn contents<'a>(
         &self,
         archive: &'a ZipSliceArchive<&[u8]>,
-    ) -> Result<std::borrow::Cow<'a, [u8]>, LoadError> {
-        contents(archive, self.wayfinder, self.method)
-            .map_err(|message| of_array(&self.name)(LoadError::new(one_line(&message))))
+    ) -> Result<Cow<'a, [u8]>, LoadError> {
+        let wrong = |error: &dyn Display| {
+            of_array(&self.name)(LoadError::new(one_line(&error.to_string())))
+        };
+        let entry = archive.get_entry(self.wayfinder).map_err(|error| wrong(&error))?;
+        let data = entry.data();
+        match self.method {
+            CompressionMethod::STORE => {
+                let found = ZipVerification {
+                    crc: rawzip::crc32(data),
+                    uncompressed_size: data.len() as u64,
+                };
+                entry.claim_verifier().valid(found).map_err(|error| wrong(&error))?;
+                Ok(data.into())
+            }
+            CompressionMethod::DEFLATE => {
+                let size = self.wayfinder.uncompressed_size_hint();
+                if size > (data.len() as u64).saturating_mul(MAX_RATIO) {
+                    let count = data.len();
+                    return Err(wrong(&format!(
+                        "{count} compressed bytes cannot expand to {size} bytes"
+                    )));
+                }
+                let mut inflated = Vec::new();
+                usize::try_from(size)
+                    .ok()
+                    .and_then(|size| inflated.try_reserve_exact(size).ok())
+                    .ok_or_else(|| {
+                    wrong(&format!("there is not enough memory for its {size} bytes"))
+                })?;
+                let reader = entry.verifying_reader(DeflateDecoder::new(data));
+                // One byte more, so that the reader reaches the end of the data and verifies the checksum.
+                reader
+                    .take(size.saturating_add(1))
+                    .read_to_end(&mut inflated)
+                    .map_err(|error| wrong(&error))?;
+                if inflated.len() as u64 == size {
+                    Ok(inflated.into())
+                } else {
+                    Err(wrong(&format!(
+                        "it is longer than the {size} bytes that the archive declares"
+                    )))
+                }
+            }
+            method => {
+                let method = format!("{method:?}");
+                let method = method.rsplit("::").next().unwrap_or_default();
+                Err(wrong(&format!(
+                    "it is compressed with {method}, but only stored and deflated arrays can be read; use \
+                 numpy.savez_compressed"
+                )))
+            }
+        }
     }
 }
 
@@ -178,57 +231,6 @@ fn main_array(entries: &[Entry]) -> Result<Main, LoadError> {
                 listed(entries)
             ))),
         },
-    }
-}
-
-/// Returns the bytes of an entry, which are borrowed from the archive if they are not compressed.
-fn contents<'a>(
-    archive: &'a ZipSliceArchive<&[u8]>,
-    wayfinder: rawzip::ZipArchiveEntryWayfinder,
-    method: CompressionMethod,
-) -> Result<std::borrow::Cow<'a, [u8]>, String> {
-    let entry = archive.get_entry(wayfinder).map_err(|error| error.to_string())?;
-    let data = entry.data();
-    match method {
-        CompressionMethod::STORE => {
-            let found =
-                ZipVerification { crc: rawzip::crc32(data), uncompressed_size: data.len() as u64 };
-            entry.claim_verifier().valid(found).map_err(|error| error.to_string())?;
-            Ok(data.into())
-        }
-        CompressionMethod::DEFLATE => {
-            let size = wayfinder.uncompressed_size_hint();
-            if size > (data.len() as u64).saturating_mul(MAX_RATIO) {
-                return Err(format!(
-                    "{} compressed bytes cannot expand to {size} bytes",
-                    data.len()
-                ));
-            }
-            let mut inflated = Vec::new();
-            usize::try_from(size)
-                .ok()
-                .and_then(|size| inflated.try_reserve_exact(size).ok())
-                .ok_or_else(|| format!("there is not enough memory for its {size} bytes"))?;
-            let reader = entry.verifying_reader(DeflateDecoder::new(data));
-            // One byte more, so that the reader reaches the end of the data and verifies the checksum.
-            reader
-                .take(size.saturating_add(1))
-                .read_to_end(&mut inflated)
-                .map_err(|error| error.to_string())?;
-            if inflated.len() as u64 == size {
-                Ok(inflated.into())
-            } else {
-                Err(format!("it is longer than the {size} bytes that the archive declares"))
-            }
-        }
-        method => {
-            let method = format!("{method:?}");
-            let method = method.rsplit("::").next().unwrap_or_default();
-            Err(format!(
-                "it is compressed with {method}, but only stored and deflated arrays can be read; use \
-                 numpy.savez_compressed"
-            ))
-        }
     }
 }
 

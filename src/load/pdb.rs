@@ -43,7 +43,6 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
     reader.finish(frame)
 }
 
-/// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
 /// Finds frames by their MODEL records, and checks the order of all of them. The lines before the first are read with

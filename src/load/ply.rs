@@ -5,15 +5,14 @@
 //! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
 //! one by one, such as the crate ply-rs-bw, would take more memory and time.
 
-use super::binary::{Order, Scalar};
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
 use super::loaded::Loaded;
+use super::numbers::{Order, Scalar};
 use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened};
 
-/// Reads the vertices of a PLY file.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let header = read_header(bytes)?;
     let data = &bytes[header.bytes..];
@@ -248,7 +247,6 @@ struct Header {
     bytes: usize,
 }
 
-/// Returns the type of this name.
 fn scalar_of_name(name: &str) -> Option<Scalar> {
     Some(match name {
         "char" | "int8" => Scalar::I8,
@@ -276,7 +274,6 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     bytes.strip_prefix(b"ply").is_some_and(|rest| matches!(rest.first(), Some(b'\n' | b'\r')))
 }
 
-/// Reads the header.
 fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
     if !starts(bytes) {
         return Err(LoadError::new("this is not a PLY file: its first line is not `ply`"));

@@ -16,7 +16,6 @@ const PIECE: usize = 1 << 18;
 /// The same, where a reader looks at places that are far from each other. What is longer is read without a copy.
 const SMALL_PIECE: usize = 1 << 12;
 
-/// Bytes that can be read from any place.
 pub(super) trait Bytes: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Bytes for T {}
@@ -83,7 +82,6 @@ impl Seek for Source {
     }
 }
 
-/// Reads a range of the bytes of a file.
 pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8>, LoadError> {
     /// More is allocated as it arrives, because a file may lie about its frames.
     const AT_ONCE: u64 = 1 << 26;
@@ -108,7 +106,6 @@ pub(super) fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Decompresses a file that is in memory.
 pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     let mut all = Vec::new();
     MultiGzDecoder::new(bytes).read_to_end(&mut all)?;
@@ -184,9 +181,7 @@ impl<R: Read + Seek> Seek for Gunzip<R> {
 /// Reads lines one by one, and counts them and their bytes.
 pub(super) struct LineReader<'a> {
     source: &'a mut dyn Bytes,
-    /// Bytes so far.
     pub(super) offset: u64,
-    /// Lines so far.
     pub(super) line: usize,
     text: Vec<u8>,
 }

@@ -22,7 +22,6 @@ pub(super) struct Table {
     pub(super) columns: Vec<TableColumn>,
 }
 
-/// A column of a table.
 #[derive(Debug)]
 pub(super) struct TableColumn {
     pub(super) name: String,
@@ -138,7 +137,6 @@ impl Table {
         LoadError::new(message).of_kind(LoadErrorKind::NoPositions)
     }
 
-    /// The names of the columns, for messages.
     pub(super) fn names(&self) -> String {
         listed(self.columns.iter().map(|column| shortened(&column.name)), 16)
     }
@@ -351,10 +349,7 @@ impl Loaded {
         let mut notes = Vec::new();
         let place = |index| center(&centers, index);
         let radius = guessed_radius(centers.len(), place, &mut notes);
-        match &mut centers {
-            SphereArray::F32(spheres) => spheres.iter_mut().for_each(|s| s[3] = radius as f32),
-            SphereArray::F64(spheres) => spheres.iter_mut().for_each(|s| s[3] = radius),
-        }
+        set_radii(&mut centers, |_| radius);
         Self { notes, ..Self::new(centers) }
     }
 }
@@ -444,7 +439,6 @@ pub(super) fn is_element(name: &str) -> bool {
     ELEMENTS.contains(&plain(name).as_str())
 }
 
-/// Whether columns with these names have positions.
 pub(super) fn has_positions(names: &[String]) -> bool {
     let names: Vec<String> = names.iter().map(|name| plain(name)).collect();
     POSITIONS.iter().any(|set| set.iter().all(|wanted| names.iter().any(|name| name == wanted)))

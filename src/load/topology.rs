@@ -13,7 +13,6 @@ pub(super) struct Topology {
     loaded: Loaded,
 }
 
-/// What a frame of a trajectory has.
 #[derive(Debug, Default)]
 pub(super) struct Positions {
     /// In Å.
@@ -38,7 +37,6 @@ impl Topology {
         })
     }
 
-    /// Checks that a frame has as many atoms as the topology.
     pub(super) fn check(&self, frame: usize, atoms: usize) -> Result<(), LoadError> {
         let found = self.loaded.spheres.len();
         if atoms == found {

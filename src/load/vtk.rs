@@ -15,16 +15,15 @@ use std::io::Read as _;
 use data_encoding::BASE64;
 use flate2::bufread::ZlibDecoder;
 
-use super::binary::{Number, Scalar};
 use super::error::{LoadError, Place};
 use super::format::Options;
 use super::loaded::Loaded;
+use super::numbers::{Number, Scalar};
 use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened, without_byte_order_mark};
 use document::{Array, Data, Document, Encoding};
 
-/// The first line of legacy files.
 const LEGACY: &[u8] = b"# vtk DataFile";
 
 /// Whether the first bytes are XML with the element `VTKFile`, or those of a legacy file, which is refused with advice.
@@ -36,7 +35,6 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
         || (first.starts_with(b"<") && first.windows(NAME.len()).any(|window| window == NAME))
 }
 
-/// Reads the points of a file.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let bytes = without_byte_order_mark(bytes);
     if bytes.starts_with(LEGACY) {
@@ -57,7 +55,6 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
     Ok(loaded)
 }
 
-/// The columns of all pieces together.
 fn columns(
     document: &Document<'_>,
     notes: &mut Vec<String>,
@@ -79,17 +76,14 @@ fn columns(
         let message = format!("it must have 3 components, but has {}", positions.components);
         return Err(in_array(index, "Points", &message));
     }
-    let mut groups = vec![group(document, index, positions, "Points")?];
+    // A name that comes again would be read with the array of the first.
     let mut names = HashSet::new();
-    for array in &first.arrays {
-        // A name that comes again would be read with the array of the first.
-        if names.insert(array.name.as_str()) {
-            groups.push(group(document, index, array, &array.name)?);
-        }
-    }
     let mut kept: Vec<&Array<'_>> = Vec::new();
-    names.clear();
     kept.extend(first.arrays.iter().filter(|array| names.insert(array.name.as_str())));
+    let mut groups = vec![group(document, index, positions, "Points")?];
+    for array in &kept {
+        groups.push(group(document, index, array, &array.name)?);
+    }
     for (index, piece) in pieces {
         let positions = piece.positions.as_ref().ok_or_else(no_points(index, piece.points))?;
         append(&mut groups[0], group(document, index, positions, "Points")?, index, "Points")?;
@@ -134,7 +128,6 @@ fn columns(
     Ok(columns)
 }
 
-/// The name of a component of an array.
 fn component_name(Array { name, components, .. }: &Array<'_>, component: usize) -> String {
     let is_color = ["rgb", "rgba"].contains(&name.to_lowercase().as_str());
     match components {
@@ -160,7 +153,6 @@ fn in_array(piece: usize, name: &str, message: &str) -> LoadError {
     LoadError::at(Place::Piece(piece), format!("the array {name}: {message}"))
 }
 
-/// Adds the numbers of another piece.
 fn append(
     all: &mut [Vec<f64>],
     more: Vec<Vec<f64>>,

@@ -9,11 +9,12 @@
 
 use std::io;
 
-use super::binary::component_names;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
 use super::loaded::Loaded;
-use super::rows::{self, Field, Kind, Lines, Rows, Values, number};
+use super::numbers::component_names;
+use super::numbers::number;
+use super::rows::{self, Field, Kind, Lines, Rows, Values};
 use super::source::LineReader;
 use super::table::Table;
 use crate::text::{one_line, shortened, without_byte_order_mark};
@@ -36,7 +37,6 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     !first.is_empty() && first.iter().all(u8::is_ascii_digit)
 }
 
-/// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
 /// Finds frames by their numbers of atoms; the lines of atoms are only counted.
@@ -177,7 +177,6 @@ impl Columns {
     }
 }
 
-/// Appends the columns of one property.
 fn add_fields(name: &str, kind: &str, count: usize, fields: &mut Vec<Field>) -> Result<(), String> {
     /// More than any program writes, and few enough to be listed.
     const MAX_COLUMNS: usize = 1024;
@@ -253,7 +252,6 @@ fn origin_of(comment: &str) -> Result<Option<[f64; 3]>, String> {
     }
 }
 
-/// Finite numbers with white space between them.
 fn numbers_of(text: &str) -> Option<Vec<f64>> {
     let number = |text: &str| number(text.as_bytes()).filter(|number| number.is_finite());
     text.split_whitespace().map(number).collect()

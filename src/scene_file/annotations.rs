@@ -70,42 +70,38 @@ impl<'de> Deserialize<'de> for PositionValue {
     }
 }
 
-/// The tables of what is drawn over the picture.
-pub(super) struct AnnotationTables {
-    pub(super) legend: Option<Table<LegendTable>>,
-    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
-    pub(super) labels: Vec<Table<LabelTable>>,
-    pub(super) text: Option<Table<TextTable>>,
-}
-
-impl AnnotationTables {
-    pub(super) fn read(self, lines: &Lines<'_>) -> Result<AnnotationPlan, SceneFileError> {
-        let position = |value: Option<PositionValue>| value.map(|value| value.0);
-        let text = self.text.unwrap_or_default().0;
-        let [low, high] = Annotations::TEXT_SCALES.map(f64::from);
-        let keys = Keys { lines, numbers: vec![("scale", text.scale)], table: Span::START };
-        let text_scale = keys.within("scale", [low, high], "from 0.2 to 10")?;
-        Ok(AnnotationPlan {
-            legend: self.legend.map(|Table(table)| LegendPlan {
-                title: table.title,
-                position: position(table.position),
-            }),
-            scale_bar: self.scale_bar.map(|Table(table)| ScaleBarPlan {
-                length: table.length.map(Spanned::into_inner),
-                unit: table.unit,
-                position: position(table.position),
-            }),
-            labels: self
-                .labels
-                .into_iter()
-                .map(|Table(LabelTable { text, position: at })| Label {
-                    text,
-                    position: position(at).unwrap_or(Position::TOP_LEFT),
-                })
-                .collect(),
-            text_scale: text_scale.map(|scale| scale as f32),
-            color: text.color.map(|color| color.0.to_srgb8()),
-            panel: text.panel,
-        })
-    }
+/// Reads the tables of what is drawn over the picture.
+pub(super) fn read_annotations(
+    legend: Option<Table<LegendTable>>,
+    scale_bar: Option<Table<ScaleBarTable>>,
+    labels: Vec<Table<LabelTable>>,
+    text: Option<Table<TextTable>>,
+    lines: &Lines<'_>,
+) -> Result<AnnotationPlan, SceneFileError> {
+    let position = |value: Option<PositionValue>| value.map(|value| value.0);
+    let text = text.unwrap_or_default().0;
+    let [low, high] = Annotations::TEXT_SCALES.map(f64::from);
+    let keys = Keys { lines, numbers: vec![("scale", text.scale)], table: Span::START };
+    let text_scale = keys.within("scale", [low, high], "from 0.2 to 10")?;
+    Ok(AnnotationPlan {
+        legend: legend.map(|Table(table)| LegendPlan {
+            title: table.title,
+            position: position(table.position),
+        }),
+        scale_bar: scale_bar.map(|Table(table)| ScaleBarPlan {
+            length: table.length.map(Spanned::into_inner),
+            unit: table.unit,
+            position: position(table.position),
+        }),
+        labels: labels
+            .into_iter()
+            .map(|Table(LabelTable { text, position: at })| Label {
+                text,
+                position: position(at).unwrap_or(Position::TOP_LEFT),
+            })
+            .collect(),
+        text_scale: text_scale.map(|scale| scale as f32),
+        color: text.color.map(|color| color.0.to_srgb8()),
+        panel: text.panel,
+    })
 }

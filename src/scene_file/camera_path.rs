@@ -8,7 +8,6 @@ use super::span::{Lines, Number, SceneFileError, Span, explain};
 use crate::camera::{CameraKey, CameraPath, KeyPlace, PathClock, Viewpoint};
 use crate::exact::{self, Table};
 
-/// The table `[camera_path]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraPathTable {
@@ -22,7 +21,6 @@ fn yes() -> bool {
     true
 }
 
-/// One of `[[camera_path.keys]]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeyTable {

@@ -1,25 +1,18 @@
 //! Reads the keys that name a data file, tell how to read it, select its spheres, set their appearance, and add bonds and
 //! the edges of the cell to them.
 
-use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::Range;
 
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::mapping::MappingKeys;
-use super::materials::Materials;
-use super::span::{
-    ColorValue, Keys, Lines, Number, SceneFileError, Span, WithSpan, range_of, unknown,
-};
+use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
 use crate::added::{AddError, Added, Additions, Base, BondLength, Bonds, CellEdges};
 use crate::color_by::Mapping;
-use crate::exact::Table;
 use crate::image::color::LinearRgb;
-use crate::load::{FORMATS, Labels, Loaded};
+use crate::load::{Labels, Loaded};
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
@@ -74,111 +67,13 @@ pub struct Element {
     pub surface: SurfaceProperties,
 }
 
-/// The keys of a table `[elements.NAME]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ElementTable {
-    material: Option<Spanned<String>>,
-    opacity: Option<Number>,
-    color: Option<ColorValue>,
-    radius: Option<Number>,
-}
-
-/// The keys at the top of the file that concern its data.
-pub(super) struct DataKeys {
-    pub(super) file: Option<Spanned<String>>,
-    pub(super) format: Option<Spanned<String>>,
-    pub(super) frame: Option<Spanned<usize>>,
-    pub(super) topology: Option<Spanned<String>>,
-    pub(super) columns: Option<Spanned<Vec<String>>>,
-    pub(super) radius: Option<Number>,
-    pub(super) radius_scale: Option<Number>,
-    pub(super) color: Option<Spanned<ColorValue>>,
     pub(super) material: Option<Spanned<String>>,
     pub(super) opacity: Option<Number>,
-    pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
-    pub(super) elements_by: Option<Spanned<Vec<String>>>,
-    pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
-    pub(super) mapping: MappingKeys,
-    pub(super) additions: AdditionKeys,
-}
-
-impl DataKeys {
-    pub(super) fn read(
-        self,
-        materials: &Materials,
-        lines: &Lines<'_>,
-    ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
-        let Some(file) = self.file else {
-            let orphans = [
-                ("format", range_of(&self.format)),
-                ("frame", range_of(&self.frame)),
-                ("topology", range_of(&self.topology)),
-                ("columns", range_of(&self.columns)),
-                ("radius", range_of(&self.radius)),
-                ("radius_scale", range_of(&self.radius_scale)),
-                ("color", range_of(&self.color)),
-                ("material", range_of(&self.material)),
-                ("opacity", range_of(&self.opacity)),
-                ("elements", self.elements.values().next().map(Spanned::span)),
-                ("elements_by", range_of(&self.elements_by)),
-                ("leave_out", range_of(&self.leave_out)),
-            ];
-            let mut orphans =
-                orphans.into_iter().chain(self.mapping.spans()).chain(self.additions.spans());
-            let orphan = orphans.find_map(|(key, span)| Some((key, span?.start)));
-            return match orphan {
-                Some((key, start)) => Err(lines.span(start).error(format!(
-                    "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
-                ))),
-                None => Ok(None),
-            };
-        };
-        let surface =
-            materials.over(SurfaceProperties::default(), self.material, self.opacity, lines)?;
-        let elements = self.elements.into_iter().map(|(name, table)| {
-            let ElementTable { material, opacity, color, radius } = table.into_inner().0;
-            Ok(Element {
-                name,
-                radius: positive("radius", radius, lines)?,
-                color: color.map(|color| color.0),
-                surface: materials.over(surface, material, opacity, lines)?,
-            })
-        });
-        let (select, additions) = self.additions.read(lines)?;
-        Ok(Some(WithSpan {
-            span: lines.span(file.span().start),
-            value: Data {
-                file: file.into_inner(),
-                format: self.format.map(|name| format_name(&name, lines)).transpose()?,
-                frame: self.frame.map(Spanned::into_inner),
-                topology: self.topology.map(Spanned::into_inner),
-                columns: self.columns.map(Spanned::into_inner).unwrap_or_default(),
-                radius: positive("radius", self.radius, lines)?,
-                radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
-                color: self.color.map(|color| color.into_inner().0),
-                surface,
-                elements: elements.collect::<Result<_, _>>()?,
-                elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
-                leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
-                select,
-                additions,
-                mapping: self.mapping.read(lines)?,
-            },
-        }))
-    }
-}
-
-/// Checks that a format has this name.
-fn format_name(name: &Spanned<String>, lines: &Lines<'_>) -> Result<String, SceneFileError> {
-    let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-    match known.contains(&name.get_ref().as_str()) {
-        true => Ok(name.get_ref().clone()),
-        false => {
-            let span = lines.span(name.span().start);
-            Err(span.error(unknown("format", name.get_ref(), &known)))
-        }
-    }
+    pub(super) color: Option<ColorValue>,
+    pub(super) radius: Option<Number>,
 }
 
 impl Data {
@@ -206,7 +101,7 @@ impl Data {
 }
 
 /// Checks that a number, if it is given, is finite and greater than 0.
-fn positive(
+pub(super) fn positive(
     key: &'static str,
     value: Option<Number>,
     lines: &Lines<'_>,
@@ -215,13 +110,11 @@ fn positive(
     keys.within(key, [f64::from_bits(1), f64::MAX], "finite and greater than 0")
 }
 
-/// The value of `box`.
 pub(super) enum BoxValue {
     Is(bool),
     Table(BoxTable),
 }
 
-/// The value of `bonds`.
 pub(super) enum BondsValue {
     Is(bool),
     Factor(f64),
@@ -299,40 +192,24 @@ impl<'de> Deserialize<'de> for BondsValue {
     }
 }
 
-/// The keys that select spheres and add others.
-#[derive(Default)]
-pub(super) struct AdditionKeys {
-    pub(super) select: Option<Spanned<String>>,
-    pub(super) cell: Option<Spanned<BoxValue>>,
-    pub(super) bonds: Option<Spanned<BondsValue>>,
-}
-
-impl AdditionKeys {
-    /// The keys with their positions, if they are given.
-    pub(super) fn spans(&self) -> [(&'static str, Option<Range<usize>>); 3] {
-        [
-            ("select", range_of(&self.select)),
-            ("box", range_of(&self.cell)),
-            ("bonds", range_of(&self.bonds)),
-        ]
-    }
-
-    pub(super) fn read(
-        self,
-        lines: &Lines<'_>,
-    ) -> Result<(Option<Selection>, Additions), SceneFileError> {
-        let select = self.select.map(|text| {
-            let parsed = text.get_ref().parse::<Selection>();
-            parsed.map_err(|error| lines.span(text.span().start).error(error))
-        });
-        let cell = self.cell.map(|value| match value.into_inner() {
-            BoxValue::Is(is) => Ok(is.then(CellEdges::default)),
-            BoxValue::Table(BoxTable { width }) => {
-                let width = positive("width", width, lines)?;
-                Ok(Some(width.map_or_else(CellEdges::default, CellEdges::of_width)))
-            }
-        });
-        let bonds = self.bonds.map(|value| {
+pub(super) fn read_additions(
+    select: Option<Spanned<String>>,
+    cell: Option<Spanned<BoxValue>>,
+    bonds: Option<Spanned<BondsValue>>,
+    lines: &Lines<'_>,
+) -> Result<(Option<Selection>, Additions), SceneFileError> {
+    let select = select.map(|text| {
+        let parsed = text.get_ref().parse::<Selection>();
+        parsed.map_err(|error| lines.span(text.span().start).error(error))
+    });
+    let cell = cell.map(|value| match value.into_inner() {
+        BoxValue::Is(is) => Ok(is.then(CellEdges::default)),
+        BoxValue::Table(BoxTable { width }) => {
+            let width = positive("width", width, lines)?;
+            Ok(Some(width.map_or_else(CellEdges::default, CellEdges::of_width)))
+        }
+    });
+    let bonds = bonds.map(|value| {
             let span = lines.span(value.span().start);
             let length = match value.into_inner() {
                 BondsValue::Is(is) => return Ok(is.then(Bonds::default)),
@@ -357,13 +234,12 @@ impl AdditionKeys {
             };
             Ok(Some(Bonds::new(length)))
         });
-        let additions = Additions {
-            cell: cell.transpose()?.flatten(),
-            bonds: bonds.transpose()?.flatten(),
-            keeps_radii: false,
-        };
-        Ok((select.transpose()?, additions))
-    }
+    let additions = Additions {
+        cell: cell.transpose()?.flatten(),
+        bonds: bonds.transpose()?.flatten(),
+        keeps_radii: false,
+    };
+    Ok((select.transpose()?, additions))
 }
 
 /// Adds spheres to those of data. `kept` has the index in `loaded` of each sphere.

@@ -7,19 +7,22 @@ use toml::Spanned;
 
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::camera_path::CameraPathTable;
-use super::data::{BondsValue, BoxValue, ElementTable};
+use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive, read_additions};
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
-use super::mapping::{ByColumn, ColorTable, ColumnTable};
+use super::mapping::{ByColumn, ColorTable, ColumnTable, read_mapping};
 use super::materials::{MaterialTable, Materials};
-use super::span::{ColorValue, Lines, Number, SceneFileError, WithSpan, explain};
+use super::span::{
+    ColorValue, Lines, Number, SceneFileError, WithSpan, explain, range_of, unknown,
+};
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
 use crate::image::encoding::{Bits, Encoding, EncodingError};
 use crate::image::tone::ToneCurve;
+use crate::load::FORMATS;
 use crate::render::Shading;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
@@ -80,12 +83,107 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses the text of a scene file.
     pub(super) fn parse(text: &str, lines: &Lines<'_>) -> Result<Self, SceneFileError> {
         toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
             lines.span(start).error(explain(error.message()))
         })
+    }
+
+    /// Takes the keys that concern data; `None` if there are none.
+    pub(super) fn read_data(
+        &mut self,
+        materials: &Materials,
+        lines: &Lines<'_>,
+    ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
+        let Some(file) = self.data.take() else {
+            let orphans = [
+                ("format", range_of(&self.format)),
+                ("frame", range_of(&self.frame)),
+                ("topology", range_of(&self.topology)),
+                ("columns", range_of(&self.columns)),
+                ("radius", range_of(&self.radius)),
+                ("radius_scale", range_of(&self.radius_scale)),
+                ("color", range_of(&self.color)),
+                ("material", range_of(&self.material)),
+                ("opacity", range_of(&self.opacity)),
+                ("elements", self.elements.values().next().map(Spanned::span)),
+                ("elements_by", range_of(&self.elements_by)),
+                ("leave_out", range_of(&self.leave_out)),
+                ("color_by", range_of(&self.color_by)),
+                ("radius_by", range_of(&self.radius_by)),
+                ("opacity_by", range_of(&self.opacity_by)),
+                ("emission_by", range_of(&self.emission_by)),
+                ("select", range_of(&self.select)),
+                ("box", range_of(&self.cell)),
+                ("bonds", range_of(&self.bonds)),
+            ];
+            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            return match orphan {
+                Some((key, start)) => Err(lines.span(start).error(format!(
+                    "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
+                ))),
+                None => Ok(None),
+            };
+        };
+        let surface = materials.over(
+            SurfaceProperties::default(),
+            self.material.take(),
+            self.opacity.take(),
+            lines,
+        )?;
+        let elements = std::mem::take(&mut self.elements).into_iter().map(|(name, table)| {
+            let ElementTable { material, opacity, color, radius } = table.into_inner().0;
+            Ok(Element {
+                name,
+                radius: positive("radius", radius, lines)?,
+                color: color.map(|color| color.0),
+                surface: materials.over(surface, material, opacity, lines)?,
+            })
+        });
+        let (select, additions) =
+            read_additions(self.select.take(), self.cell.take(), self.bonds.take(), lines)?;
+        Ok(Some(WithSpan {
+            span: lines.span(file.span().start),
+            value: Data {
+                file: file.into_inner(),
+                format: self.format.take().map(|name| format_name(&name, lines)).transpose()?,
+                frame: self.frame.take().map(Spanned::into_inner),
+                topology: self.topology.take().map(Spanned::into_inner),
+                columns: self.columns.take().map(Spanned::into_inner).unwrap_or_default(),
+                radius: positive("radius", self.radius.take(), lines)?,
+                radius_scale: positive("radius_scale", self.radius_scale.take(), lines)?
+                    .unwrap_or(1.0),
+                color: self.color.take().map(|color| color.into_inner().0),
+                surface,
+                elements: elements.collect::<Result<_, _>>()?,
+                elements_by: self.elements_by.take().map(Spanned::into_inner).unwrap_or_default(),
+                leave_out: self
+                    .leave_out
+                    .take()
+                    .into_iter()
+                    .flat_map(Spanned::into_inner)
+                    .collect(),
+                select,
+                additions,
+                mapping: read_mapping(
+                    self.color_by.take(),
+                    [self.radius_by.take(), self.opacity_by.take(), self.emission_by.take()],
+                    lines,
+                )?,
+            },
+        }))
+    }
+}
+
+fn format_name(name: &Spanned<String>, lines: &Lines<'_>) -> Result<String, SceneFileError> {
+    let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    match known.contains(&name.get_ref().as_str()) {
+        true => Ok(name.get_ref().clone()),
+        false => {
+            let span = lines.span(name.span().start);
+            Err(span.error(unknown("format", name.get_ref(), &known)))
+        }
     }
 }
 

@@ -2,14 +2,13 @@
 
 use std::fmt;
 use std::marker::PhantomData;
-use std::ops::Range;
 
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{ColorValue, Lines, Number, SceneFileError, range_of};
+use super::span::{ColorValue, Lines, Number, SceneFileError};
 use crate::color_by::{ColorBy, EmissionBy, Limit, Limits, MISSING, MapName, Mapping, RadiusBy};
 
 /// A table that may also be written as a text, the name of its column.
@@ -39,7 +38,6 @@ impl<'de, T: Deserialize<'de> + From<String>> Deserialize<'de> for ByColumn<T> {
     }
 }
 
-/// The keys of `[color_by]`.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ColorTable {
@@ -53,7 +51,6 @@ pub(super) struct ColorTable {
     missing: Option<ColorValue>,
 }
 
-/// The keys of `[radius_by]`, `[opacity_by]` and `[emission_by]`.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ColumnTable {
@@ -104,50 +101,30 @@ impl<'de> Deserialize<'de> for LimitValue {
     }
 }
 
-/// The keys by which columns decide how spheres look.
-pub(super) struct MappingKeys {
-    pub(super) color: Option<Spanned<ByColumn<ColorTable>>>,
-    pub(super) radius: Option<Spanned<ByColumn<ColumnTable>>>,
-    pub(super) opacity: Option<Spanned<ByColumn<ColumnTable>>>,
-    pub(super) emission: Option<Spanned<ByColumn<ColumnTable>>>,
-}
-
-impl MappingKeys {
-    /// The keys with their positions, if they are given.
-    pub(super) fn spans(&self) -> [(&'static str, Option<Range<usize>>); 4] {
-        [
-            ("color_by", range_of(&self.color)),
-            ("radius_by", range_of(&self.radius)),
-            ("opacity_by", range_of(&self.opacity)),
-            ("emission_by", range_of(&self.emission)),
-        ]
+/// Reads the keys by which columns decide how spheres look.
+pub(super) fn read_mapping(
+    color: Option<Spanned<ByColumn<ColorTable>>>,
+    [radius, opacity, emission]: [Option<Spanned<ByColumn<ColumnTable>>>; 3],
+    lines: &Lines<'_>,
+) -> Result<Mapping, SceneFileError> {
+    let opacity = opacity.map(|table| table.into_inner().0);
+    if let Some(factor) = opacity.as_ref().and_then(|table| table.factor.as_ref()) {
+        let message =
+            "`factor` does not apply to `opacity_by`, whose numbers are opacities; remove it";
+        return Err(lines.span(factor.span().start).error(message));
     }
-
-    /// Whether the keys ask for materials or opacities, which only lit pictures show.
-    pub(super) fn need_light(&self) -> bool {
-        self.opacity.is_some() || self.emission.is_some()
-    }
-
-    pub(super) fn read(self, lines: &Lines<'_>) -> Result<Mapping, SceneFileError> {
-        let opacity = self.opacity.map(|table| table.into_inner().0);
-        if let Some(factor) = opacity.as_ref().and_then(|table| table.factor.as_ref()) {
-            let message =
-                "`factor` does not apply to `opacity_by`, whose numbers are opacities; remove it";
-            return Err(lines.span(factor.span().start).error(message));
-        }
-        let with_factor = |table: Spanned<ByColumn<ColumnTable>>| {
-            let ColumnTable { column, factor } = table.into_inner().0;
-            (column, factor.map_or(1.0, Spanned::into_inner))
-        };
-        let radius = self.radius.map(with_factor);
-        let emission = self.emission.map(with_factor);
-        Ok(Mapping {
-            color: self.color.map(|table| color_by(table.into_inner().0, lines)).transpose()?,
-            radius: radius.map(|(column, factor)| RadiusBy { column, factor }),
-            opacity: opacity.map(|table| table.column),
-            emission: emission.map(|(column, factor)| EmissionBy { column, factor }),
-        })
-    }
+    let with_factor = |table: Spanned<ByColumn<ColumnTable>>| {
+        let ColumnTable { column, factor } = table.into_inner().0;
+        (column, factor.map_or(1.0, Spanned::into_inner))
+    };
+    let radius = radius.map(with_factor);
+    let emission = emission.map(with_factor);
+    Ok(Mapping {
+        color: color.map(|table| color_by(table.into_inner().0, lines)).transpose()?,
+        radius: radius.map(|(column, factor)| RadiusBy { column, factor }),
+        opacity: opacity.map(|table| table.column),
+        emission: emission.map(|(column, factor)| EmissionBy { column, factor }),
+    })
 }
 
 fn color_by(table: ColorTable, lines: &Lines<'_>) -> Result<ColorBy, SceneFileError> {

@@ -12,7 +12,6 @@ use crate::exact::Table;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::text::{one_line, shortened};
 
-/// The kinds of materials that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -44,7 +43,7 @@ impl MaterialTable {
         let is_one = |kinds: &[Kind]| kinds.contains(&kind);
         refuse_foreign(
             lines,
-            &name_of(kind),
+            &name_of(&kind),
             &[
                 ("specular", range_of(&self.specular), is_one(&[Kind::Lambert])),
                 ("roughness", range_of(&self.roughness), !is_one(&[Kind::Emissive])),

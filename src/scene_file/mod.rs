@@ -37,11 +37,9 @@ use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Colors, Scene, SceneError};
 use crate::style::{Style, fit};
-use annotations::AnnotationTables;
-use data::{AdditionKeys, DataKeys};
+use annotations::read_annotations;
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
-use mapping::MappingKeys;
 use materials::Materials;
 use span::{Lines, Span, WithSpan, scaled, unknown};
 
@@ -89,43 +87,12 @@ impl SceneFile {
         let mut of_style = Document::parse(text_of_style, &Lines::of(text_of_style))?;
         let lighting_of_style = lighting_tables(&mut of_style);
         let mut lighting = lighting_tables(&mut document);
-        let materials = Materials::new(document.materials, &lines)?;
-        let mapping = MappingKeys {
-            color: document.color_by,
-            radius: document.radius_by,
-            opacity: document.opacity_by,
-            emission: document.emission_by,
-        };
-        let has_lighting =
-            document.material.is_some() || document.opacity.is_some() || mapping.need_light();
-        let annotations = AnnotationTables {
-            legend: document.legend,
-            scale_bar: document.scale_bar,
-            labels: document.labels,
-            text: document.text,
-        };
-        let data = DataKeys {
-            file: document.data,
-            format: document.format,
-            frame: document.frame,
-            topology: document.topology,
-            columns: document.columns,
-            radius: document.radius,
-            radius_scale: document.radius_scale,
-            color: document.color,
-            material: document.material,
-            opacity: document.opacity,
-            elements: document.elements,
-            elements_by: document.elements_by,
-            leave_out: document.leave_out,
-            mapping,
-            additions: AdditionKeys {
-                select: document.select,
-                cell: document.cell,
-                bonds: document.bonds,
-            },
-        }
-        .read(&materials, &lines)?;
+        let materials = Materials::new(std::mem::take(&mut document.materials), &lines)?;
+        let has_lighting = document.material.is_some()
+            || document.opacity.is_some()
+            || document.opacity_by.is_some()
+            || document.emission_by.is_some();
+        let data = document.read_data(&materials, &lines)?;
         let spheres = document.spheres.into_iter();
         let spheres: Vec<_> = spheres
             .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
@@ -145,7 +112,13 @@ impl SceneFile {
                 .map(Spanned::into_inner)
                 .unwrap_or_default(),
             encoding: document.output.0.encoding(&lines)?,
-            annotations: annotations.read(&lines)?,
+            annotations: read_annotations(
+                document.legend,
+                document.scale_bar,
+                document.labels,
+                document.text,
+                &lines,
+            )?,
             lighting,
             data,
             camera: lines.spanned(document.camera),
@@ -201,7 +174,6 @@ impl SceneFile {
         self.scene(&spheres)
     }
 
-    /// Adds a position in the file to an error.
     fn spanned(&self, error: &SceneError) -> SceneFileError {
         let &SceneError::Sphere { index, error: fault } = error else {
             return Span::START.error(error);
@@ -279,7 +251,6 @@ impl SceneFile {
     }
 }
 
-/// Takes the tables about light.
 fn lighting_tables(document: &mut Document) -> LightingTables {
     LightingTables {
         shading: document.shading.as_ref().map(|shading| shading.span().start),
@@ -295,7 +266,6 @@ fn lighting_tables(document: &mut Document) -> LightingTables {
     }
 }
 
-/// Returns the style of a name.
 fn style_of(name: &Spanned<String>, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
     Style::of_name(name.get_ref()).ok_or_else(|| {
         let names: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();

@@ -27,7 +27,6 @@ pub struct SceneFileError {
     pub message: String,
 }
 
-/// A value and its position in the text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WithSpan<T> {
     pub(super) value: T,
@@ -61,7 +60,6 @@ impl<'a> Lines<'a> {
         Self { text, starts: std::iter::once(0).chain(ends).collect() }
     }
 
-    /// Returns the line and column of a byte.
     pub(super) fn span(&self, byte: usize) -> Span {
         // At least one line starts at or before any byte.
         let line = self.starts.partition_point(|start| *start <= byte);
@@ -69,7 +67,6 @@ impl<'a> Lines<'a> {
         Span { line, column: before.chars().count() + 1 }
     }
 
-    /// Adds the line and column to a value.
     pub(super) fn spanned<T>(&self, value: Spanned<T>) -> WithSpan<T> {
         WithSpan { span: self.span(value.span().start), value: value.into_inner() }
     }
@@ -82,7 +79,6 @@ pub(super) type Number = Spanned<f64>;
 pub(super) struct Keys<'a> {
     pub(super) lines: &'a Lines<'a>,
     pub(super) numbers: Vec<(&'static str, Option<Spanned<f64>>)>,
-    /// Position of the table.
     pub(super) table: Span,
 }
 
@@ -124,7 +120,7 @@ pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
 }
 
 /// The name of a kind in scene files, each of which is one word.
-pub(super) fn name_of(kind: impl fmt::Debug) -> String {
+pub(super) fn name_of(kind: &impl fmt::Debug) -> String {
     format!("{kind:?}").to_lowercase()
 }
 
@@ -189,7 +185,6 @@ impl<'de> Deserialize<'de> for ColorValue {
     }
 }
 
-/// A vector of three numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Vector(pub(super) [f64; 3]);
 

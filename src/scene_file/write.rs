@@ -5,15 +5,16 @@ use std::fmt::Write as _;
 use toml::Value;
 
 use super::data::Data;
+use super::span::name_of;
 use crate::added::BondLength;
-use crate::annotate::{AnnotationPlan, LegendPlan, Panel, Position, ScaleBarPlan};
+use crate::annotate::{AnnotationPlan, LegendPlan, Position, ScaleBarPlan};
 use crate::camera::CameraParameters;
 use crate::camera::film::Film;
 use crate::color_by::{ColorBy, Limit, Limits, MISSING, Mapping};
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
-use crate::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
-use crate::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
+use crate::light::{Ground, Light, LightKind, Sky, SkyLight};
+use crate::render::{Integrator, RenderSettings, Sampling, Studio};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::sphere::Sphere;
 
@@ -88,11 +89,7 @@ pub fn write(contents: &Contents<'_>) -> String {
         Integrator::Primary(_) => {}
         Integrator::Studio(one) => out(studio(one)),
         Integrator::Path(path) => {
-            let lights = match path.light_sampling {
-                LightSampling::Chance => "chance",
-                LightSampling::Direct => "direct",
-                LightSampling::Multiple => "multiple",
-            };
+            let lights = name_of(&path.light_sampling);
             out(format!(
                 "\n[path]\nmax_depth = {}\nroulette_from = {}\nlight_sampling = \"{lights}\"",
                 path.max_depth, path.roulette_from
@@ -124,7 +121,6 @@ fn camera(parameters: &CameraParameters) -> String {
     text
 }
 
-/// A value on one line.
 fn inline(value: &Value) -> String {
     let joined = |parts: Vec<String>| parts.join(", ");
     match value {
@@ -194,10 +190,7 @@ fn studio(studio: &Studio) -> String {
 
 fn light(light: &Light) -> String {
     let vector = |v: glam::DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
-    let at = match light.frame {
-        LightFrame::World => "world",
-        LightFrame::Camera => "camera",
-    };
+    let at = name_of(&light.frame);
     match light.kind {
         LightKind::Head { strength } => format!("kind = \"head\", color = {}", color(strength)),
         LightKind::Directional { toward, strength, angular_radius } => format!(
@@ -262,7 +255,6 @@ fn degrees_of(radians: f64, is_same: impl Fn(f64) -> bool) -> f64 {
     all.into_iter().find(|degrees| is_same(degrees.to_radians())).unwrap_or(exact)
 }
 
-/// A text in quotes.
 fn string(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
@@ -278,7 +270,6 @@ fn string(text: &str) -> String {
     quoted
 }
 
-/// Texts in quotes, as a list.
 fn strings(list: &[String]) -> String {
     let quoted: Vec<String> = list.iter().map(|one| string(one)).collect();
     format!("[{}]", quoted.join(", "))
@@ -331,7 +322,6 @@ impl Surfaces {
     }
 }
 
-/// The keys at the top of the file that concern its data.
 fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
     let mut lines = vec![format!("data = {}", string(&data.file))];
     lines.extend(data.format.as_ref().map(|name| format!("format = {}", string(name))));
@@ -369,7 +359,6 @@ fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
     lines
 }
 
-/// The keys by which columns decide how spheres look.
 fn mapping_keys(mapping: &Mapping, lines: &mut Vec<String>) {
     let Mapping { color, radius, opacity, emission } = mapping;
     lines.extend(color.as_ref().map(color_by));
@@ -409,7 +398,6 @@ fn color_by(by: &ColorBy) -> String {
     format!("color_by = {{ {} }}", keys.join(", "))
 }
 
-/// The tables, one text each.
 fn annotations(plan: &AnnotationPlan) -> Vec<String> {
     let AnnotationPlan { legend, scale_bar, labels, text_scale, color: text_color, panel } = plan;
     let at = |at: Option<Position>| at.map(|at| format!("position = {}", position(at)));
@@ -434,14 +422,7 @@ fn annotations(plan: &AnnotationPlan) -> Vec<String> {
     let text = vec![
         text_scale.map(|scale| format!("scale = {scale:?}")),
         text_color.map(|one| format!("color = {}", color(LinearRgb::from_srgb8(one)))),
-        panel.map(|panel| {
-            let name = match panel {
-                Panel::Auto => "auto",
-                Panel::Always => "always",
-                Panel::Never => "never",
-            };
-            format!("panel = \"{name}\"")
-        }),
+        panel.map(|panel| format!("panel = \"{}\"", name_of(&panel))),
     ];
     if text.iter().any(Option::is_some) {
         tables.push(table("[text]", text));

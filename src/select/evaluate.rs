@@ -20,7 +20,6 @@ struct Data<'a> {
     notes: Vec<String>,
 }
 
-/// One side of a comparison, in the data.
 enum Side<'a> {
     Number(f64),
     Text,
@@ -62,7 +61,6 @@ impl<'a> Data<'a> {
         error_at(self.text, operand.character, problem)
     }
 
-    /// Finds out what one side of a comparison is.
     fn side(&self, operand: &Operand) -> Result<Side<'a>, SelectError> {
         let found = |name: &str| column(name, self.spheres, self.columns);
         match &operand.value {
@@ -155,7 +153,6 @@ impl<'a> Data<'a> {
         column(name, self.spheres, self.columns).is_ok()
     }
 
-    /// Compares a column of text with a text or a number.
     fn compare_text(
         &mut self,
         name: &str,
@@ -204,7 +201,6 @@ impl<'a> Data<'a> {
     }
 }
 
-/// One side of a comparison of numbers.
 enum Numbers<'a> {
     One(f64),
     Column(Cow<'a, [f64]>),
@@ -234,7 +230,6 @@ fn number(word: &str) -> Option<f64> {
     is_number.then(|| word.parse().ok()).flatten()
 }
 
-/// The note about a text that no sphere has.
 fn absent(column: &str, wanted: &str, labels: &Labels) -> String {
     let names = labels.names.iter().filter(|label| !label.trim().is_empty());
     let shown = listed(names.map(|label| shortened(label)), 8);

@@ -66,7 +66,6 @@ impl fmt::Display for Selection {
 impl FromStr for Selection {
     type Err = SelectError;
 
-    /// Parses an expression.
     fn from_str(text: &str) -> Result<Self, SelectError> {
         Ok(Self { text: text.to_owned(), expression: parse::parse(text)? })
     }

@@ -24,7 +24,6 @@ pub(super) struct Comparison {
     pub(super) operator: Operator,
 }
 
-/// One side of a comparison.
 #[derive(Clone, Debug)]
 pub(super) struct Operand {
     pub(super) value: Value,
@@ -92,7 +91,6 @@ impl Operator {
     }
 }
 
-/// Parses an expression.
 pub(super) fn parse(text: &str) -> Result<Expression, SelectError> {
     let mut parser = Parser { text, at: 0, depth: 0 };
     let parsed = parser.any(false)?;
@@ -102,7 +100,6 @@ pub(super) fn parse(text: &str) -> Result<Expression, SelectError> {
     }
 }
 
-/// An error at a byte of an expression.
 pub(super) fn error_at(text: &str, character: usize, problem: impl Into<String>) -> SelectError {
     SelectError::At { expression: one_line(text), character, problem: problem.into() }
 }
@@ -114,7 +111,6 @@ struct Parser<'a> {
     depth: usize,
 }
 
-/// Whether a character ends a word.
 fn ends_word(c: char) -> bool {
     c.is_whitespace() || "()<>=!&|\"'`".contains(c)
 }
@@ -153,7 +149,6 @@ impl<'a> Parser<'a> {
         &rest[..rest.find(ends_word).unwrap_or(rest.len())]
     }
 
-    /// Takes a sign if it comes next.
     fn take(&mut self, sign: &str) -> bool {
         let is_next = self.rest().starts_with(sign);
         self.at += if is_next { sign.len() } else { 0 };

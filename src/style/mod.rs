@@ -72,7 +72,7 @@ impl Style {
 
 /// Which values a scene file gives itself. The style does not choose these.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Given {
+pub(crate) struct OwnValues {
     pub(crate) occlusion_radius: bool,
     pub(crate) outline: bool,
     pub(crate) outline_depth: bool,
@@ -88,7 +88,7 @@ const LEAST_RADIUS_IN_PIXELS: f64 = 3.0;
 pub(crate) fn fit(
     settings: &mut RenderSettings,
     style: Style,
-    given: Given,
+    given: OwnValues,
     scene: &Scene,
     view: &View<'_>,
 ) {
@@ -105,7 +105,7 @@ pub(crate) fn fit(
 
 /// Occlusion reaches as far as pockets are deep: a part of the extent of the data, and at least some radii, so that
 /// neighbours darken each other.
-fn fit_occlusion(studio: &mut Studio, given: Given, subject: &Subject<'_>, radius: f64) {
+fn fit_occlusion(studio: &mut Studio, given: OwnValues, subject: &Subject<'_>, radius: f64) {
     if let (Some(occlusion), false) = (&mut studio.occlusion, given.occlusion_radius) {
         let extent = subject.bounds().size().length();
         let reach = (0.2 * extent).max(6.0 * radius);
@@ -118,7 +118,7 @@ fn fit_occlusion(studio: &mut Studio, given: Given, subject: &Subject<'_>, radiu
 fn fit_outline(
     studio: &mut Studio,
     style: Style,
-    given: Given,
+    given: OwnValues,
     subject: &Subject<'_>,
     radius: f64,
     view: &View<'_>,

@@ -130,7 +130,6 @@ fn latin(text: &str) -> Text {
 /// The name and the samples of a channel.
 type Plane<'a> = (&'static str, Samples<'a>);
 
-/// Returns all channels of the file.
 fn planes(
     picture: &Image,
     layers: LayerSet,

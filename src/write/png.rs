@@ -105,7 +105,6 @@ pub fn encode_certified(
     write(size, kind(encoding), encoding.dots_per_inch(), Some(certificate), samples)
 }
 
-/// The channels and the depth of an encoding.
 fn kind(encoding: &Encoding) -> (ColorType, BitDepth) {
     let color = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
     match encoding.bits() {
@@ -225,7 +224,6 @@ impl Pixels<'_> {
     }
 }
 
-/// Divides a premultiplied colour by alpha.
 fn divided(rgb: [f32; 3], alpha: f32) -> [f32; 3] {
     if alpha > 0.0 { rgb.map(|x| x / alpha) } else { [0.0; 3] }
 }

@@ -198,8 +198,7 @@ fn texts_have_colors_in_their_order() {
     assert_eq!(coloring.key.missing, Some(MISSING));
     let by = ColorBy { is_log: true, ..ColorBy::column("chain") };
     let error = by.apply(&spheres(5), &columns, &[]).unwrap_err();
-    let error = error.to_string();
-    assert!(error.contains("applies only to numbers on a color map"), "{error}");
+    assert!(error.to_string().contains("applies only to numbers on a color map"), "{error}");
     // Whole numbers are sorted as numbers.
     let columns = [labels("residue", &["10", "9", "-1"])];
     let coloring = ColorBy::column("residue").apply(&spheres(3), &columns, &[]).unwrap();

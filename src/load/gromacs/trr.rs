@@ -2,14 +2,13 @@
 //! kJ/(mol Å).
 
 use super::{ANGSTROMS, cell_of, find_frames};
-use crate::load::binary::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
 use crate::load::format::{FrameIndex, Frames};
 use crate::load::loaded::{Column, ColumnValues};
+use crate::load::numbers::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
 
-/// How frames are found and read one by one.
 pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 const MAGIC: i32 = 1993;
@@ -31,7 +30,6 @@ const PARTS: [&str; 10] = [
 const BOX: usize = 2;
 const POSITIONS: usize = 7;
 
-/// Whether the first bytes are those of a TRR file.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     bytes.strip_prefix(&MAGIC.to_be_bytes()).is_some_and(|rest| rest.starts_with(NAME))
 }
@@ -51,7 +49,6 @@ fn find(
     find_frames(source, last, topology, next, read)
 }
 
-/// What a frame says about itself.
 struct Header {
     /// Bytes of each part.
     sizes: [u64; 10],

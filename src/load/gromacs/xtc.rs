@@ -3,20 +3,18 @@
 //! The crate molly reads them too, but trusts them: it panics on a damaged file and prints warnings.
 
 use super::{ANGSTROMS, cell_of, find_frames};
-use crate::load::binary::{Order, Reader, numbers, wrong_position, wrong_start};
 use crate::load::error::LoadError;
 use crate::load::format::{FrameIndex, Frames};
+use crate::load::numbers::{Order, Reader, numbers, wrong_position, wrong_start};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};
 
-/// How frames are found and read one by one.
 pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 /// The usual number at the start of a frame.
 const MAGIC: i32 = 1995;
-/// The same, where the number of compressed bytes has 64 bits.
+/// That number where the count of compressed bytes has 64 bits.
 const LONG_MAGIC: i32 = 2023;
-/// Bytes of a header up to the positions.
 const HEADER_BYTES: u64 = 56;
 /// So few positions are not compressed.
 const FEW: usize = 9;
@@ -42,7 +40,6 @@ fn find(
     find_frames(source, last, topology, next, read)
 }
 
-/// What a frame says about itself.
 struct Header {
     atoms: usize,
     cell: [f64; 9],
@@ -168,7 +165,6 @@ impl Packed {
         Ok(Self { precision, lowest, highest, size: reader.number(what)? })
     }
 
-    /// Says what is wrong with it.
     fn check(&self) -> Result<(), String> {
         let Self { precision, lowest, highest, size } = *self;
         if !(precision.is_finite() && precision > 0.0) {

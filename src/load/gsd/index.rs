@@ -6,20 +6,18 @@
 
 use std::collections::HashMap;
 
-use crate::load::binary::{Order, Reader, Scalar, shown, wrong_start};
 use crate::load::error::LoadError;
+use crate::load::numbers::{Order, Reader, Scalar, shown, wrong_start};
 
 const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
 const HEADER_BYTES: u64 = 256;
 const ENTRY_BYTES: u64 = 32;
 const NAME_BYTES: u64 = 64;
 
-/// Whether the first bytes are those of a GSD file.
 pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC.to_le_bytes())
 }
 
-/// All chunks of a file.
 #[derive(Debug)]
 pub(super) struct Index {
     names: Vec<String>,
@@ -93,7 +91,6 @@ impl Chunk {
 }
 
 impl Index {
-    /// Reads the index of a file.
     pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, LoadError> {
         if reader.left() < HEADER_BYTES {
             return Err(wrong_start("gsd", "it is shorter than the header of 256 bytes"));
@@ -212,7 +209,6 @@ impl Index {
         })
     }
 
-    /// Number of frames.
     pub(super) fn frames(&self) -> u64 {
         self.chunks.last().map_or(0, |chunk| chunk.frame + 1)
     }

@@ -11,7 +11,8 @@ use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::labels::LabelsBuilder;
 use crate::load::loaded::{ColumnValues, Loaded};
-use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
+use crate::load::numbers::number;
+use crate::load::rows::{self, Field, Kind, Lines, Rows, Values};
 use crate::load::table::{Table, TableColumn};
 use crate::text::{shortened, without_byte_order_mark};
 
@@ -23,9 +24,8 @@ pub(crate) fn starts(bytes: &[u8]) -> bool {
         .any(|line| count_of(line, b"atoms").is_some_and(|count| count.is_ok()))
 }
 
-/// Reads a data file.
 pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    let mut file = File::new(without_byte_order_mark(bytes));
+    let mut file = File { lines: Lines::new(without_byte_order_mark(bytes)), line: 0 };
     // The first line is a comment, whatever it is.
     file.next();
     let (mut count, mut ends, mut tilt) = (None, [None; 3], [0.0; 3]);
@@ -154,10 +154,6 @@ struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    fn new(text: &'a [u8]) -> Self {
-        Self { lines: Lines::new(text), line: 0 }
-    }
-
     fn next(&mut self) -> Option<&'a [u8]> {
         let line = self.lines.next()?;
         self.line += 1;

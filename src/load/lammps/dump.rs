@@ -7,13 +7,13 @@ use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
 use crate::load::loaded::{ColumnValues, Loaded};
-use crate::load::rows::{Field, Kind, Lines, Rows, Values, number};
+use crate::load::numbers::number;
+use crate::load::rows::{Field, Kind, Lines, Rows, Values};
 use crate::load::source::LineReader;
 use crate::load::table::{Table, TableColumn};
 use crate::load::{rows, table};
 use crate::text::without_byte_order_mark;
 
-/// How frames are found and read one by one.
 pub(crate) const FRAMES: Frames = Frames::Lines { find, read };
 
 /// Names of positions, in the order in which they are preferred, and whether they are fractions of the box.

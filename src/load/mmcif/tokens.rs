@@ -5,7 +5,7 @@ use memchr::{memchr, memmem};
 
 use crate::load::atoms::cell_edges;
 use crate::load::error::{self, LoadError};
-use crate::load::rows::number;
+use crate::load::numbers::number;
 use crate::text::shortened;
 
 /// A token, without its quotes.

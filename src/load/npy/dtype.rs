@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::load::binary::{Number, Order, Scalar};
 use crate::load::loaded::Labels;
+use crate::load::numbers::{Number, Order, Scalar};
 use crate::load::table::TableColumn;
 use crate::text::{one_line, shortened};
 
@@ -103,7 +103,6 @@ impl Dtype {
         }
     }
 
-    /// Decodes a real number.
     pub(super) fn number(&self, bytes: &[u8]) -> f64 {
         match self.scalar() {
             Some(scalar) => scalar.decode(bytes, self.order),

@@ -7,8 +7,8 @@
 use py_literal::Value;
 
 use super::dtype::Dtype;
-use crate::load::binary::component_names;
 use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::numbers::component_names;
 use crate::text::{one_line, shortened};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
@@ -23,7 +23,6 @@ const MAX_DEPTH: usize = 8;
 /// The most columns that an array makes.
 const MAX_COLUMNS: usize = 1024;
 
-/// The contents of a header.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) elements: Elements,

@@ -6,10 +6,10 @@ pub mod pixels;
 
 use std::collections::TryReserveError;
 
-use super::binary::component_names;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
 use super::loaded::Loaded;
+use super::numbers::component_names;
 use super::raw::{Layout, rows};
 use super::table::{Table, TableColumn};
 use crate::scene::sphere_array::SphereArray;

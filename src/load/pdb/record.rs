@@ -2,7 +2,7 @@
 
 use crate::load::atoms::cell_edges;
 use crate::load::error::{LoadError, Place};
-use crate::load::rows::number;
+use crate::load::numbers::number;
 
 /// Kinds of lines that the reader distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,12 +7,11 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use crate::load::binary::{Order, Scalar};
 use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::numbers::{Order, Scalar};
 use crate::text::{one_line, shortened};
 
-/// How a file stores bytes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Encoding {
     pub(super) order: Order,
     /// Whether lengths before the data are u64, and not u32.
@@ -21,7 +20,7 @@ pub(super) struct Encoding {
 }
 
 /// What a file says of its points.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Document<'a> {
     pub(super) encoding: Encoding,
     pub(super) pieces: Vec<Piece<'a>>,
@@ -62,7 +61,6 @@ const MOST_COMPONENTS: usize = 64;
 
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// Returns the type of this name.
 fn scalar_of_name(name: &str) -> Option<Scalar> {
     Some(match name {
         "Int8" => Scalar::I8,
@@ -79,14 +77,13 @@ fn scalar_of_name(name: &str) -> Option<Scalar> {
     })
 }
 
-/// Reads the XML of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, LoadError> {
     // What is appended may be anything but XML.
     let end = bytes.windows(APPENDED.len()).position(|window| window == APPENDED);
     let xml = &bytes[..end.unwrap_or(bytes.len())];
     let xml = std::str::from_utf8(xml)
         .map_err(|error| LoadError::byte(error.valid_up_to() as u64, "this is not UTF-8 text"))?;
-    let mut parser = Parser::new();
+    let mut parser = Parser::default();
     parser.read(xml)?;
     if !parser.is_vtk {
         let message = "this is not a VTK XML file: it has no element VTKFile";
@@ -100,7 +97,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, LoadError> {
     Ok(parser.document)
 }
 
-/// The file ends within an element.
 fn cut_off(element: &str) -> LoadError {
     let message = format!("the file ends within the element {element}; it is cut off");
     LoadError::new(message).of_kind(LoadErrorKind::CutOff)
@@ -120,7 +116,7 @@ fn appended(bytes: &[u8], start: usize) -> Result<(&[u8], bool), LoadError> {
     Ok((data, is_base64))
 }
 
-/// The state of reading the XML.
+#[derive(Default)]
 struct Parser<'a> {
     document: Document<'a>,
     is_vtk: bool,
@@ -133,21 +129,6 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new() -> Self {
-        let encoding = Encoding { order: Order::Little, is_wide: false, is_compressed: false };
-        let (pieces, unused, appended) = (Vec::new(), Vec::new(), &[][..]);
-        let document = Document {
-            encoding,
-            pieces,
-            unused,
-            appended,
-            appended_is_base64: false,
-            taken: Cell::new(0),
-        };
-        let (is_vtk, is_in_array) = (false, false);
-        Self { document, is_vtk, open: Vec::new(), is_in_array, cells: 0, points: 0 }
-    }
-
     fn read(&mut self, xml: &'a str) -> Result<(), LoadError> {
         let mut reader = Reader::from_str(xml);
         loop {

@@ -13,7 +13,6 @@ const POSITIONS: [f32; 6] = [0.0, 0.5, -1.0, 2.0, 3.0, 4.0];
 const RADII: [f64; 2] = [0.25, 0.75];
 const COLORS: [u8; 6] = [255, 0, 0, 0, 0, 255];
 
-/// How a test writes arrays.
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Ascii,

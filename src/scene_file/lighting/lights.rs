@@ -13,7 +13,6 @@ use crate::scene_file::span::{
     refuse_foreign, scaled,
 };
 
-/// The kinds of lights that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -60,39 +59,36 @@ const STRONGEST: f64 = 1e6;
 /// The largest intensity. It may be more, because the light falls off with the square of the distance.
 const MOST_INTENSE: f64 = 1e18;
 
-/// The two keys that can give the direction of a light.
-struct Aim {
+/// Returns the direction from the scene to the light.
+fn aim(
     toward: Option<Spanned<Vector>>,
     direction: Option<Spanned<Vector>>,
-}
-
-impl Aim {
-    /// Returns the direction from the scene to the light.
-    fn toward(self, lines: &Lines<'_>, table: Span) -> Result<DVec3, SceneFileError> {
-        let (key, vector, sign) = match (self.toward, self.direction) {
-            (Some(toward), None) => ("toward", toward, 1.0),
-            (None, Some(direction)) => ("direction", direction, -1.0),
-            (Some(_), Some(direction)) => {
-                return Err(lines.span(direction.span().start).error(
-                    "`toward` and `direction` both set the direction of the light; remove one of them",
-                ));
-            }
-            (None, None) => {
-                return Err(table.error(
+    lines: &Lines<'_>,
+    table: Span,
+) -> Result<DVec3, SceneFileError> {
+    let (key, vector, sign) = match (toward, direction) {
+        (Some(toward), None) => ("toward", toward, 1.0),
+        (None, Some(direction)) => ("direction", direction, -1.0),
+        (Some(_), Some(direction)) => {
+            return Err(lines.span(direction.span().start).error(
+                "`toward` and `direction` both set the direction of the light; remove one of them",
+            ));
+        }
+        (None, None) => {
+            return Err(table.error(
                     "the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
                      `direction = [x, y, z]`, the direction in which it shines",
                 ));
-            }
-        };
-        let toward = sign * DVec3::from(vector.get_ref().0);
-        unit(toward).map(|_| toward).ok_or_else(|| {
+        }
+    };
+    let toward = sign * DVec3::from(vector.get_ref().0);
+    unit(toward).map(|_| toward).ok_or_else(|| {
             let [x, y, z] = vector.get_ref().0;
             let span = lines.span(vector.span().start);
             span.error(format!(
                 "`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0"
             ))
         })
-    }
 }
 
 /// Returns the angular radius in radians. The `default` is in degrees.
@@ -118,7 +114,6 @@ fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> 
     }
 }
 
-/// Returns the light's colour multiplied by the number of a key.
 fn times(
     color: Option<ColorValue>,
     keys: &Keys<'_>,
@@ -139,7 +134,7 @@ fn position(
     keys: &Keys<'_>,
 ) -> Result<DVec3, SceneFileError> {
     let Some(vector) = vector else {
-        let kind = name_of(kind);
+        let kind = name_of(&kind);
         return Err(keys
             .table
             .error(format!("a {kind} light needs a position; add `position = [x, y, z]`")));
@@ -165,7 +160,7 @@ pub(super) fn read(
     let (far, near) = (is_one(&[Kind::Directional]), is_one(&[Kind::Point, Kind::Sphere]));
     refuse_foreign(
         lines,
-        &name_of(kind),
+        &name_of(&kind),
         &[
             ("at", range_of(&table.at), kind != Kind::Head),
             ("toward", range_of(&table.toward), far),
@@ -191,7 +186,7 @@ pub(super) fn read(
     let light = match kind {
         Kind::Head => LightKind::Head { strength: times(table.color, &keys, "strength")? },
         Kind::Directional => LightKind::Directional {
-            toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, span)?,
+            toward: aim(table.toward, table.direction, lines, span)?,
             strength: times(table.color, &keys, "strength")?,
             angular_radius: angular_radius(&keys, 0.0)?,
         },
@@ -229,7 +224,7 @@ pub(super) fn read_sun(
     ];
     let keys = Keys { lines, numbers, table: span };
     let kind = LightKind::Directional {
-        toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, span)?,
+        toward: aim(table.toward, table.direction, lines, span)?,
         strength: times(table.color, &keys, "strength")?,
         angular_radius: angular_radius(&keys, SUN_RADIUS)?,
     };

@@ -17,7 +17,7 @@ use super::span::{Lines, SceneFileError, WithSpan, range_of};
 use crate::exact::Table;
 use crate::light::Light;
 use crate::render::{PathTracing, Sampling};
-use crate::style::Given;
+use crate::style::OwnValues;
 use sky::{GroundPlan, SkyPlan};
 use studio::{StudioPlan, either};
 
@@ -63,7 +63,7 @@ pub(super) struct SceneLighting {
     pub(super) sky: Option<SkyPlan>,
     pub(super) ground: Option<WithSpan<GroundPlan>>,
     /// What the file gives itself, so that a style does not choose it.
-    pub(super) given: Given,
+    pub(super) given: OwnValues,
 }
 
 impl LightingTables {
@@ -79,11 +79,11 @@ impl LightingTables {
     }
 
     /// Returns which values the file gives that a style would choose otherwise.
-    fn given(&self) -> Given {
+    fn given(&self) -> OwnValues {
         let [occlusion_radius, outline, outline_depth] =
             self.studio.as_ref().map_or([false; 3], |studio| studio.get_ref().0.given());
         let light = self.names_light();
-        Given { occlusion_radius, outline, outline_depth, ground: self.ground.is_some(), light }
+        OwnValues { occlusion_radius, outline, outline_depth, ground: self.ground.is_some(), light }
     }
 
     fn names_light(&self) -> bool {
@@ -108,11 +108,10 @@ impl LightingTables {
         }
     }
 
-    /// Reads the values of all tables.
     fn plans(
         self,
         integrator: Option<IntegratorKind>,
-        given: Given,
+        given: OwnValues,
         lines: &Lines<'_>,
     ) -> Result<SceneLighting, SceneFileError> {
         let names_light = self.names_light();

@@ -17,7 +17,6 @@ use crate::scene_file::span::{
     refuse_foreign, scaled,
 };
 
-/// The kinds of skies that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -63,7 +62,7 @@ impl SkyPlan {
         let kind = table.kind;
         refuse_foreign(
             lines,
-            &name_of(kind),
+            &name_of(&kind),
             &[
                 ("color", range_of(&table.color), kind == Kind::Constant),
                 ("zenith", range_of(&table.zenith), kind == Kind::Gradient),

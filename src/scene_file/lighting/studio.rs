@@ -124,7 +124,6 @@ impl StudioPlan {
         Ok(Self { studio: Studio { occlusion, outline, ..bare }, depth_cue })
     }
 
-    /// Returns the studio for a scene and a camera.
     pub(crate) fn studio(
         &self,
         scene: &Scene,
