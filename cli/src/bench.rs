@@ -17,8 +17,8 @@ use crate::read_file::parse_size;
 use crate::with_scene::watch_upload;
 use crate::{interrupt, threads};
 use pinhole::accel::{AccelChoice, Structure};
+use pinhole::camera::View;
 use pinhole::camera::film::Film;
-use pinhole::camera::{Camera, View};
 use pinhole::generate::{BYTES_PER_SPHERE, Standard};
 use pinhole::gpu::{
     GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
