@@ -51,14 +51,14 @@ pub(crate) struct ColorArgs {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ColorFlags {
-    mapping: Mapping,
+    pub(crate) mapping: Mapping,
     map: Option<MapName>,
     is_reversed: bool,
     limits: Option<Limits>,
     is_log: bool,
     missing: Option<[u8; 3]>,
     /// What colors mean in all frames of a movie.
-    joined: JoinedKeys,
+    pub(crate) joined: JoinedKeys,
 }
 
 impl ColorFlags {
@@ -93,11 +93,6 @@ impl ColorFlags {
         })
     }
 
-    /// Returns these flags with the meaning of colors in all frames of a movie.
-    pub(crate) fn with_joined(&self, joined: JoinedKeys) -> Self {
-        Self { joined, ..self.clone() }
-    }
-
     /// Gives the colors of a column the range or the categories of all frames of a movie.
     pub(crate) fn join(&self, color: &mut ColorBy) {
         self.joined.apply_to(color);
@@ -112,11 +107,6 @@ impl ColorFlags {
             ("--emission-by", self.mapping.emission.is_some()),
         ];
         given.into_iter().chain(self.for_map()).find(|(_, is_given)| *is_given).map(|(f, _)| f)
-    }
-
-    /// Whether a flag names the column that colors the spheres.
-    pub(crate) fn names_column(&self) -> bool {
-        self.mapping.color.is_some()
     }
 
     /// The flags that say how a column becomes colors.

@@ -93,7 +93,11 @@ pub(super) struct LightFlags {
 }
 
 impl LightFlags {
-    pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
+    /// `open_ended_by` is the flag that leaves the number of samples open, if there is one.
+    pub(super) fn new(
+        args: &LightArgs,
+        open_ended_by: Option<&'static str>,
+    ) -> Result<Self, Failure> {
         let LightArgs { samples, ao, outline, .. } = *args;
         let refused = |flag: &str, given: String, error: &RangeError| {
             Failure::usage(format!("--{flag} {given}: it must be {}", error.range))
@@ -114,12 +118,7 @@ impl LightFlags {
             add_to_studio(&mut studio, None, outline);
             studio.check().map_err(|error| refused("outline", width.to_string(), &error))?;
         }
-        Ok(Self { args: args.clone(), background, open_ended_by: None })
-    }
-
-    /// Returns these flags with the flag that leaves the number of samples open, if there is one.
-    pub(super) fn with_open_end(self, flag: Option<&'static str>) -> Self {
-        Self { open_ended_by: flag, ..self }
+        Ok(Self { args: args.clone(), background, open_ended_by })
     }
 
     /// Returns the style that takes the place of the scene's.

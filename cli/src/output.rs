@@ -120,14 +120,8 @@ pub(super) fn write_spheres(
 }
 
 /// Creates a temporary file in the folder of the final file. It is removed if the program is stopped.
-fn temporary(path: &Path) -> Result<NamedTempFile> {
+pub(super) fn temporary(path: &Path) -> Result<NamedTempFile> {
     interrupt::creating(|| temporary_in_folder(path), |file| file.path().to_path_buf())
-}
-
-/// Creates a temporary file beside an output, for what is kept until the output is written.
-#[cfg(feature = "gpu")]
-pub(super) fn scratch(path: &Path) -> Result<NamedTempFile> {
-    temporary(path)
 }
 
 fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {

@@ -83,7 +83,7 @@ struct LimitsReport {
 }
 
 pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light)?);
+    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light, None)?);
     let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
         let layer = name.parse::<Layer>();
         layer

@@ -56,10 +56,13 @@ impl Job {
 
     pub(super) fn with_outputs(args: &RenderArgs, outputs: Outputs) -> Result<Self, Failure> {
         let stop_rule = StopRule::new(&args.stop_rule)?;
-        let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
+        let light = LightFlags::new(&args.light, stop_rule.open_end())?;
         let color = ColorFlags::new(&args.color)?;
-        let annotation =
-            AnnotationFlags::new(&args.color.annotation, outputs.format, color.names_column())?;
+        let annotation = AnnotationFlags::new(
+            &args.color.annotation,
+            outputs.format,
+            color.mapping.color.is_some(),
+        )?;
         let structure = StructureFlags::new(&args.structure)?;
         let source = Source::new(&args.input)?.with_light(light);
         Ok(Self {

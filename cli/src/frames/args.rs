@@ -53,12 +53,6 @@ impl FramesArgs {
         let given = [("--resume", self.resume), ("--raw", self.raw.is_some())];
         given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
     }
-
-    /// Replaces what says how pictures are written.
-    pub(crate) fn set_writing(&mut self, fps: Option<u32>, raw: Option<Raw>) {
-        self.fps = fps.or(self.fps);
-        self.raw = raw;
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -140,7 +140,8 @@ impl MovingCamera {
                         .context("the camera cannot follow its path")
                 };
                 let look = look(&moved).map_err(|failure| in_frame(failure, number))?;
-                Ok(look.without_view())
+                // No flag shows the view.
+                Ok(Look { view: None, ..look })
             }
         }
     }

@@ -72,7 +72,7 @@ pub(super) fn frames(
 ) -> Result<Prepared, Failure> {
     let missing = overview.colors.missing();
     let kinds = overview.kinds(source)?;
-    source.color = source.color.with_joined(overview.colors.clone());
+    source.color.joined = overview.colors.clone();
     source.kinds = kinds;
     let framed = overview.scene().with_context(|| source.name())?;
     let mut contents = frame(source, first)?;

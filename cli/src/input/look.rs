@@ -29,14 +29,7 @@ pub(crate) struct Look {
     /// The camera, with its position.
     pub(crate) parameters: CameraParameters,
     /// The flags for the view, if there are such.
-    view: Option<String>,
-}
-
-impl Look {
-    /// The same look, of which no flag shows the view.
-    pub(crate) fn without_view(self) -> Self {
-        Self { view: None, ..self }
-    }
+    pub(crate) view: Option<String>,
 }
 
 /// What a camera frames, and what is drawn beside it.

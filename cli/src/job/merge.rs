@@ -49,7 +49,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
     render.layers =
         args.layers.iter().map(|text| absolute_layer(text)).collect::<Result<_, _>>()?;
     render.report.quiet = args.quiet;
-    render.frames.set_writing(args.fps, args.raw);
+    (render.frames.fps, render.frames.raw) = (args.fps.or(render.frames.fps), args.raw);
     check_kind(&folder, &args.output)?;
     folder.enter()?;
     let recipe = Recipe::new(render)?;

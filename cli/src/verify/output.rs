@@ -48,7 +48,7 @@ impl Kept {
     /// Nothing yet. If a run file is written, samples will be kept in a temporary file beside it.
     #[cfg(feature = "gpu")]
     pub(crate) fn beside(save: Option<&Path>) -> Result<Self> {
-        let spool = save.map(output::scratch).transpose()?;
+        let spool = save.map(output::temporary).transpose()?;
         let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
         Ok(Self { samples, ..Self::default() })
     }
@@ -118,18 +118,6 @@ impl VerifyOutputs {
 
     fn paths(&self) -> impl Iterator<Item = &PathBuf> {
         self.json.iter().chain(&self.save).chain(&self.page)
-    }
-
-    /// Whether a lit picture for people is written, in a page or a run file.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn has_picture(&self) -> bool {
-        self.page.is_some() || self.save.is_some()
-    }
-
-    /// The run file to be written.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn save(&self) -> Option<&Path> {
-        self.save.as_deref()
     }
 
     /// Refuses to overwrite an input.

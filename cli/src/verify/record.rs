@@ -82,14 +82,14 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
     let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
     let provenance = provenance(&headless, structure);
     let chosen = (args.paths.unwrap_or(1), args.tile_seed);
-    let mut kept = Kept::beside(outputs.save().filter(|_| is_lit))?;
+    let mut kept = Kept::beside(args.save.as_deref().filter(|_| is_lit))?;
     let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
     let light = is_lit.then(certify).transpose()?;
     if input.settings.is_denoised {
         kept.denoised = Some(render_denoised(&headless, &input, choice)?);
     }
     let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
-    if is_lit && outputs.has_picture() {
+    if is_lit && (args.report.is_some() || args.save.is_some()) {
         kept.shown = Some(render_lit(&headless, &input, choice)?);
     }
     let run = Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
