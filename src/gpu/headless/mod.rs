@@ -2,34 +2,23 @@
 //!
 //! No other file of the library submits work to a device, polls it, or waits for it.
 
-pub(in crate::gpu) mod denoise;
-pub(in crate::gpu) mod derived;
-pub(in crate::gpu) mod device_limits;
-mod fence_probe;
-pub(in crate::gpu) mod hidden_bricks;
-pub(in crate::gpu) mod lit_flow;
-mod lit_inputs;
-pub(in crate::gpu) mod lit_picture;
-pub(in crate::gpu) mod lit_recording;
+pub(crate) mod denoise;
+pub(crate) mod lit_flow;
+pub(crate) mod lit_picture;
+pub(crate) mod lit_recording;
 mod lit_states;
-pub(in crate::gpu) mod measure;
-mod nearest_picture;
-pub(in crate::gpu) mod one_picture;
-mod path_recording;
-pub(in crate::gpu) mod plan;
-pub(in crate::gpu) mod planning;
-pub(in crate::gpu) mod primary;
-pub(in crate::gpu) mod profiling;
-pub(in crate::gpu) mod progress;
-pub(in crate::gpu) mod readable_trace;
-pub(in crate::gpu) mod readback;
-pub(in crate::gpu) mod recording;
-pub(in crate::gpu) mod renderers;
-mod studio_recording;
-pub(in crate::gpu) mod submission_size;
-pub(in crate::gpu) mod tile_textures;
-pub(in crate::gpu) mod uploading;
-pub(in crate::gpu) mod waiting;
+pub(crate) mod measure;
+pub(crate) mod one_picture;
+pub(crate) mod plan;
+pub(crate) mod planning;
+pub(crate) mod primary;
+pub(crate) mod profiling;
+pub(crate) mod progress;
+pub(crate) mod readback;
+pub(crate) mod recording;
+pub(crate) mod renderers;
+pub(crate) mod uploading;
+pub(crate) mod waiting;
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -40,10 +29,10 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 use crate::accel::AccelChoice;
 use crate::camera::View;
 use crate::gpu::adapter;
+use crate::gpu::checks::Faults;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
@@ -53,7 +42,6 @@ use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::query_structure;
-use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries_async;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
@@ -178,7 +166,7 @@ impl Headless {
     }
 
     /// The order and the amounts of work that suit this device.
-    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
+    pub(crate) fn shape(&self) -> DeviceShape {
         DeviceShape::of(self.info.device_type)
     }
 
@@ -229,47 +217,11 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
-                Ok(self.render_planned_async(scene, plan, view, settings, layers, watches).await)
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => Ok(done?.image),
-            Err(never) => match never {},
-        }
-    }
-
-    /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
-    /// structures, this is repeated with others.
-    pub(in crate::gpu) async fn with_uploaded<T>(
-        &self,
-        scene: &Scene,
-        plan: impl Fn(AccelChoice) -> RenderPlan,
-        work: impl AsyncFn(&SceneBuffers) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        let done: Result<_, Infallible> = with_retries_async(
-            AccelChoice::Auto,
-            plan,
-            |_| {},
-            async |plan: &RenderPlan| {
-                let plans = plan.structures();
-                Ok(match self.upload_planned_async(scene, &plans, &mut go_on).await {
-                    Ok(buffers) => work(&buffers).await,
-                    Err(error) => Err(error),
-                })
-            },
-        )
-        .await;
-        match done {
-            Ok(done) => done,
-            Err(never) => match never {},
-        }
+        let picture = retried(plan, async |plan: &RenderPlan| {
+            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
+            self.render_planned_async(scene, plan, view, settings, layers, watches).await
+        });
+        Ok(picture.await?.image)
     }
 
     /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
@@ -296,7 +248,7 @@ impl Headless {
         }
     }
 
-    pub(in crate::gpu) fn encoder(&self) -> CommandEncoder {
+    pub(crate) fn encoder(&self) -> CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
@@ -310,7 +262,7 @@ impl Headless {
     }
 
     /// Calls `work` with the renderer for a key, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_renderer<T>(
+    pub(crate) async fn with_renderer<T>(
         &self,
         key: RendererKey,
         work: impl AsyncFnOnce(&Renderer) -> Result<T, GpuError>,
@@ -325,7 +277,7 @@ impl Headless {
     }
 
     /// Calls `work` with the passes for a key, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_lit_passes<T>(
+    pub(crate) async fn with_lit_passes<T>(
         &self,
         key: LitKey,
         work: impl AsyncFnOnce(&LitPasses) -> Result<T, GpuError>,
@@ -335,17 +287,6 @@ impl Headless {
             let passes = renderers.lit(&self.device, key).await?;
             drop(phase);
             work(passes).await
-        })
-        .await
-    }
-
-    /// Calls `work` with the pass that writes new colours, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_recolor<T>(
-        &self,
-        work: impl AsyncFnOnce(&Recolor) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        self.alone(async |renderers: &mut Renderers| {
-            work(renderers.recolor(&self.device).await?).await
         })
         .await
     }
@@ -361,19 +302,19 @@ impl Headless {
     }
 
     /// Submits an encoder without waiting.
-    pub(in crate::gpu) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
+    pub(crate) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
         let _phase = self.phase("submit");
         self.queue.submit([encoder.finish()])
     }
 
     /// Submits the copies that are queued, and waits until they are done and their memory is free.
-    pub(in crate::gpu) async fn flush(&self) -> Result<(), GpuError> {
+    pub(crate) async fn flush(&self) -> Result<(), GpuError> {
         let submission = self.queue.submit([]);
         self.wait(&[], submission).await
     }
 
     /// Submits an encoder, and waits until it has finished and the buffers are mapped.
-    pub(in crate::gpu) async fn run(
+    pub(crate) async fn run(
         &self,
         encoder: CommandEncoder,
         mapped: &[&wgpu::Buffer],
@@ -383,7 +324,7 @@ impl Headless {
     }
 
     /// Waits until a submission has finished and the buffers are mapped.
-    pub(in crate::gpu) async fn wait(
+    pub(crate) async fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,
@@ -414,5 +355,18 @@ impl Headless {
             }
         }
         self.faults.check()
+    }
+}
+
+/// Calls `work` with a plan for the structures that suit a scene. If rays need too many steps in them, this is repeated
+/// with others.
+async fn retried<T>(
+    plan: impl Fn(AccelChoice) -> RenderPlan,
+    work: impl AsyncFn(&RenderPlan) -> Result<T, GpuError>,
+) -> Result<T, GpuError> {
+    let work = async |plan: &RenderPlan| Ok::<_, Infallible>(work(plan).await);
+    match with_retries_async(AccelChoice::Auto, plan, |_| {}, work).await {
+        Ok(done) => done,
+        Err(never) => match never {},
     }
 }

@@ -1,4 +1,4 @@
-//! Copying scenes to the library's own device.
+//! Copying scenes to the library's own device, and updating them there.
 
 use std::borrow::Borrow;
 
@@ -10,15 +10,15 @@ use crate::gpu::headless::progress::{UploadProgress, UploadStep, UploadWatch, go
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
-use crate::gpu::scene::shape_ids::ShapeIds;
 use crate::gpu::scene::structures::Structures;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneUpdate};
 
 /// The renderer that a picture needs for bricks of a kind, of which there may be several.
-pub(in crate::gpu) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
+pub(crate) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
 
 /// Is told the structure of bricks that have been built, and whether there are several.
 type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
@@ -76,7 +76,7 @@ impl Headless {
 
     /// Like [`Headless::upload_planned_async`]. `key_of` returns what the picture that follows will need for the bricks:
     /// it is built on a thread while the last brick is copied, which leaves other cores idle.
-    pub(in crate::gpu) async fn upload_ahead_of(
+    pub(crate) async fn upload_ahead_of(
         &self,
         scene: &Scene,
         plans: &StructurePlans,
@@ -109,8 +109,49 @@ impl Headless {
         .await
     }
 
+    /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with
+    /// [`Scene::apply`].
+    ///
+    /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a new
+    /// structure of the same kind is built on the host and copied to the device; the views of frames that show the
+    /// scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` lists
+    /// the cost of both.
+    ///
+    /// # Errors
+    /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.
+    pub async fn update_async(
+        &self,
+        buffers: &mut SceneBuffers,
+        scene: &Scene,
+        update: &SceneUpdate<'_>,
+    ) -> Result<(), GpuError> {
+        // If the first sphere ceases to be opaque, a studio may need a separate structure of occluders.
+        let loses_opacity =
+            buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
+        if buffers.takes_in_place(scene, update) && !loses_opacity {
+            let work = async |renderers: &mut Renderers| {
+                let recolor = renderers.recolor(&self.device).await?;
+                let make = Make { device: &self.device, queue: &self.queue };
+                let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+                let recorded = (&mut encoder, &mut names);
+                recolor.record_noted(make, recorded, buffers, scene, update).await?;
+                self.run_timed(encoder, names, &[]).await
+            };
+            return self.alone(work).await;
+        }
+        let choice = buffers.structure().choice();
+        let accel = self.plan_accel(scene, choice);
+        let opaque =
+            (loses_opacity || buffers.occluders.is_some()).then(|| scene.opaque()).flatten();
+        let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
+        let plans = StructurePlans { accel, occluders };
+        let copy = self.upload_planned_async(scene, &plans, &mut go_on).await?;
+        buffers.replace(copy);
+        Ok(())
+    }
+
     /// A renderer that only provides the bind group layouts of structures. Equal layouts of one device are compatible.
-    pub(in crate::gpu) async fn layouts_of(
+    pub(crate) async fn layouts_of(
         &self,
         structures: Vec<Structure>,
     ) -> Result<Renderer, GpuError> {

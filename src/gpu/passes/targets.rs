@@ -1,9 +1,11 @@
-//! The textures of the caller that pictures are written to.
+//! The textures that pictures are written to.
 
-use wgpu::TextureView;
+use wgpu::{Device, TextureFormat, TextureUsages, TextureView};
 
+use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::resources::texture;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 
 /// Textures of the caller that a picture is written to. All must be two-dimensional, of the same size, and have the
@@ -52,28 +54,98 @@ pub(super) fn checked_targets<'a>(
     }
     let size = targets.color.texture().size();
     for &(layer, view, format) in &wanted {
+        check_texture(layer, view, format, TextureUsages::STORAGE_BINDING, "STORAGE_BINDING")?;
         let texture = view.texture();
-        let refused =
-            |found: String, expected: String| Err(GpuError::Target { layer, found, expected });
-        if texture.format() != format {
-            return refused(format!("{:?}", texture.format()), format!("{format:?}"));
-        }
-        if !texture.usage().contains(wgpu::TextureUsages::STORAGE_BINDING) {
-            return refused(format!("{:?}", texture.usage()), "usable as STORAGE_BINDING".into());
-        }
         if texture.size() != size {
-            return refused(
-                describe_size([texture.width(), texture.height()]),
-                format!(
-                    "as large as the color target, {}",
-                    describe_size([size.width, size.height])
-                ),
-            );
+            let found = describe_size([texture.width(), texture.height()]);
+            let size = describe_size([size.width, size.height]);
+            let expected = format!("as large as the color target, {size}");
+            return Err(GpuError::Target { layer, found, expected });
         }
     }
     Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
 }
 
+/// Returns an error if a texture has another format or lacks a usage, which has this name.
+pub(crate) fn check_texture(
+    layer: &'static str,
+    view: &TextureView,
+    format: TextureFormat,
+    usage: TextureUsages,
+    name: &str,
+) -> Result<(), GpuError> {
+    let texture = view.texture();
+    let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
+    if texture.format() != format {
+        return refused(format!("{:?}", texture.format()), format!("{format:?}"));
+    }
+    if !texture.usage().contains(usage) {
+        return refused(format!("{:?}", texture.usage()), format!("usable as {name}"));
+    }
+    Ok(())
+}
+
 pub(super) fn describe_size([width, height]: [u32; 2]) -> String {
     format!("{width}x{height}")
+}
+
+/// Textures for the targets of a frame, in the formats of a renderer. They are for hosts that have no textures of their
+/// own to be written to; a host whose picture changes its size makes new ones.
+///
+/// Each has the usages `STORAGE_BINDING`, `TEXTURE_BINDING` and `COPY_SRC`, so that [`Composite`](crate::gpu::Composite)
+/// can draw them, [`Picker`](crate::gpu::Picker) can copy from them, and the host can do both.
+#[derive(Clone, Debug)]
+pub struct TargetTextures {
+    color: TextureView,
+    /// Depth, normal and id.
+    data: Option<[TextureView; 3]>,
+    size: [u32; 2],
+}
+
+impl TargetTextures {
+    /// Creates textures of `size`, in columns and rows. There are data layers if the renderer has them.
+    ///
+    /// # Errors
+    /// If the size is zero or more than the device allows, or if the device has no memory left.
+    pub async fn new_async(
+        renderer: &Renderer,
+        device: &Device,
+        size: [u32; 2],
+    ) -> Result<Self, GpuError> {
+        let usage = TextureUsages::STORAGE_BINDING
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC;
+        let texture = |label, format| {
+            let texture = texture(device, label, format, size, usage);
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let (color, data) = scoped(device, || {
+            let color = texture("pinhole color", renderer.color.texture_format());
+            let data = renderer.data_layers.then(|| {
+                [
+                    ("pinhole depth", DEPTH_FORMAT),
+                    ("pinhole normal", NORMAL_FORMAT),
+                    ("pinhole id", ID_FORMAT),
+                ]
+                .map(|(label, format)| texture(label, format))
+            });
+            (color, data)
+        })
+        .await?;
+        Ok(Self { color, data, size })
+    }
+
+    /// The targets, for frames, composites and picks.
+    #[must_use]
+    pub fn targets(&self) -> Targets<'_> {
+        let data = self.data.as_ref();
+        let data = data.map(|[depth, normal, id]| DataTargets { depth, normal, id });
+        Targets { color: &self.color, data }
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
 }

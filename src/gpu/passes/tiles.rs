@@ -1,40 +1,47 @@
-//! Dividing a film into tiles, bands and rectangles of workgroups.
+//! Dividing a film into tiles, bands and rectangles of workgroups, and the sizes of the buffers that a band needs. Both
+//! plans and frames use these sizes.
 
+use wgpu::Limits;
+
+use crate::accel::PlannedBuffer;
 use crate::camera::film::Film;
+use crate::gpu::device_shape::DeviceShape;
+use crate::gpu::scene::scene_buffers::binding_limit;
+use crate::gpu::shader::records;
 
 /// Maximum number of pixels of a band, whose hits share one buffer.
-pub(in crate::gpu) const MAX_BAND_PIXELS: u64 = 1 << 22;
+pub(crate) const MAX_BAND_PIXELS: u64 = 1 << 22;
 
 /// The side of a workgroup, as in `@workgroup_size(8, 8)`.
-pub(in crate::gpu) const WORKGROUP_SIDE: u32 = 8;
+pub(crate) const WORKGROUP_SIDE: u32 = 8;
 
 /// A rectangle of the film, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct Tile {
-    pub(in crate::gpu) origin: [u32; 2],
-    pub(in crate::gpu) size: [u32; 2],
+pub(crate) struct Tile {
+    pub(crate) origin: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// Position of the first pixel in the target textures.
-    pub(in crate::gpu) in_target: [u32; 2],
+    pub(crate) in_target: [u32; 2],
 }
 
 /// A rectangle of workgroups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct Groups {
-    pub(in crate::gpu) first: [u32; 2],
-    pub(in crate::gpu) size: [u32; 2],
+pub(crate) struct Groups {
+    pub(crate) first: [u32; 2],
+    pub(crate) size: [u32; 2],
 }
 
 impl Groups {
     /// An empty rectangle.
-    pub(in crate::gpu) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
+    pub(crate) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
 
     /// The workgroups that cover a rectangle of this size in pixels.
-    pub(in crate::gpu) fn of_size(pixels: [u32; 2]) -> Self {
+    pub(crate) fn of_size(pixels: [u32; 2]) -> Self {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
 
     /// The indices, row by row, of the pixels of a picture of this size that the workgroups cover.
-    pub(in crate::gpu) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
+    pub(crate) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
         let range = move |axis: usize| {
             let (first, count) = (self.first[axis], self.size[axis]);
             let end = ((first + count) * WORKGROUP_SIDE).min(size[axis]);
@@ -45,17 +52,17 @@ impl Groups {
     }
 
     /// Number of workgroups.
-    pub(in crate::gpu) fn count(self) -> u64 {
+    pub(crate) fn count(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
     /// Number of pixels of the workgroups, including any outside the picture.
-    pub(in crate::gpu) fn pixels(self) -> u64 {
+    pub(crate) fn pixels(self) -> u64 {
         self.count() * u64::from(WORKGROUP_SIDE * WORKGROUP_SIDE)
     }
 
     /// Removes at most about `count` workgroups from those that are left: whole rows, or a part of one row.
-    pub(in crate::gpu) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
+    pub(crate) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
         let Self { first: [x, y], size: [width, height] } = left.pop()?;
         if width == 0 || height == 0 {
             return Self::take(left, count);
@@ -78,8 +85,8 @@ impl Groups {
     }
 }
 
-/// Size of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
-pub(in crate::gpu) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
+/// The sides of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
+fn sides_within(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
     // No device has sides of more than 2^15 pixels, so one row of workgroups always fits.
     let rows = (max_pixels / u64::from(width)) as u32;
@@ -87,7 +94,7 @@ pub(in crate::gpu) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -
 }
 
 /// Divides a tile into bands of at most `rows` rows.
-pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
+pub(crate) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
     let height = tile.size[1];
     (0..height).step_by(rows as usize).map(move |y| Tile {
         origin: [tile.origin[0], tile.origin[1] + y],
@@ -97,7 +104,7 @@ pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile>
 }
 
 /// The tiles that cover a film. Those at its right and lower edges may be smaller.
-pub(in crate::gpu) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
+pub(crate) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
     let (width, height) = (film.width(), film.height());
     (0..height).step_by(tile_size[1] as usize).flat_map(move |y| {
         (0..width).step_by(tile_size[0] as usize).map(move |x| Tile {
@@ -108,6 +115,64 @@ pub(in crate::gpu) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<I
     })
 }
 
+const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+const RAY_BYTES: u64 = size_of::<records::RecordedRays>() as u64;
+
+/// Sizes in bytes of the buffers for a band of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct BandBuffers {
+    pub(crate) hits: u64,
+    /// Size of the buffer of rays; `None` if rays are not kept.
+    pub(crate) rays: Option<u64>,
+}
+
+impl BandBuffers {
+    /// The sizes for a band of targets with `size` pixels.
+    pub(crate) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
+        let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
+        Self { hits: pixels * HIT_BYTES, rays: keeps_rays.then_some(pixels * RAY_BYTES) }
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        self.hits + self.rays.unwrap_or(0)
+    }
+
+    /// The buffers that kernels write.
+    pub(crate) fn planned(&self) -> Vec<PlannedBuffer> {
+        let rays = self.rays.map(|bytes| PlannedBuffer::one("rays", bytes));
+        [PlannedBuffer::one("hits", self.hits)].into_iter().chain(rays).collect()
+    }
+
+    /// The buffers through which the host reads hits and rays, if rays are kept.
+    pub(crate) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
+        let both = self.rays.map(|rays| [("hits read-back", self.hits), ("rays read-back", rays)]);
+        both.into_iter().flatten().map(|(name, bytes)| PlannedBuffer::one(name, bytes)).collect()
+    }
+}
+
+/// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into
+/// one binding.
+pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
+    let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
+    let pixels_per_band = (binding_limit(limits) / largest).min(MAX_BAND_PIXELS);
+    // This is at most MAX_BAND_PIXELS, so it fits into u32.
+    ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
+}
+
+/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
+/// the rays of its last band only.
+pub(crate) fn tile_size(
+    limits: &Limits,
+    shape: DeviceShape,
+    film: &Film,
+    keeps_rays: bool,
+) -> [u32; 2] {
+    let side_limit = limits.max_texture_dimension_2d;
+    let [width, height] = sides_within(film, shape.max_tile_pixels, side_limit);
+    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
+    [width, rows]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,7 +181,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         for (width, height) in [(1, 1), (1, 5000), (9000, 3), (4096, 4096), (801, 599)] {
             let film = Film::new(width, height).unwrap();
-            let size = tile_size(&film, 1 << 20, 8192);
+            let size = sides_within(&film, 1 << 20, 8192);
             assert!(size[0] <= 8192 && size[1] <= 8192);
             let mut covered = vec![0_u8; film.pixel_count() as usize];
             for tile in tiles(&film, size) {

@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::headless::denoise::Denoise;
-    use crate::gpu::host::host_view::HostView;
+    use crate::gpu::host::depth_test::HostView;
     use crate::gpu::kernels;
     use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::scene::recolor::RecolorRange;

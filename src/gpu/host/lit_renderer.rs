@@ -1,25 +1,31 @@
 //! The passes of lit pictures for hosts, which are built when they are first needed.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::{ComputePipeline, Device};
+use wgpu::{BindGroupLayout, ComputePipeline, Device};
 
-use super::resolve::resolve_pipeline;
 use crate::camera::View;
+use crate::gpu::checks::Checks;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene, LiveKey, LivePasses};
+use crate::gpu::passes::lit::{
+    LightingData, LitKey, LitLayouts, LitPasses, LitScene, LiveKey, LivePasses,
+};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::formats::ColorTarget;
+use crate::gpu::shader::{Kernel, color_target, part, pipeline_with};
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
 #[derive(Debug)]
 pub struct LitRenderer {
     renderer: Renderer,
-    passes: Mutex<HashMap<LitKey, Arc<LitPasses>>>,
-    resolve: Mutex<Option<ComputePipeline>>,
-    live: Mutex<HashMap<LiveKey, Arc<LivePasses>>>,
+    passes: Built<LitKey, LitPasses>,
+    resolve: Built<(), ComputePipeline>,
+    live: Built<LiveKey, LivePasses>,
 }
 
 impl LitRenderer {
@@ -28,9 +34,9 @@ impl LitRenderer {
     pub fn new(renderer: Renderer) -> Self {
         Self {
             renderer,
-            passes: Mutex::default(),
-            resolve: Mutex::default(),
-            live: Mutex::default(),
+            passes: Built::default(),
+            resolve: Built::default(),
+            live: Built::default(),
         }
     }
 
@@ -82,15 +88,7 @@ impl LitRenderer {
         settings: &RenderSettings,
     ) -> Result<bool, GpuError> {
         let (.., key) = lit_key(device, scene, view, settings)?;
-        Ok(self.built_passes(&key).is_some() && self.built_resolve().is_some())
-    }
-
-    fn built_passes(&self, key: &LitKey) -> Option<Arc<LitPasses>> {
-        self.passes.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
-    }
-
-    fn built_resolve(&self) -> Option<ComputePipeline> {
-        self.resolve.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        Ok(self.passes.get(&key).is_some() && self.resolve.get(&()).is_some())
     }
 
     pub(super) async fn passes(
@@ -98,45 +96,58 @@ impl LitRenderer {
         device: &Device,
         key: LitKey,
     ) -> Result<Arc<LitPasses>, GpuError> {
-        if let Some(passes) = self.built_passes(&key) {
-            return Ok(passes);
-        }
-        // The lock is not held while they are built. If two threads build them, one of the two is dropped.
-        let built = Arc::new(LitPasses::new(device, key, &self.renderer.edits).await?);
-        let mut passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(Arc::clone(passes.entry(key).or_insert(built)))
+        self.passes.of(key, LitPasses::new(device, key, &self.renderer.edits)).await
     }
 
-    pub(in crate::gpu::host) async fn live_passes(
+    pub(super) async fn live_passes(
         &self,
         device: &Device,
         key: LiveKey,
     ) -> Result<Arc<LivePasses>, GpuError> {
-        let built = self.live.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-        if let Some(passes) = built {
-            return Ok(passes);
-        }
-        let Renderer { color, data_layers, layouts, .. } = &self.renderer;
+        let Renderer { color, data_layers, layouts, edits, .. } = &self.renderer;
         let targets = (*color, *data_layers, &layouts.targets);
-        let built = LivePasses::new(device, key, targets, &self.renderer.edits).await?;
-        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(Arc::clone(live.entry(key).or_insert(Arc::new(built))))
+        self.live.of(key, LivePasses::new(device, key, targets, edits)).await
     }
 
-    pub(super) async fn resolve(&self, device: &Device) -> Result<ComputePipeline, GpuError> {
-        if let Some(pipeline) = self.built_resolve() {
-            return Ok(pipeline);
+    pub(super) async fn resolve(&self, device: &Device) -> Result<Arc<ComputePipeline>, GpuError> {
+        let Renderer { color, layouts, edits, .. } = &self.renderer;
+        self.resolve.of((), resolve_pipeline(device, *color, &layouts.targets, edits)).await
+    }
+}
+
+/// What has been built so far.
+#[derive(Debug)]
+struct Built<K, T>(Mutex<HashMap<K, Arc<T>>>);
+
+impl<K: Eq + Hash, T> Built<K, T> {
+    fn get(&self, key: &K) -> Option<Arc<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
+    /// Returns what was built for a key, and builds it if necessary. The lock is not held meanwhile. If two threads build
+    /// it, one of the two is dropped.
+    async fn of(
+        &self,
+        key: K,
+        build: impl Future<Output = Result<T, GpuError>>,
+    ) -> Result<Arc<T>, GpuError> {
+        if let Some(built) = self.get(&key) {
+            return Ok(built);
         }
-        let Renderer { color, layouts, .. } = &self.renderer;
-        let built =
-            resolve_pipeline(device, *color, &layouts.targets, &self.renderer.edits).await?;
-        let mut resolve = self.resolve.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(resolve.insert(built).clone())
+        let built = Arc::new(build.await?);
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(all.entry(key).or_insert(built)))
+    }
+}
+
+impl<K, T> Default for Built<K, T> {
+    fn default() -> Self {
+        Self(Mutex::default())
     }
 }
 
 /// A lit picture, its light, and the key of the passes that it needs.
-pub(in crate::gpu::host) fn lit_key<'a>(
+pub(super) fn lit_key<'a>(
     device: &Device,
     scene: &'a SceneBuffers,
     view: &'a View<'a>,
@@ -149,4 +160,35 @@ pub(in crate::gpu::host) fn lit_key<'a>(
     let lighting = scenes.lighting();
     let key = scenes.key(&lighting, &device.limits());
     Ok((scenes, lighting, key))
+}
+
+pub(crate) fn resolve_kernel(color: ColorTarget) -> Kernel {
+    let parts = vec![
+        part!("scene/records.wgsl"),
+        part!("scene/lighting_records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("path/state.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        color_target(color),
+        part!("host/mean.wgsl"),
+        part!("host/resolve.wgsl"),
+    ];
+    Kernel::new("resolve", parts)
+}
+
+/// Builds the pipeline. `targets` is the layout of the host's textures.
+pub(crate) async fn resolve_pipeline(
+    device: &Device,
+    color: ColorTarget,
+    targets: &BindGroupLayout,
+    edits: &Edits,
+) -> Result<ComputePipeline, GpuError> {
+    let checks = Checks::default();
+    let kernel = resolve_kernel(color).edited(edits)?;
+    let film = checks.create(device, || LitLayouts::new(device).film);
+    let pipeline = pipeline_with(device, &kernel, &[Some(&film), None, Some(targets)], &checks);
+    checks.passed().await?;
+    Ok(pipeline)
 }
