@@ -46,11 +46,11 @@ pub use headless::progress::{
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::waiting::catches_panics;
-pub use host::composite::{Composite, CompositePicture};
-pub use host::composite::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
+pub use host::composite::{
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, Coverage, TargetEncoding,
+};
 pub use host::depth_test::{DepthTest, HostDepth};
-pub use host::lit_picture::LitPicture;
-pub use host::lit_picture::{LitProgress, LitState, LitSums};
+pub use host::lit_picture::{LitPicture, LitProgress, LitState, LitSums};
 pub use host::lit_renderer::LitRenderer;
 pub use host::live_picture::{LivePicture, LiveProgress};
 pub use host::pick::{PickError, Picked, PickedHit, Picker};
@@ -59,8 +59,7 @@ pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::Frame;
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::RendererOptions;
-pub use passes::targets::TargetTextures;
-pub use passes::targets::{DataTargets, Targets};
+pub use passes::targets::{DataTargets, TargetTextures, Targets};
 pub use profile::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;

@@ -15,8 +15,9 @@ use crate::gpu::headless::progress::{
 use crate::gpu::headless::readback::{Derived, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::uploading::KeyOf;
+use crate::gpu::passes::bands::{rows_per_band, tile_size};
 use crate::gpu::passes::frame::{BandBrick, Frame};
-use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, rows_per_band, tile_size, tiles};
+use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::gpu::passes::visible_bricks::{VisibleBricks, space_of};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};

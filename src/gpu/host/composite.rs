@@ -9,7 +9,7 @@ use crate::camera::{DepthOrder, HostCamera};
 use crate::gpu::checks::scoped;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::host::depth_test::HostView;
+use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::targets::{Targets, check_texture};
 use crate::gpu::resources::numbered_group;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};

@@ -4,6 +4,7 @@
 
 pub(crate) mod composite;
 pub(crate) mod depth_test;
+pub(crate) mod host_view;
 mod lit_cursor;
 pub(crate) mod lit_picture;
 pub(crate) mod lit_renderer;

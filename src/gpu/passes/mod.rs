@@ -1,5 +1,6 @@
 //! Passes over pixels and paths. Each is built once for a device and records into an encoder. None submits or waits.
 
+pub(crate) mod bands;
 pub(crate) mod emitter_table;
 pub(crate) mod frame;
 pub(crate) mod lit;

@@ -1,13 +1,6 @@
-//! Dividing a film into tiles, bands and rectangles of workgroups, and the sizes of the buffers that a band needs. Both
-//! plans and frames use these sizes.
+//! Dividing a film into tiles, bands and rectangles of workgroups.
 
-use wgpu::Limits;
-
-use crate::accel::PlannedBuffer;
 use crate::camera::film::Film;
-use crate::gpu::device_shape::DeviceShape;
-use crate::gpu::scene::scene_buffers::binding_limit;
-use crate::gpu::shader::records;
 
 /// Maximum number of pixels of a band, whose hits share one buffer.
 pub(crate) const MAX_BAND_PIXELS: u64 = 1 << 22;
@@ -85,8 +78,8 @@ impl Groups {
     }
 }
 
-/// The sides of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
-fn sides_within(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
+/// Size of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
+pub(crate) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
     // No device has sides of more than 2^15 pixels, so one row of workgroups always fits.
     let rows = (max_pixels / u64::from(width)) as u32;
@@ -115,64 +108,6 @@ pub(crate) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Ti
     })
 }
 
-const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
-const RAY_BYTES: u64 = size_of::<records::RecordedRays>() as u64;
-
-/// Sizes in bytes of the buffers for a band of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BandBuffers {
-    pub(crate) hits: u64,
-    /// Size of the buffer of rays; `None` if rays are not kept.
-    pub(crate) rays: Option<u64>,
-}
-
-impl BandBuffers {
-    /// The sizes for a band of targets with `size` pixels.
-    pub(crate) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
-        let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
-        Self { hits: pixels * HIT_BYTES, rays: keeps_rays.then_some(pixels * RAY_BYTES) }
-    }
-
-    pub(crate) fn bytes(&self) -> u64 {
-        self.hits + self.rays.unwrap_or(0)
-    }
-
-    /// The buffers that kernels write.
-    pub(crate) fn planned(&self) -> Vec<PlannedBuffer> {
-        let rays = self.rays.map(|bytes| PlannedBuffer::one("rays", bytes));
-        [PlannedBuffer::one("hits", self.hits)].into_iter().chain(rays).collect()
-    }
-
-    /// The buffers through which the host reads hits and rays, if rays are kept.
-    pub(crate) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
-        let both = self.rays.map(|rays| [("hits read-back", self.hits), ("rays read-back", rays)]);
-        both.into_iter().flatten().map(|(name, bytes)| PlannedBuffer::one(name, bytes)).collect()
-    }
-}
-
-/// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into
-/// one binding.
-pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
-    let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
-    let pixels_per_band = (binding_limit(limits) / largest).min(MAX_BAND_PIXELS);
-    // This is at most MAX_BAND_PIXELS, so it fits into u32.
-    ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
-}
-
-/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
-/// the rays of its last band only.
-pub(crate) fn tile_size(
-    limits: &Limits,
-    shape: DeviceShape,
-    film: &Film,
-    keeps_rays: bool,
-) -> [u32; 2] {
-    let side_limit = limits.max_texture_dimension_2d;
-    let [width, height] = sides_within(film, shape.max_tile_pixels, side_limit);
-    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
-    [width, rows]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,7 +116,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         for (width, height) in [(1, 1), (1, 5000), (9000, 3), (4096, 4096), (801, 599)] {
             let film = Film::new(width, height).unwrap();
-            let size = sides_within(&film, 1 << 20, 8192);
+            let size = tile_size(&film, 1 << 20, 8192);
             assert!(size[0] <= 8192 && size[1] <= 8192);
             let mut covered = vec![0_u8; film.pixel_count() as usize];
             for tile in tiles(&film, size) {

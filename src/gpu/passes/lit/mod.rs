@@ -51,40 +51,7 @@ pub(crate) use live::{LiveKey, LivePasses, LiveView};
 pub(crate) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
 pub(crate) use recorder::Recorder;
 pub(crate) use records::LitSizes;
-pub(crate) use round::{Moment, Round, Step};
-
-/// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Attempt {
-    /// One pass takes whole samples, where there is such a pass.
-    OnePass,
-    /// A ray for each invocation, except those towards ambient light.
-    Steps,
-    /// A ray for each invocation.
-    OneByOne,
-}
-
-impl Attempt {
-    /// The next way, if some invocations needed too many iterations.
-    pub(crate) fn easier(self, lighting: &LightingData) -> Option<Self> {
-        match self {
-            Self::OnePass => Some(Self::Steps),
-            Self::Steps if lighting.parameters.occlusion_samples > 1 => Some(Self::OneByOne),
-            Self::Steps | Self::OneByOne => None,
-        }
-    }
-
-    /// The key of the passes that take samples in this way.
-    pub(crate) fn key(self, key: LitKey) -> LitKey {
-        LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
-    }
-
-    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
-    /// state that it reads does not depend on the direction.
-    pub(crate) fn at_once(self) -> u32 {
-        if self == Self::OneByOne { 1 } else { 32 }
-    }
-}
+pub(crate) use round::{Attempt, Moment, Round, Step};
 
 /// A scene as a lit picture shows it.
 #[derive(Clone, Copy, Debug)]

@@ -5,11 +5,10 @@ use std::ops::Range;
 use wgpu::BindGroup;
 
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::Attempt;
 use crate::gpu::passes::lit::frame::Area;
 use crate::gpu::passes::lit::lighting::LightingData;
 use crate::gpu::passes::lit::passes::{
-    BySchedule, LitPasses, Pass, SamplePasses, ShadePasses, StepPasses, StudioPasses,
+    BySchedule, LitKey, LitPasses, Pass, SamplePasses, ShadePasses, StepPasses, StudioPasses,
 };
 use crate::gpu::passes::lit::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -88,6 +87,39 @@ pub(crate) enum Moment {
     /// In a studio, some directions of ambient light are added.
     Gathered,
     Accumulated,
+}
+
+/// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Attempt {
+    /// One pass takes whole samples, where there is such a pass.
+    OnePass,
+    /// A ray for each invocation, except those towards ambient light.
+    Steps,
+    /// A ray for each invocation.
+    OneByOne,
+}
+
+impl Attempt {
+    /// The next way, if some invocations needed too many iterations.
+    pub(crate) fn easier(self, lighting: &LightingData) -> Option<Self> {
+        match self {
+            Self::OnePass => Some(Self::Steps),
+            Self::Steps if lighting.parameters.occlusion_samples > 1 => Some(Self::OneByOne),
+            Self::Steps | Self::OneByOne => None,
+        }
+    }
+
+    /// The key of the passes that take samples in this way.
+    pub(crate) fn key(self, key: LitKey) -> LitKey {
+        LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
+    }
+
+    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
+    /// state that it reads does not depend on the direction.
+    pub(crate) fn at_once(self) -> u32 {
+        if self == Self::OneByOne { 1 } else { 32 }
+    }
 }
 
 /// The inputs of a round, which traces some samples of every pixel of a tile together.
