@@ -12,8 +12,8 @@ use std::error::Error;
 
 use pinhole::camera::{DepthOrder, HostCamera};
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, DataTargets, Frame, Picker,
-    Renderer, RendererOptions, SceneBuffers, Targets, adapter, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, Frame, Picker, Renderer,
+    RendererOptions, SceneBuffers, TargetTextures, adapter, wgpu,
 };
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
 use wgpu::{TextureFormat, TextureUsages};
@@ -47,15 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect();
     let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?)?;
-    let layer = |format| {
-        let written = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
-        view_of(&texture(&device, format, written | TextureUsages::COPY_SRC))
-    };
-    let spheres_color = layer(options.color.texture_format());
-    let [distance, normal, id] =
-        [TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::R32Uint].map(layer);
-    let data = Some(DataTargets { depth: &distance, normal: &normal, id: &id });
-    let targets = Targets { color: &spheres_color, data };
+    let textures = TargetTextures::new(&renderer, &device, [WIDTH, HEIGHT])?;
+    let targets = textures.targets();
     let mut frame = Frame::new(&renderer, &device, &targets)?;
 
     // Once for a kind of render pass, and once for each set of targets.

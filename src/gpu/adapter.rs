@@ -4,7 +4,7 @@ use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPre
 
 use crate::gpu::error::GpuError;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::waiting::block_on;
+use crate::gpu::headless::waiting::block_on;
 
 /// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than
 /// once.

@@ -1,5 +1,5 @@
-//! Creating things on a device in error scopes, so that errors of the device come back as values and never reach the
-//! error handler of the application that owns the device.
+//! Errors of a device as values: what error scopes around the creation of things catch, so that it never reaches the
+//! error handler of the application that owns the device, and what wgpu reports by callback.
 //!
 //! Nothing here waits. A browser tells what a scope has caught only later, so a scope is popped at once, and its answer
 //! is awaited when everything has been created. Native devices answer at once.
@@ -7,6 +7,7 @@
 use std::cell::RefCell;
 use std::fmt;
 use std::pin::Pin;
+use std::sync::{Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
 
 use wgpu::{Device, ErrorFilter, ErrorScopeGuard, WasmNotSend};
@@ -124,4 +125,34 @@ pub(super) async fn scoped<T>(device: &Device, create: impl FnOnce() -> T) -> Re
     let (created, check) = Check::of(device, create);
     check.passed().await?;
     Ok(created)
+}
+
+/// Errors that wgpu reported by callback.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    first: Mutex<Option<GpuError>>,
+}
+
+impl Faults {
+    /// Stores a fault, unless an earlier one is stored. The loss of the device replaces all others, because it is their
+    /// cause.
+    pub(super) fn report(&self, fault: GpuError) {
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        if first.is_none() || matches!(fault, GpuError::DeviceLost { .. }) {
+            *first = Some(fault);
+        }
+    }
+
+    /// Removes the fault of an earlier render or of the caller's own commands, unless it is the loss of the device.
+    pub(super) fn forget(&self) {
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        first.take_if(|fault| !matches!(fault, GpuError::DeviceLost { .. }));
+    }
+
+    pub(super) fn check(&self) -> Result<(), GpuError> {
+        match self.first.lock().unwrap_or_else(PoisonError::into_inner).clone() {
+            Some(fault) => Err(fault),
+            None => Ok(()),
+        }
+    }
 }

@@ -28,7 +28,7 @@ impl KernelRewrite {
         Self(Arc::new(rewrite))
     }
 
-    pub(in crate::gpu) fn apply(&self, name: &str, source: &str) -> String {
+    pub(crate) fn apply(&self, name: &str, source: &str) -> String {
         (self.0)(name, source)
     }
 }
@@ -48,7 +48,7 @@ impl PartialEq for KernelRewrite {
 
 /// All edits of the kernels of a device: first the replacements, and then the rewrite of what they are composed to.
 #[derive(Clone, Debug, Default)]
-pub(in crate::gpu) struct Edits {
-    pub(in crate::gpu) replacements: Vec<ShaderEdit>,
-    pub(in crate::gpu) rewrite: Option<KernelRewrite>,
+pub(crate) struct Edits {
+    pub(crate) replacements: Vec<ShaderEdit>,
+    pub(crate) rewrite: Option<KernelRewrite>,
 }

@@ -19,29 +19,25 @@ mod checks;
 mod device_shape;
 pub(crate) mod edit;
 mod error;
-mod faults;
 mod headless;
 mod host;
 mod kernels;
 mod options;
 pub(crate) mod passes;
 mod profile;
-mod quirks;
 mod resources;
 mod scene;
 mod self_test;
 mod shader;
-#[cfg(not(target_arch = "wasm32"))]
-mod waiting;
 
 #[cfg(not(target_arch = "wasm32"))]
 #[doc(hidden)]
 pub use blocking::edited_composite;
 #[cfg(not(target_arch = "wasm32"))]
 pub use blocking::with_retries;
+pub use device_shape::DeviceLimits;
 pub use error::GpuError;
 pub use headless::Headless;
-pub use headless::device_limits::DeviceLimits;
 pub use headless::lit_recording::{EachSample, LitPart};
 pub use headless::measure::TraceTime;
 pub use headless::plan::{HostPeak, PictureRequest, RenderPlan, StructurePlans};
@@ -50,21 +46,20 @@ pub use headless::progress::{
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::waiting::catches_panics;
-pub use host::composite::{Composite, CompositePicture};
-pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
+pub use host::composite::{
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, Coverage, TargetEncoding,
+};
 pub use host::depth_test::{DepthTest, HostDepth};
-pub use host::lit::picture::LitPicture;
-pub use host::lit::progress::{LitProgress, LitState, LitSums};
-pub use host::lit::renderer::LitRenderer;
-pub use host::live::picture::{LivePicture, LiveProgress};
+pub use host::lit_picture::{LitPicture, LitProgress, LitState, LitSums};
+pub use host::lit_renderer::LitRenderer;
+pub use host::live_picture::{LivePicture, LiveProgress};
 pub use host::pick::{PickError, Picked, PickedHit, Picker};
-pub use host::target_textures::TargetTextures;
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::Frame;
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::RendererOptions;
-pub use passes::targets::{DataTargets, Targets};
+pub use passes::targets::{DataTargets, TargetTextures, Targets};
 pub use profile::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;

@@ -116,7 +116,7 @@ impl Profile {
     }
 
     /// Adds a pass, or several of one submission, which took so long.
-    pub(in crate::gpu) fn add_pass(&self, name: &'static str, duration: Duration) {
+    pub(crate) fn add_pass(&self, name: &'static str, duration: Duration) {
         self.shared().add(name, ProfileTrack::Device, duration);
     }
 
@@ -158,15 +158,15 @@ impl Drop for ProfilePhase {
 
 /// The names of the passes of a submission, which are noted only for a profile.
 #[derive(Debug, Default)]
-pub(in crate::gpu) struct PassNames(pub(in crate::gpu) Option<Vec<&'static str>>);
+pub(crate) struct PassNames(pub(crate) Option<Vec<&'static str>>);
 
 impl PassNames {
-    pub(in crate::gpu) fn note(&mut self, name: &'static str) {
+    pub(crate) fn note(&mut self, name: &'static str) {
         self.0.iter_mut().for_each(|names| names.push(name));
     }
 
     /// The name of all passes of the submission.
-    pub(in crate::gpu) fn of_all(&self) -> Option<&'static str> {
+    pub(crate) fn of_all(&self) -> Option<&'static str> {
         let names = self.0.as_ref()?;
         let first = *names.first()?;
         Some(if names.iter().all(|name| *name == first) { first } else { "several passes" })

@@ -61,7 +61,7 @@ fn only_headless_submits_polls_and_waits() {
     let calls = [".submit(", ".poll(", "map_async", "on_submitted_work_done"];
     assert_absent("src", &calls, &["gpu/headless/mod.rs", "gpu/headless/waiting.rs"]);
     // Blocking forms are separate from what they wait for.
-    let but = ["src/gpu/waiting.rs"];
+    let but = ["src/gpu/headless/waiting.rs"];
     assert_absent("src", &["pollster::"], &but);
 }
 

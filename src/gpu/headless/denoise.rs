@@ -11,24 +11,23 @@ use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Kernel, part};
+use crate::gpu::shader::{Kernel, part, pipeline};
 use crate::image::Image;
 use crate::image::denoise::{Guided, PASSES, REACH};
 
 /// Uniform record of one pass of the denoiser.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct Denoise {
-    pub(in crate::gpu) size: [u32; 2],
-    pub(in crate::gpu) step: u32,
-    pub(in crate::gpu) zero: u32,
+pub(crate) struct Denoise {
+    pub(crate) size: [u32; 2],
+    pub(crate) step: u32,
+    pub(crate) zero: u32,
 }
 
 /// Maximum number of pixels of a strip, which is filtered at once.
 const MAX_STRIP_PIXELS: u64 = 1 << 21;
 
-pub(in crate::gpu) fn denoise_kernel() -> Kernel {
+pub(crate) fn denoise_kernel() -> Kernel {
     Kernel::new("denoise", vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")])
 }
 

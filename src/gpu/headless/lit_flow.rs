@@ -15,21 +15,21 @@ use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 /// Callback after every submission. An error that it returns ends the work.
-pub(in crate::gpu) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
+pub(crate) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
 
 /// The passes of a lit picture, and what they are given.
 #[derive(Clone, Copy)]
-pub(in crate::gpu) struct LitWork<'a> {
-    pub(in crate::gpu) headless: &'a Headless,
-    pub(in crate::gpu) passes: &'a LitPasses,
-    pub(in crate::gpu) scenes: LitScene<'a>,
-    pub(in crate::gpu) lighting: &'a LightingData,
-    pub(in crate::gpu) attempt: Attempt,
+pub(crate) struct LitWork<'a> {
+    pub(crate) headless: &'a Headless,
+    pub(crate) passes: &'a LitPasses,
+    pub(crate) scenes: LitScene<'a>,
+    pub(crate) lighting: &'a LightingData,
+    pub(crate) attempt: Attempt,
 }
 
 impl LitWork<'_> {
     /// Creates the buffers for some tiles.
-    pub(in crate::gpu) async fn frame(
+    pub(crate) async fn frame(
         &self,
         sizes: LitSizes,
         tiles: impl Iterator<Item = Tile>,
@@ -41,7 +41,7 @@ impl LitWork<'_> {
     }
 
     /// The dispatches of samples in these buffers.
-    pub(in crate::gpu) fn round(&self, frame: &LitFrame) -> Round<'_> {
+    pub(crate) fn round(&self, frame: &LitFrame) -> Round<'_> {
         let Self { passes, scenes: LitScene { all: scene, occluders, .. }, lighting, .. } = *self;
         let (room, attempt) = (frame.sizes.room(), self.attempt);
         Round { passes, lighting, scene, occluders, room, attempt }
@@ -49,7 +49,7 @@ impl LitWork<'_> {
 }
 
 /// Records and submits the dispatches of a lit picture. While the device executes one submission, the next is recorded.
-pub(in crate::gpu) struct Flow<'a> {
+pub(crate) struct Flow<'a> {
     headless: &'a Headless,
     frame: &'a LitFrame,
     scene: &'a SceneBuffers,
@@ -64,7 +64,7 @@ pub(in crate::gpu) struct Flow<'a> {
     /// The time at which the previous submission had finished.
     last_done: Instant,
     /// Number of samples that each tile has accumulated, counting all submitted work.
-    pub(in crate::gpu) samples: Vec<u32>,
+    pub(crate) samples: Vec<u32>,
 }
 
 struct Submitted {
@@ -75,7 +75,7 @@ struct Submitted {
 }
 
 impl<'a> Flow<'a> {
-    pub(in crate::gpu) fn new(
+    pub(crate) fn new(
         headless: &'a Headless,
         frame: &'a LitFrame,
         passes: &'a LitPasses,
@@ -98,20 +98,20 @@ impl<'a> Flow<'a> {
     }
 
     /// The encoder of the next submission, for commands other than dispatches.
-    pub(in crate::gpu) fn encoder(&mut self) -> &mut CommandEncoder {
+    pub(crate) fn encoder(&mut self) -> &mut CommandEncoder {
         let headless = self.headless;
         self.encoder.get_or_insert_with(|| headless.encoder())
     }
 
     /// Starts new paths in a tile.
-    pub(in crate::gpu) fn begin(&mut self, tile: usize) {
+    pub(crate) fn begin(&mut self, tile: usize) {
         self.recorder.tile = tile;
         let frame = self.frame;
         frame.record_clear_lists(self.encoder());
     }
 
     /// Records a dispatch, divided into slices if it takes long.
-    pub(in crate::gpu) async fn step(
+    pub(crate) async fn step(
         &mut self,
         step: &Step<'a>,
         after: &mut After<'_>,
@@ -196,10 +196,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Submits the recorded commands, and waits until all work has finished and the buffers are mapped.
-    pub(in crate::gpu) async fn finish(
-        &mut self,
-        mapped: &[&wgpu::Buffer],
-    ) -> Result<(), GpuError> {
+    pub(crate) async fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
         self.hand_over(&mut || Ok(())).await?;
         let last = self.submitted.take();
         if let Some(Submitted { index, .. }) = &last {
@@ -209,7 +206,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Discards the recorded commands, and waits until all submitted work has finished.
-    pub(in crate::gpu) async fn abandon(&mut self) -> Result<(), GpuError> {
+    pub(crate) async fn abandon(&mut self) -> Result<(), GpuError> {
         self.encoder = None;
         self.accumulated.clear();
         self.recorder.take_parameters();
@@ -219,7 +216,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
-    pub(in crate::gpu) async fn check_spent(&mut self) -> Result<(), GpuError> {
+    pub(crate) async fn check_spent(&mut self) -> Result<(), GpuError> {
         let frame = self.frame;
         frame.record_copy_spent(self.encoder());
         self.finish(&[&frame.spent_back.buffer]).await?;
@@ -243,10 +240,7 @@ impl<'a> Flow<'a> {
 
     /// Computes the sums, over all pixels, of the variances of their means and of their luminances. All pixels must
     /// have the same number of samples.
-    pub(in crate::gpu) async fn variations(
-        &mut self,
-        passes: &LitPasses,
-    ) -> Result<[f64; 2], GpuError> {
+    pub(crate) async fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
         let mut sums = [0.0; 2];
         for (tile, samples) in self.samples.clone().into_iter().enumerate() {
             self.recorder.tile = tile;

@@ -7,17 +7,15 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
 use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
-use crate::gpu::passes::lit::sums;
-use crate::gpu::passes::lit::{Attempt, LitFrame, LitPasses, LitScene, LitSizes};
+use crate::gpu::passes::lit::{Attempt, LitFrame, LitPasses, LitScene, LitSizes, sums};
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::image::outline;
-use crate::image::{Image, Layer, LayerSet};
+use crate::image::{Image, Layer, LayerSet, outline};
 use crate::render::{PrimarySettings, RenderSettings, Totals, batch};
 
 impl Headless {
     /// Renders a lit picture of a scene that is already on this device.
-    pub(in crate::gpu) async fn render_lit(
+    pub(crate) async fn render_lit(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,

@@ -2,34 +2,23 @@
 //!
 //! No other file of the library submits work to a device, polls it, or waits for it.
 
-pub(in crate::gpu) mod denoise;
-pub(in crate::gpu) mod derived;
-pub(in crate::gpu) mod device_limits;
-mod fence_probe;
-pub(in crate::gpu) mod hidden_bricks;
-pub(in crate::gpu) mod lit_flow;
-mod lit_inputs;
-pub(in crate::gpu) mod lit_picture;
-pub(in crate::gpu) mod lit_recording;
+pub(crate) mod denoise;
+pub(crate) mod lit_flow;
+pub(crate) mod lit_picture;
+pub(crate) mod lit_recording;
 mod lit_states;
-pub(in crate::gpu) mod measure;
-mod nearest_picture;
-pub(in crate::gpu) mod one_picture;
-mod path_recording;
-pub(in crate::gpu) mod plan;
-pub(in crate::gpu) mod planning;
-pub(in crate::gpu) mod primary;
-pub(in crate::gpu) mod profiling;
-pub(in crate::gpu) mod progress;
-pub(in crate::gpu) mod readable_trace;
-pub(in crate::gpu) mod readback;
-pub(in crate::gpu) mod recording;
-pub(in crate::gpu) mod renderers;
-mod studio_recording;
-pub(in crate::gpu) mod submission_size;
-pub(in crate::gpu) mod tile_textures;
-pub(in crate::gpu) mod uploading;
-pub(in crate::gpu) mod waiting;
+pub(crate) mod measure;
+pub(crate) mod one_picture;
+pub(crate) mod plan;
+pub(crate) mod planning;
+pub(crate) mod primary;
+pub(crate) mod profiling;
+pub(crate) mod progress;
+pub(crate) mod readback;
+pub(crate) mod recording;
+pub(crate) mod renderers;
+pub(crate) mod uploading;
+pub(crate) mod waiting;
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -40,10 +29,10 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 use crate::accel::AccelChoice;
 use crate::camera::View;
 use crate::gpu::adapter;
+use crate::gpu::checks::Faults;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
@@ -177,7 +166,7 @@ impl Headless {
     }
 
     /// The order and the amounts of work that suit this device.
-    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
+    pub(crate) fn shape(&self) -> DeviceShape {
         DeviceShape::of(self.info.device_type)
     }
 
@@ -259,7 +248,7 @@ impl Headless {
         }
     }
 
-    pub(in crate::gpu) fn encoder(&self) -> CommandEncoder {
+    pub(crate) fn encoder(&self) -> CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
@@ -273,7 +262,7 @@ impl Headless {
     }
 
     /// Calls `work` with the renderer for a key, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_renderer<T>(
+    pub(crate) async fn with_renderer<T>(
         &self,
         key: RendererKey,
         work: impl AsyncFnOnce(&Renderer) -> Result<T, GpuError>,
@@ -288,7 +277,7 @@ impl Headless {
     }
 
     /// Calls `work` with the passes for a key, while nothing else uses this device.
-    pub(in crate::gpu) async fn with_lit_passes<T>(
+    pub(crate) async fn with_lit_passes<T>(
         &self,
         key: LitKey,
         work: impl AsyncFnOnce(&LitPasses) -> Result<T, GpuError>,
@@ -313,19 +302,19 @@ impl Headless {
     }
 
     /// Submits an encoder without waiting.
-    pub(in crate::gpu) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
+    pub(crate) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
         let _phase = self.phase("submit");
         self.queue.submit([encoder.finish()])
     }
 
     /// Submits the copies that are queued, and waits until they are done and their memory is free.
-    pub(in crate::gpu) async fn flush(&self) -> Result<(), GpuError> {
+    pub(crate) async fn flush(&self) -> Result<(), GpuError> {
         let submission = self.queue.submit([]);
         self.wait(&[], submission).await
     }
 
     /// Submits an encoder, and waits until it has finished and the buffers are mapped.
-    pub(in crate::gpu) async fn run(
+    pub(crate) async fn run(
         &self,
         encoder: CommandEncoder,
         mapped: &[&wgpu::Buffer],
@@ -335,7 +324,7 @@ impl Headless {
     }
 
     /// Waits until a submission has finished and the buffers are mapped.
-    pub(in crate::gpu) async fn wait(
+    pub(crate) async fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,

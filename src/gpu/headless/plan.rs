@@ -5,9 +5,9 @@ use wgpu::Limits;
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::camera::View;
 use crate::camera::film::Film;
+use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::device_limits::DeviceLimits;
-use crate::gpu::headless::tile_textures;
+use crate::gpu::headless::readback;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
 use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
@@ -84,7 +84,7 @@ pub struct StructurePlans {
 
 impl RenderPlan {
     /// Plans a picture of primary rays.
-    pub(in crate::gpu) fn of_primary(
+    pub(crate) fn of_primary(
         request: &PictureRequest<'_>,
         accel: AccelPlan,
         device: &DeviceLimits,
@@ -94,7 +94,7 @@ impl RenderPlan {
 
     /// Plans a recording of primary rays with all layers, rays and hits, a second render without rays, and the check of
     /// both.
-    pub(in crate::gpu) fn of_recording(
+    pub(crate) fn of_recording(
         request: &PictureRequest<'_>,
         accel: AccelPlan,
         device: &DeviceLimits,
@@ -116,7 +116,7 @@ impl RenderPlan {
         let band = BandBuffers::new(limits, tile_size, keeps_rays);
         let tile_buffers = band.planned();
         let mut tile_textures = band.planned_read_back();
-        tile_textures.extend(tile_textures::planned(tile_size, layers != LayerSet::COLOR));
+        tile_textures.extend(readback::planned(tile_size, layers != LayerSet::COLOR));
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| device.in_host(bytes);
@@ -228,7 +228,7 @@ impl HostPeak {
 }
 
 /// The buffers of the structure, and those that shading reads.
-pub(in crate::gpu) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
+pub(crate) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
     let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();
     let words = appearance::words_per_sphere(scene.checked_appearance()).count();
@@ -245,7 +245,7 @@ pub(in crate::gpu) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<Pla
     buffers
 }
 
-pub(in crate::gpu) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
+pub(crate) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
     u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
 }
 
@@ -266,7 +266,7 @@ fn in_words(name: &str) -> &'static str {
     }
 }
 
-pub(in crate::gpu) fn total(buffers: &[PlannedBuffer]) -> u64 {
+pub(crate) fn total(buffers: &[PlannedBuffer]) -> u64 {
     buffers.iter().map(|buffer| buffer.bytes).sum()
 }
 

@@ -1,11 +1,13 @@
-//! Planning renders on a device, for every integrator.
+//! Planning renders on a device, for every integrator. Drivers that are known to compute wrong results get another
+//! structure; `docs/drivers.md` contains the evidence.
 
-use crate::accel::{AccelChoice, AccelPlan};
+use wgpu::AdapterInfo;
+
+use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::camera::View;
+use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::device_limits::DeviceLimits;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan, StructurePlans};
-use crate::gpu::quirks;
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::image::LayerSet;
 use crate::render::RenderSettings;
@@ -67,7 +69,7 @@ impl Headless {
     #[must_use]
     pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
         let binding = binding_limit(&self.device().limits());
-        let plan = quirks::plan(self.adapter_info(), scene, choice, |choice| {
+        let plan = without_defects(self.adapter_info(), scene, choice, |choice| {
             AccelPlan::new(scene.spheres(), choice, binding)
         });
         match scene.whole() {
@@ -82,4 +84,25 @@ impl Headless {
         let device_type = self.adapter_info().device_type;
         DeviceLimits { limits: self.device().limits(), device_type }
     }
+}
+
+/// Plans the structure that suits the data, or another one if the driver is known to compute wrong results with it.
+///
+/// `SwiftShader` of Chromium 156 has this defect: where invocations that run together leave a loop by `break` at
+/// different times, those that left first lose the values that they assigned in the loop. Grids are traversed in such
+/// loops; trees are not.
+fn without_defects(
+    info: &AdapterInfo,
+    scene: &Scene,
+    choice: AccelChoice,
+    plan: impl Fn(AccelChoice) -> AccelPlan,
+) -> AccelPlan {
+    let planned = plan(choice);
+    let is_grid = matches!(planned.structure, Structure::Grid | Structure::NestedGrid);
+    if choice == AccelChoice::Auto && is_grid && info.name.starts_with("SwiftShader") {
+        let mut tree = plan(AccelChoice::Tree);
+        tree.reason = format!("{} spheres, and this driver computes grids wrongly", scene.len());
+        return tree;
+    }
+    planned
 }

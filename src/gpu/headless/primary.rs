@@ -6,11 +6,9 @@ use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::derived::Derived;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
-use crate::gpu::headless::readable_trace::ReadableTrace;
+use crate::gpu::headless::readback::{Derived, ReadableTrace, TileTextures};
 use crate::gpu::headless::renderers::RendererKey;
-use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
@@ -23,15 +21,15 @@ use crate::render::PrimarySettings;
 use crate::verify::TracedPixel;
 
 /// The destination of a picture.
-pub(in crate::gpu) struct Output<'a> {
-    pub(in crate::gpu) image: &'a mut Image,
+pub(crate) struct Output<'a> {
+    pub(crate) image: &'a mut Image,
     /// Destination of the ray and the hit of every pixel, if they are kept.
-    pub(in crate::gpu) pixels: Option<&'a mut Vec<TracedPixel>>,
+    pub(crate) pixels: Option<&'a mut Vec<TracedPixel>>,
 }
 
 impl Headless {
     /// Renders a picture with a ray through the centre of every pixel.
-    pub(in crate::gpu) async fn render_primary(
+    pub(crate) async fn render_primary(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -50,7 +48,7 @@ impl Headless {
         .await
     }
 
-    pub(in crate::gpu) async fn render_tiles(
+    pub(crate) async fn render_tiles(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
@@ -115,7 +113,7 @@ impl Headless {
 }
 
 /// Begins a compute pass, and notes its name.
-pub(in crate::gpu) fn begin_pass<'a>(
+pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     names: &mut PassNames,
     name: &'static str,

@@ -13,31 +13,31 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 impl Headless {
     /// What notes the passes of one submission.
-    pub(in crate::gpu) fn pass_names(&self) -> PassNames {
+    pub(crate) fn pass_names(&self) -> PassNames {
         PassNames(self.profile.as_ref().map(|_| Vec::new()))
     }
 
     /// Whether every pass is submitted by itself, so that the host's clock can measure it for a profile.
-    pub(in crate::gpu) fn submits_one_by_one(&self) -> bool {
+    pub(crate) fn submits_one_by_one(&self) -> bool {
         self.profile.is_some()
     }
 
     /// Adds the passes of a submission to the profile, which has just finished. The device may have begun with it at
     /// `began`.
-    pub(in crate::gpu) fn note_passes(&self, names: &PassNames, began: Instant) {
+    pub(crate) fn note_passes(&self, names: &PassNames, began: Instant) {
         if let (Some(profile), Some(name)) = (&self.profile, names.of_all()) {
             profile.add_pass(name, began.elapsed());
         }
     }
 
     /// Begins a phase of the host, if there is a profile.
-    pub(in crate::gpu) fn phase(&self, name: &'static str) -> Option<ProfilePhase> {
+    pub(crate) fn phase(&self, name: &'static str) -> Option<ProfilePhase> {
         self.profile.as_ref().map(|profile| profile.phase(name))
     }
 
     /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and
     /// records the elapsed time for the size of the next submission.
-    pub(in crate::gpu) async fn submit_slice(
+    pub(crate) async fn submit_slice(
         &self,
         encoder: CommandEncoder,
         names: PassNames,
@@ -53,7 +53,7 @@ impl Headless {
     }
 
     /// Submits an encoder like [`Headless::run`], and adds its passes to the profile.
-    pub(in crate::gpu) async fn run_timed(
+    pub(crate) async fn run_timed(
         &self,
         encoder: CommandEncoder,
         names: PassNames,

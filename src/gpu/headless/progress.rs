@@ -33,13 +33,13 @@ pub type UploadWatch<'a> = dyn FnMut(&UploadProgress) -> Decision + 'a;
 
 impl UploadProgress {
     /// Calls `watch`, and returns an error if it stops.
-    pub(in crate::gpu) fn tell(self, watch: &mut UploadWatch<'_>) -> Result<(), GpuError> {
+    pub(crate) fn tell(self, watch: &mut UploadWatch<'_>) -> Result<(), GpuError> {
         unless_ended(watch(&self))
     }
 }
 
 /// Returns an error for a decision to finish or to stop.
-pub(in crate::gpu) fn unless_ended(decision: Decision) -> Result<(), GpuError> {
+pub(crate) fn unless_ended(decision: Decision) -> Result<(), GpuError> {
     match decision {
         Decision::GoOn | Decision::MeasureNoise => Ok(()),
         Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
@@ -47,28 +47,24 @@ pub(in crate::gpu) fn unless_ended(decision: Decision) -> Result<(), GpuError> {
 }
 
 /// A [`Watch`] or an [`UploadWatch`] that always continues.
-pub(in crate::gpu) fn go_on<T>(_: &T) -> Decision {
+pub(crate) fn go_on<T>(_: &T) -> Decision {
     Decision::GoOn
 }
 
 /// Number of pixels for which primary rays were traced, in whole workgroups. A pixel counts once for every brick.
-pub(in crate::gpu) struct TracedPixels {
+pub(crate) struct TracedPixels {
     done: u64,
     /// Number of pixels to be traced: those in which the scene's box may be visible.
     total: u64,
 }
 
 impl TracedPixels {
-    pub(in crate::gpu) fn of(total: u64) -> Self {
+    pub(crate) fn of(total: u64) -> Self {
         Self { done: 0, total }
     }
 
     /// Adds the pixels of some workgroups, and calls `watch` with the progress.
-    pub(in crate::gpu) fn add(
-        &mut self,
-        groups: Groups,
-        watch: &mut Watch<'_>,
-    ) -> Result<(), GpuError> {
+    pub(crate) fn add(&mut self, groups: Groups, watch: &mut Watch<'_>) -> Result<(), GpuError> {
         self.done = (self.done + groups.pixels()).min(self.total);
         let is_done = self.done == self.total;
         // A picture without any pixels to trace is complete at once.

@@ -1,8 +1,9 @@
 //! Recording primary rays for the checker: the rays and hits that the device computed, and the numbers that it was
 //! given.
 
-use crate::accel::AccelChoice;
-use crate::camera::{Camera, View};
+use crate::accel::{AccelChoice, AccelPlan};
+use crate::camera::film::Film;
+use crate::camera::{Camera, PinholeCamera, View};
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::primary::Output;
@@ -11,16 +12,18 @@ use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::{Headless, retried};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::self_test::{TestedProperty, fence_probe};
 use crate::gpu::shader::records::{self, SceneSpace};
+use crate::image::color::LinearRgb;
 use crate::image::{Image, LayerSet, NO_ID};
-use crate::render::{PrimarySettings, RenderSettings};
+use crate::render::{Decision, PrimarySettings, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
 };
 
 /// Returns a camera together with the numbers that are uploaded for it and for the scene's box.
-pub(in crate::gpu) fn requested_view(
+pub(crate) fn requested_view(
     space: &SceneSpace,
     camera: &dyn Camera,
 ) -> (RequestedCamera, UploadedView) {
@@ -41,7 +44,7 @@ pub(in crate::gpu) fn requested_view(
 }
 
 /// Creates a recording in which no pixel has been traced.
-pub(super) fn new_recording(
+fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
     primary: PrimarySettings,
@@ -132,5 +135,51 @@ impl Headless {
             self.record_and_render_async(&buffers, view, settings, &mut go_on).await
         });
         Ok(Checker::new(scene)?.certify(&recording.await?))
+    }
+}
+
+/// Side of the picture in pixels.
+const SIDE: u32 = 64;
+
+/// The number of spheres along each side of a cube, for which a grid is worth its while.
+const ALONG: u16 = 6;
+
+impl Headless {
+    /// Tests whether fences hold in a kernel that traces rays through a grid.
+    pub(super) async fn probe_fences(&self) -> Result<TestedProperty, GpuError> {
+        let place = |index: u16| f32::from(index) / f32::from(ALONG);
+        let sphere = |index: u16| {
+            let [x, y, z] =
+                [index % ALONG, index / ALONG % ALONG, index / ALONG / ALONG].map(place);
+            [x, y, z, 0.3 / f32::from(ALONG)]
+        };
+        let spheres = (0..ALONG * ALONG * ALONG).map(sphere).collect();
+        // The scene and the view are good by construction.
+        let invalid =
+            |error: &dyn std::fmt::Display| GpuError::Device { message: error.to_string() };
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).map_err(|error| invalid(&error))?;
+        let film = Film::new(SIDE, SIDE).map_err(|error| invalid(&error))?;
+        let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())
+            .map_err(|error| invalid(&error))?;
+        let view = View::new(&camera, film);
+        let limit = self.device().limits().max_storage_buffer_binding_size;
+        let plan = AccelPlan::new(scene.spheres(), AccelChoice::Grid, limit);
+        let buffers = self.upload_async(&scene, &plan.build(scene.spheres()).into()).await?;
+        let primary = buffers.primary_settings(&RenderSettings::default())?;
+        let key = RendererKey {
+            data_layers: true,
+            keeps_rays: true,
+            probes_fences: true,
+            ..RendererKey::new(&buffers, &camera)
+        };
+        let mut recording = new_recording(&buffers.space, &view, primary)?;
+        self.with_renderer(key, async |renderer: &Renderer| {
+            let output =
+                Output { image: &mut recording.image, pixels: Some(&mut recording.pixels) };
+            let go_on = &mut |_: &_| Decision::GoOn;
+            self.render_tiles(renderer, &buffers, &view, &primary, output, go_on).await
+        })
+        .await?;
+        Ok(fence_probe::judge(&recording.pixels))
     }
 }

@@ -26,25 +26,25 @@ use crate::image::LayerSet;
 
 /// The properties in which renderers of a device differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) struct RendererKey {
-    pub(in crate::gpu) camera: CameraKind,
+pub(crate) struct RendererKey {
+    pub(crate) camera: CameraKind,
     /// The kinds of the scene's bricks, without repetition.
-    pub(in crate::gpu) kinds: Vec<BrickKind>,
-    pub(in crate::gpu) several_bricks: bool,
-    pub(in crate::gpu) data_layers: bool,
-    pub(in crate::gpu) keeps_rays: bool,
+    pub(crate) kinds: Vec<BrickKind>,
+    pub(crate) several_bricks: bool,
+    pub(crate) data_layers: bool,
+    pub(crate) keeps_rays: bool,
     /// Whether it records sums in place of rays, for the self-test.
-    pub(in crate::gpu) probes_fences: bool,
+    pub(crate) probes_fences: bool,
 }
 
 impl RendererKey {
     /// The key of a renderer for pictures without data layers.
-    pub(in crate::gpu) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
+    pub(crate) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
         Self::of_picture(scene.kinds(), scene.bricks.len() > 1, camera, LayerSet::COLOR)
     }
 
     /// The key of a renderer for pictures of bricks of these kinds, of which there may be several.
-    pub(in crate::gpu) fn of_picture(
+    pub(crate) fn of_picture(
         kinds: Vec<BrickKind>,
         several_bricks: bool,
         camera: &dyn Camera,
@@ -63,7 +63,7 @@ impl RendererKey {
 
 /// The renderers and passes that have been built so far.
 #[derive(Debug, Default)]
-pub(in crate::gpu) struct Renderers {
+pub(crate) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
     /// Renderers that threads build ahead of their use.
     #[cfg(not(target_arch = "wasm32"))]
@@ -75,7 +75,7 @@ pub(in crate::gpu) struct Renderers {
 
 impl Renderers {
     /// Creates an empty collection. All renderers will be built with these edits of their shaders.
-    pub(in crate::gpu) fn new(edits: Edits) -> Self {
+    pub(crate) fn new(edits: Edits) -> Self {
         Self { edits, ..Self::default() }
     }
 
@@ -103,7 +103,7 @@ impl Renderers {
     /// taken by [`Renderers::of`], which also returns the error of building it. Browsers build pipelines beside other
     /// work by themselves.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(in crate::gpu) fn begin(
+    pub(crate) fn begin(
         &mut self,
         device: &Device,
         device_type: wgpu::DeviceType,
@@ -135,7 +135,7 @@ impl Renderers {
     }
 
     /// Returns the renderer for a key, and builds it if necessary.
-    pub(in crate::gpu) async fn of(
+    pub(crate) async fn of(
         &mut self,
         device: &Device,
         device_type: wgpu::DeviceType,
@@ -151,7 +151,7 @@ impl Renderers {
     }
 
     /// Returns the pass that writes new colours, and builds it if necessary.
-    pub(in crate::gpu) async fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
+    pub(crate) async fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
         match &mut self.recolor {
             Some(built) => Ok(built),
             entry @ None => Ok(entry.insert(Recolor::new_async(device).await?)),
@@ -159,7 +159,7 @@ impl Renderers {
     }
 
     /// Returns the passes of lit pictures for a key, and builds them if necessary.
-    pub(in crate::gpu) async fn lit(
+    pub(crate) async fn lit(
         &mut self,
         device: &Device,
         key: LitKey,

@@ -12,14 +12,13 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
-use crate::gpu::scene::shape_ids::ShapeIds;
 use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
 /// The renderer that a picture needs for bricks of a kind, of which there may be several.
-pub(in crate::gpu) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
+pub(crate) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
 
 /// Is told the structure of bricks that have been built, and whether there are several.
 type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
@@ -77,7 +76,7 @@ impl Headless {
 
     /// Like [`Headless::upload_planned_async`]. `key_of` returns what the picture that follows will need for the bricks:
     /// it is built on a thread while the last brick is copied, which leaves other cores idle.
-    pub(in crate::gpu) async fn upload_ahead_of(
+    pub(crate) async fn upload_ahead_of(
         &self,
         scene: &Scene,
         plans: &StructurePlans,
@@ -152,7 +151,7 @@ impl Headless {
     }
 
     /// A renderer that only provides the bind group layouts of structures. Equal layouts of one device are compatible.
-    pub(in crate::gpu) async fn layouts_of(
+    pub(crate) async fn layouts_of(
         &self,
         structures: Vec<Structure>,
     ) -> Result<Renderer, GpuError> {

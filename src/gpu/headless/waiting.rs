@@ -11,14 +11,16 @@ use wgpu::{Device, Queue, SubmissionIndex};
 use crate::gpu::error::GpuError;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(in crate::gpu) use std::time::Instant;
+pub(crate) use std::time::Instant;
 #[cfg(target_arch = "wasm32")]
-pub(in crate::gpu) use web_time::Instant;
+pub(crate) use web_time::Instant;
 
 #[cfg(not(target_arch = "wasm32"))]
 thread_local! {
     /// Whether this thread polls a device.
     static POLLS: Cell<bool> = const { Cell::new(false) };
+    /// Whether the future that this thread runs was called by a blocking function.
+    static MAY_BLOCK: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Whether this thread is in a call of wgpu whose panics are caught and become errors.
@@ -53,8 +55,30 @@ fn poll(device: &Device, how: wgpu::PollType, timeout: Duration) -> Result<(), G
     }
 }
 
+/// Runs a future to its end and blocks the thread meanwhile. Everything that can wait is an async function; its blocking
+/// form runs it by this function, in which waiting for the device blocks the thread as well. A program for browsers cannot
+/// block.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn block_on<T>(future: impl Future<Output = T>) -> T {
+    /// Restores the previous value, also if the future panics.
+    struct Before(bool);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            MAY_BLOCK.set(self.0);
+        }
+    }
+    let _before = Before(MAY_BLOCK.replace(true));
+    pollster::block_on(future)
+}
+
+/// Whether the future that this thread runs may block it.
+#[cfg(not(target_arch = "wasm32"))]
+fn may_block() -> bool {
+    MAY_BLOCK.get()
+}
+
 /// Lets the device call callbacks of what has happened already.
-pub(in crate::gpu) fn call_back(device: &Device) {
+pub(crate) fn call_back(device: &Device) {
     #[cfg(not(target_arch = "wasm32"))]
     let _ = poll(device, wgpu::PollType::Poll, Duration::ZERO);
     #[cfg(target_arch = "wasm32")]
@@ -65,14 +89,14 @@ pub(in crate::gpu) fn call_back(device: &Device) {
 ///
 /// A native device tells nothing unless some thread waits for it. If this one must not, another one does.
 #[cfg(not(target_arch = "wasm32"))]
-pub(in crate::gpu) async fn until_done(
+pub(crate) async fn until_done(
     device: &Device,
     _: &Queue,
     submission: SubmissionIndex,
     timeout: Duration,
 ) -> Result<(), GpuError> {
     let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(timeout) };
-    if crate::gpu::waiting::may_block() {
+    if may_block() {
         return poll(device, wait, timeout);
     }
     let (answer, to_answer) = answer();
@@ -87,7 +111,7 @@ pub(in crate::gpu) async fn until_done(
 
 /// Waits until the device has finished everything that was submitted. The browser waits as long as it takes.
 #[cfg(target_arch = "wasm32")]
-pub(in crate::gpu) async fn until_done(
+pub(crate) async fn until_done(
     _: &Device,
     queue: &Queue,
     _: SubmissionIndex,
@@ -100,18 +124,18 @@ pub(in crate::gpu) async fn until_done(
 }
 
 /// Returns a future, and the place where a callback gives its result.
-pub(in crate::gpu) fn answer<T>() -> (Answer<T>, ToAnswer<T>) {
+pub(crate) fn answer<T>() -> (Answer<T>, ToAnswer<T>) {
     let shared = Arc::new(Mutex::new(Shared { given: None, waker: None }));
     (Answer(Arc::clone(&shared)), ToAnswer(shared))
 }
 
 /// A result that a callback will give.
 #[derive(Debug)]
-pub(in crate::gpu) struct Answer<T>(Arc<Mutex<Shared<T>>>);
+pub(crate) struct Answer<T>(Arc<Mutex<Shared<T>>>);
 
 /// The place where a callback gives a result.
 #[derive(Debug)]
-pub(in crate::gpu) struct ToAnswer<T>(Arc<Mutex<Shared<T>>>);
+pub(crate) struct ToAnswer<T>(Arc<Mutex<Shared<T>>>);
 
 #[derive(Debug)]
 struct Shared<T> {
@@ -120,7 +144,7 @@ struct Shared<T> {
 }
 
 impl<T> ToAnswer<T> {
-    pub(in crate::gpu) fn give(self, result: T) {
+    pub(crate) fn give(self, result: T) {
         let waker = {
             let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             shared.given = Some(result);
@@ -134,7 +158,7 @@ impl<T> ToAnswer<T> {
 
 impl<T> Answer<T> {
     /// Returns the result if it has been given, without waiting.
-    pub(in crate::gpu) fn known(self) -> Option<T> {
+    pub(crate) fn known(self) -> Option<T> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).given.take()
     }
 }
@@ -157,7 +181,7 @@ impl<T> Future for Answer<T> {
 /// A value that one task at a time uses; others wait for their turn. Unlike a guard of [`Mutex`], a turn may last
 /// while a future waits.
 #[derive(Debug, Default)]
-pub(in crate::gpu) struct Turns<T> {
+pub(crate) struct Turns<T> {
     shared: Mutex<Place<T>>,
 }
 
@@ -170,18 +194,18 @@ struct Place<T> {
 
 /// The turn of a task, which ends when this is dropped.
 #[derive(Debug)]
-pub(in crate::gpu) struct Turn<'a, T: Default> {
+pub(crate) struct Turn<'a, T: Default> {
     turns: &'a Turns<T>,
-    pub(in crate::gpu) value: T,
+    pub(crate) value: T,
 }
 
 impl<T: Default> Turns<T> {
-    pub(in crate::gpu) fn new(value: T) -> Self {
+    pub(crate) fn new(value: T) -> Self {
         Self { shared: Mutex::new(Place { value, is_taken: false, waiting: Vec::new() }) }
     }
 
     /// Waits until no other task uses the value.
-    pub(in crate::gpu) async fn turn(&self) -> Turn<'_, T> {
+    pub(crate) async fn turn(&self) -> Turn<'_, T> {
         std::future::poll_fn(|context| {
             let mut place = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
             if place.is_taken {
@@ -211,7 +235,6 @@ impl<T: Default> Drop for Turn<'_, T> {
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod tests {
     use super::*;
-    use crate::gpu::waiting::block_on;
 
     #[test]
     fn a_turn_that_was_given_up_blocks_nobody() {

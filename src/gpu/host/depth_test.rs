@@ -11,8 +11,7 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::resources::numbered_group;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::{layout, uniform};
-use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Kernel, Part, camera_constant, camera_parts, part};
+use crate::gpu::shader::{Kernel, Part, camera_constant, camera_parts, part, pipeline};
 
 /// The passes that end rays at the depth of a host, and remove hits behind it. One is enough for a renderer.
 #[derive(Debug)]
@@ -24,7 +23,7 @@ pub struct DepthTest {
 }
 
 /// The kinds of camera that a host has.
-pub(in crate::gpu) const LIMITED: [CameraKind; 2] = [CameraKind::Pinhole, CameraKind::Orthographic];
+pub(crate) const LIMITED: [CameraKind; 2] = [CameraKind::Pinhole, CameraKind::Orthographic];
 
 /// A depth texture of the host, and the camera that it was rendered with.
 #[derive(Debug)]
@@ -49,7 +48,7 @@ fn shared_parts() -> Vec<Part> {
 }
 
 /// The kernel that ends rays, for a kind of camera.
-pub(in crate::gpu) fn limit_kernel(camera: CameraKind) -> Kernel {
+pub(crate) fn limit_kernel(camera: CameraKind) -> Kernel {
     let mut parts = shared_parts();
     parts.extend([
         part!("camera/film.wgsl"),
@@ -63,7 +62,7 @@ pub(in crate::gpu) fn limit_kernel(camera: CameraKind) -> Kernel {
 }
 
 /// The kernel that removes hits.
-pub(in crate::gpu) fn hide_kernel() -> Kernel {
+pub(crate) fn hide_kernel() -> Kernel {
     let mut parts = shared_parts();
     parts.push(part!("host/hide.wgsl"));
     Kernel::new("hide", parts)

@@ -8,21 +8,21 @@ use crate::camera::{Camera, CameraKind, DepthOrder, HostCamera};
 /// Uniform record. Twin: `HostView` in `shaders/host/host_view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct HostView {
-    pub(in crate::gpu) column: [f32; 3],
-    pub(in crate::gpu) is_parallel: f32,
-    pub(in crate::gpu) row: [f32; 3],
-    pub(in crate::gpu) slope: f32,
-    pub(in crate::gpu) forward: [f32; 3],
-    pub(in crate::gpu) far: f32,
-    pub(in crate::gpu) film_depth: [f32; 3],
-    pub(in crate::gpu) zero: f32,
-    pub(in crate::gpu) size: [f32; 2],
-    pub(in crate::gpu) first_pixel: [f32; 2],
+pub(crate) struct HostView {
+    pub(crate) column: [f32; 3],
+    pub(crate) is_parallel: f32,
+    pub(crate) row: [f32; 3],
+    pub(crate) slope: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) far: f32,
+    pub(crate) film_depth: [f32; 3],
+    pub(crate) zero: f32,
+    pub(crate) size: [f32; 2],
+    pub(crate) first_pixel: [f32; 2],
 }
 
 impl HostView {
-    pub(in crate::gpu) fn new(camera: &HostCamera, size: [u32; 2], first_pixel: [u32; 2]) -> Self {
+    pub(crate) fn new(camera: &HostCamera, size: [u32; 2], first_pixel: [u32; 2]) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let (vectors, depth) = (camera.vectors(), camera.depth());
         // Half a pixel is 1/size of the way from the middle of the film to its edge, and y is up.
@@ -46,13 +46,13 @@ impl HostView {
     }
 
     /// The place of a picture in a pass without depth.
-    pub(in crate::gpu) fn without_camera(size: [u32; 2], first_pixel: [u32; 2]) -> Self {
+    pub(crate) fn without_camera(size: [u32; 2], first_pixel: [u32; 2]) -> Self {
         let [size, first_pixel] = [size, first_pixel].map(|of| of.map(|n| n as f32));
         Self { size, first_pixel, ..Self::zeroed() }
     }
 
     /// A buffer that contains a record.
-    pub(in crate::gpu) fn buffer(device: &wgpu::Device, record: &Self) -> wgpu::Buffer {
+    pub(crate) fn buffer(device: &wgpu::Device, record: &Self) -> wgpu::Buffer {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("pinhole host view"),
             size: size_of::<Self>() as u64,

@@ -2,22 +2,23 @@
 //!
 //! Nothing here submits or waits, and nothing is allocated from picture to picture.
 
-pub(in crate::gpu) mod composite;
-pub(in crate::gpu) mod composite_options;
-pub(in crate::gpu) mod depth_test;
-pub(in crate::gpu) mod host_view;
-pub(in crate::gpu) mod lit;
-pub(in crate::gpu) mod live;
-pub(in crate::gpu) mod pick;
-pub(in crate::gpu) mod target_textures;
+pub(crate) mod composite;
+pub(crate) mod depth_test;
+pub(crate) mod host_view;
+mod lit_cursor;
+pub(crate) mod lit_picture;
+pub(crate) mod lit_renderer;
+pub(crate) mod live_picture;
+pub(crate) mod pick;
+mod tickets;
 
 /// The kernels of everything here.
-pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
+pub(crate) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     use crate::gpu::shader::formats::ColorTarget;
-    use composite_options::{Coverage, TargetEncoding};
+    use composite::{Coverage, TargetEncoding};
 
     let mut kernels = vec![composite::cover_kernel(), depth_test::hide_kernel()];
-    kernels.extend(ColorTarget::ALL.iter().map(|color| lit::resolve::resolve_kernel(*color)));
+    kernels.extend(ColorTarget::ALL.iter().map(|color| lit_renderer::resolve_kernel(*color)));
     kernels.extend(depth_test::LIMITED.map(depth_test::limit_kernel));
     for source in [ColorTarget::Srgb8, ColorTarget::Linear16] {
         for encoding in [TargetEncoding::Linear, TargetEncoding::Srgb] {

@@ -15,31 +15,31 @@ const RAY_BYTES: u64 = size_of::<records::RecordedRays>() as u64;
 
 /// Sizes in bytes of the buffers for a band of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct BandBuffers {
-    pub(in crate::gpu) hits: u64,
+pub(crate) struct BandBuffers {
+    pub(crate) hits: u64,
     /// Size of the buffer of rays; `None` if rays are not kept.
-    pub(in crate::gpu) rays: Option<u64>,
+    pub(crate) rays: Option<u64>,
 }
 
 impl BandBuffers {
     /// The sizes for a band of targets with `size` pixels.
-    pub(in crate::gpu) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
+    pub(crate) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
         let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
         Self { hits: pixels * HIT_BYTES, rays: keeps_rays.then_some(pixels * RAY_BYTES) }
     }
 
-    pub(in crate::gpu) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.hits + self.rays.unwrap_or(0)
     }
 
     /// The buffers that kernels write.
-    pub(in crate::gpu) fn planned(&self) -> Vec<PlannedBuffer> {
+    pub(crate) fn planned(&self) -> Vec<PlannedBuffer> {
         let rays = self.rays.map(|bytes| PlannedBuffer::one("rays", bytes));
         [PlannedBuffer::one("hits", self.hits)].into_iter().chain(rays).collect()
     }
 
     /// The buffers through which the host reads hits and rays, if rays are kept.
-    pub(in crate::gpu) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
+    pub(crate) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
         let both = self.rays.map(|rays| [("hits read-back", self.hits), ("rays read-back", rays)]);
         both.into_iter().flatten().map(|(name, bytes)| PlannedBuffer::one(name, bytes)).collect()
     }
@@ -47,11 +47,7 @@ impl BandBuffers {
 
 /// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into
 /// one binding.
-pub(in crate::gpu) fn rows_per_band(
-    limits: &Limits,
-    [width, height]: [u32; 2],
-    keeps_rays: bool,
-) -> u32 {
+pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
     let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
     let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_BAND_PIXELS);
     // This is at most MAX_BAND_PIXELS, so it fits into u32.
@@ -60,7 +56,7 @@ pub(in crate::gpu) fn rows_per_band(
 
 /// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
 /// the rays of its last band only.
-pub(in crate::gpu) fn tile_size(
+pub(crate) fn tile_size(
     limits: &Limits,
     shape: DeviceShape,
     film: &Film,

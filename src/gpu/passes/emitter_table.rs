@@ -13,18 +13,18 @@ use crate::scene::material::Material;
 
 /// Width of the texture; the twin of `EMITTER_COLUMNS` in `shaders/scene/emitter.wgsl`. Every device has textures of
 /// this size.
-pub(in crate::gpu) const COLUMNS: usize = 1 << 11;
+pub(crate) const COLUMNS: usize = 1 << 11;
 
 /// Rows of a layer, unless a single one needs fewer; the twin of `EMITTER_ROWS`.
-pub(in crate::gpu) const ROWS: usize = 1 << 11;
+pub(crate) const ROWS: usize = 1 << 11;
 
 const LAYER: usize = COLUMNS * ROWS;
 
 /// What a plan calls the table.
-pub(in crate::gpu) const NAME: &str = "emitters";
+pub(crate) const NAME: &str = "emitters";
 
 /// What errors call the table.
-pub(in crate::gpu) const WHAT: &str = "the table of emissive spheres";
+pub(crate) const WHAT: &str = "the table of emissive spheres";
 
 /// Width, height and layers of the texture for a table of so many texels.
 fn extent(texels: usize) -> Extent3d {
@@ -37,7 +37,7 @@ fn extent(texels: usize) -> Extent3d {
 }
 
 /// The size of the table, without the texture of one texel that stands for an empty one. It is uploaded layer by layer.
-pub(in crate::gpu) fn planned(texels: usize) -> Option<PlannedBuffer> {
+pub(crate) fn planned(texels: usize) -> Option<PlannedBuffer> {
     let Extent3d { width, height, depth_or_array_layers } = extent(texels);
     let layer = 16 * u64::from(width) * u64::from(height);
     (texels > 0).then(|| PlannedBuffer {
@@ -48,13 +48,13 @@ pub(in crate::gpu) fn planned(texels: usize) -> Option<PlannedBuffer> {
 }
 
 /// The largest table that a device holds, in bytes, and the name of the limit.
-pub(in crate::gpu) fn limit(limits: &Limits) -> (&'static str, u64) {
+pub(crate) fn limit(limits: &Limits) -> (&'static str, u64) {
     let layers = u64::from(limits.max_texture_array_layers);
     ("the size of a texture with max_texture_array_layers", 16 * layers * LAYER as u64)
 }
 
 /// Creates the texture and uploads the table.
-pub(in crate::gpu) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> TextureView {
+pub(crate) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> TextureView {
     let size = extent(table.len());
     let texture = device.create_texture(&TextureDescriptor {
         label: Some("pinhole emitters"),
@@ -104,7 +104,7 @@ pub(in crate::gpu) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]])
 }
 
 /// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
-pub(in crate::gpu) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
+pub(crate) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     let emitters = &scene.emitters;
     emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
         let EmissiveSphere { sphere, color, surface } = *emissive;

@@ -46,11 +46,11 @@ pub struct Frame {
 
 /// The properties of the view that recording needs.
 #[derive(Debug)]
-pub(in crate::gpu) struct SetView {
-    pub(in crate::gpu) camera: CameraKind,
-    pub(in crate::gpu) scene: SceneId,
+pub(crate) struct SetView {
+    pub(crate) camera: CameraKind,
+    pub(crate) scene: SceneId,
     /// The sizes of the bands, in the order in which they are rendered.
-    pub(in crate::gpu) bands: Vec<[u32; 2]>,
+    pub(crate) bands: Vec<[u32; 2]>,
     records: HashMap<Slot, FrameParameters>,
     parts: Vec<BandBrick>,
 }
@@ -59,8 +59,8 @@ pub(in crate::gpu) struct SetView {
 /// which the first brick is traced and all are shaded. The next bricks of the band have the other slots, as many as
 /// there are, and then slot 0 again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) struct Slot {
-    pub(in crate::gpu) band: usize,
+pub(crate) struct Slot {
+    pub(crate) band: usize,
     number: usize,
 }
 
@@ -70,21 +70,21 @@ const SLOTS: usize = 32;
 
 /// The tracing of one brick for one band.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct BandBrick {
-    pub(in crate::gpu) band: usize,
-    pub(in crate::gpu) brick: usize,
+pub(crate) struct BandBrick {
+    pub(crate) band: usize,
+    pub(crate) brick: usize,
     /// The record of the workgroups.
-    pub(in crate::gpu) slot: Slot,
+    pub(crate) slot: Slot,
     /// The workgroups, counted from the first of the record.
-    pub(in crate::gpu) groups: Groups,
-    pub(in crate::gpu) is_first_of_band: bool,
-    pub(in crate::gpu) is_last_of_band: bool,
-    pub(in crate::gpu) is_last: bool,
+    pub(crate) groups: Groups,
+    pub(crate) is_first_of_band: bool,
+    pub(crate) is_last_of_band: bool,
+    pub(crate) is_last: bool,
 }
 
 impl Slot {
     /// The record of the region in which the scene may be visible in a band.
-    pub(in crate::gpu) fn of_scene(band: usize) -> Self {
+    pub(crate) fn of_scene(band: usize) -> Self {
         Self { band, number: 0 }
     }
 }
@@ -176,7 +176,7 @@ impl Frame {
     }
 
     /// Sets a view like [`Frame::set_view`], with settings that have been checked.
-    pub(in crate::gpu) fn set_primary(
+    pub(crate) fn set_primary(
         &mut self,
         queue: &Queue,
         scene: &SceneBuffers,
@@ -190,7 +190,7 @@ impl Frame {
     }
 
     /// Returns an error if the film has another size than the targets.
-    pub(in crate::gpu) fn check_film(&self, view: &View<'_>) -> Result<(), GpuError> {
+    pub(crate) fn check_film(&self, view: &View<'_>) -> Result<(), GpuError> {
         check_whole(&view.film)?;
         let film_size = [view.film.width(), view.film.height()];
         if film_size != self.size {
@@ -204,7 +204,7 @@ impl Frame {
     }
 
     /// Sets a view like [`Frame::set_view`], of a tile that is not larger than the targets.
-    pub(in crate::gpu) fn set_tile(
+    pub(crate) fn set_tile(
         &mut self,
         queue: &Queue,
         scene: &SceneBuffers,
@@ -217,7 +217,7 @@ impl Frame {
     }
 
     /// Sets a view like [`Frame::set_tile`], with bricks that need not all be on the device yet.
-    pub(in crate::gpu) fn set_bricks(
+    pub(crate) fn set_bricks(
         &mut self,
         queue: &Queue,
         scene: &SceneBuffers,
@@ -275,7 +275,7 @@ impl Frame {
     }
 
     /// Queues the index of the first workgroup of the slice of a part that is traced next.
-    pub(in crate::gpu) fn set_first_group(&mut self, queue: &Queue, slot: Slot, first: [u32; 2]) {
+    pub(crate) fn set_first_group(&mut self, queue: &Queue, slot: Slot, first: [u32; 2]) {
         let start = (self.place(slot) * self.stride) as u64;
         let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(&slot)) else {
             return;
@@ -287,12 +287,12 @@ impl Frame {
     }
 
     /// The bricks and bands to be traced for the view, in order.
-    pub(in crate::gpu) fn parts(&self) -> impl Iterator<Item = BandBrick> + '_ {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = BandBrick> + '_ {
         self.view.iter().flat_map(|view| view.parts.iter().copied())
     }
 
     /// Records commands that clear the hits, and the rays if they are kept.
-    pub(in crate::gpu) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.hits, 0, None);
         if let Some(rays) = &self.rays {
             encoder.clear_buffer(rays, 0, None);
@@ -300,7 +300,7 @@ impl Frame {
     }
 
     /// The buffers with the hits of the last band, and with its rays if they are kept.
-    pub(in crate::gpu) fn traced(&self) -> (&Buffer, Option<&Buffer>) {
+    pub(crate) fn traced(&self) -> (&Buffer, Option<&Buffer>) {
         (&self.hits, self.rays.as_ref())
     }
 
@@ -322,7 +322,7 @@ impl Frame {
     }
 
     /// Returns an error if the frame was made for a renderer with other targets.
-    pub(in crate::gpu) fn check_renderer(&self, renderer: &Renderer) -> Result<(), GpuError> {
+    pub(crate) fn check_renderer(&self, renderer: &Renderer) -> Result<(), GpuError> {
         let made_for = (self.color, self.data_layers, self.rays.is_some());
         if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
             return Err(GpuError::OtherRenderer);
@@ -331,7 +331,7 @@ impl Frame {
     }
 
     /// The view, if this renderer can record it for this scene.
-    pub(in crate::gpu) fn view(
+    pub(crate) fn view(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
@@ -345,12 +345,12 @@ impl Frame {
     }
 
     /// Width and height of the targets.
-    pub(in crate::gpu) fn size(&self) -> [u32; 2] {
+    pub(crate) fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// The workgroups of a record.
-    pub(in crate::gpu) fn traced_groups(&self, slot: Slot) -> Groups {
+    pub(crate) fn traced_groups(&self, slot: Slot) -> Groups {
         let record = self.view.as_ref().and_then(|view| view.records.get(&slot));
         record.map_or(Groups::NONE, |record| Groups {
             first: record.traced_first,
@@ -359,12 +359,12 @@ impl Frame {
     }
 
     /// Bind group 0 of every kernel, with the record of a slot.
-    pub(in crate::gpu) fn group(&self, slot: Slot) -> &BindGroup {
+    pub(crate) fn group(&self, slot: Slot) -> &BindGroup {
         &self.groups[self.place(slot)]
     }
 
     /// Bind group 2 of `shade`.
-    pub(in crate::gpu) fn target_group(&self) -> &BindGroup {
+    pub(crate) fn target_group(&self) -> &BindGroup {
         &self.target_group
     }
 }
@@ -374,7 +374,7 @@ impl Frame {
 /// The lavapipe of Mesa 22.3 leaves all loops silently after 65,535 iterations of the invocations that it runs
 /// together. These are eight by default, so an eighth of that number is safe; the nested loops of the self-test check
 /// this. On other devices the limit only bounds the run time of a kernel with a defect.
-pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
+pub(crate) fn iteration_limit(device: &Device) -> u32 {
     let info = device.adapter_info();
     match info.device_type {
         wgpu::DeviceType::Cpu => 64_000 / info.subgroup_max_size.max(8),

@@ -62,7 +62,7 @@ impl Renderer {
     }
 
     /// Returns an error if a pipeline that the frame needs is missing, for the tracing of its parts after a change.
-    pub(in crate::gpu) fn check_pipelines(
+    pub(crate) fn check_pipelines(
         &self,
         scene: &SceneBuffers,
         frame: &Frame,
@@ -89,7 +89,7 @@ impl Renderer {
 
     /// Records the tracing of a brick for a band or for a slice of one. The record of its slot must contain the
     /// first workgroup of the slice.
-    pub(in crate::gpu) fn record_trace(
+    pub(crate) fn record_trace(
         &self,
         pass: &mut ComputePass<'_>,
         scene: &SceneBuffers,
@@ -110,7 +110,7 @@ impl Renderer {
     }
 
     /// Records the shading of a band whose hits are complete.
-    pub(in crate::gpu) fn record_shade(
+    pub(crate) fn record_shade(
         &self,
         pass: &mut ComputePass<'_>,
         scene: &SceneBuffers,

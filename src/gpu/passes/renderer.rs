@@ -20,14 +20,14 @@ use crate::gpu::shader::{self, BrickPass, Kernel, pipeline};
 /// The pipelines of primary rays for a device and a kind of target. All scenes and frames can share one renderer.
 #[derive(Debug)]
 pub struct Renderer {
-    pub(in crate::gpu) layouts: Layouts,
-    pub(in crate::gpu) color: ColorTarget,
-    pub(in crate::gpu) data_layers: bool,
-    pub(in crate::gpu) keeps_rays: bool,
-    pub(in crate::gpu) several_bricks: bool,
-    pub(in crate::gpu) is_indirect: bool,
-    pub(in crate::gpu) shape: DeviceShape,
-    pub(in crate::gpu) edits: Edits,
+    pub(crate) layouts: Layouts,
+    pub(crate) color: ColorTarget,
+    pub(crate) data_layers: bool,
+    pub(crate) keeps_rays: bool,
+    pub(crate) several_bricks: bool,
+    pub(crate) is_indirect: bool,
+    pub(crate) shape: DeviceShape,
+    pub(crate) edits: Edits,
     /// Pipelines that can be recorded.
     built: Vec<(PassKey, ComputePipeline)>,
     /// Pipelines that the device has not yet accepted, and what is known of them. The mutex makes a renderer `Sync`,
@@ -43,7 +43,7 @@ pub struct Renderer {
 
 /// What a pipeline is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum PassKey {
+pub(crate) enum PassKey {
     Trace(CameraKind, BrickKind, BrickPass),
     Shade(CameraKind, Primitive),
 }
@@ -166,7 +166,7 @@ impl Renderer {
     }
 
     /// Whether there are pipelines that continue tracing from hits that another pass has written, for a camera.
-    pub(in crate::gpu) fn continues_hits(&self, camera: CameraKind) -> bool {
+    pub(crate) fn continues_hits(&self, camera: CameraKind) -> bool {
         let built = self.built.iter().map(|(key, _)| key);
         let mut keys = built.chain(&self.remaining);
         // Rays that are kept are those of the first brick's pass.
@@ -176,7 +176,7 @@ impl Renderer {
     }
 
     /// Moves some pipelines to the front of those that are still to be built, and returns how many of them are not ready.
-    pub(in crate::gpu) fn put_first(&mut self, needed: &[PassKey]) -> usize {
+    pub(crate) fn put_first(&mut self, needed: &[PassKey]) -> usize {
         // Those that are being built keep their places.
         let begun = self.in_building().len();
         let (first, others): (Vec<_>, Vec<_>) =
@@ -212,7 +212,7 @@ impl Renderer {
     }
 
     /// The pipeline for a purpose, and for a brick of a kind.
-    pub(in crate::gpu) fn pipeline(
+    pub(crate) fn pipeline(
         &self,
         key: PassKey,
         kind: BrickKind,
@@ -231,7 +231,7 @@ impl Renderer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::waiting::block_on;
+    use crate::gpu::headless::waiting::block_on;
 
     /// wgpu checks shaders, layouts, access modes and record sizes without any driver.
     #[test]

@@ -3,38 +3,38 @@
 use crate::camera::film::Film;
 
 /// Maximum number of pixels of a band, whose hits share one buffer.
-pub(in crate::gpu) const MAX_BAND_PIXELS: u64 = 1 << 22;
+pub(crate) const MAX_BAND_PIXELS: u64 = 1 << 22;
 
 /// The side of a workgroup, as in `@workgroup_size(8, 8)`.
-pub(in crate::gpu) const WORKGROUP_SIDE: u32 = 8;
+pub(crate) const WORKGROUP_SIDE: u32 = 8;
 
 /// A rectangle of the film, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct Tile {
-    pub(in crate::gpu) origin: [u32; 2],
-    pub(in crate::gpu) size: [u32; 2],
+pub(crate) struct Tile {
+    pub(crate) origin: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// Position of the first pixel in the target textures.
-    pub(in crate::gpu) in_target: [u32; 2],
+    pub(crate) in_target: [u32; 2],
 }
 
 /// A rectangle of workgroups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct Groups {
-    pub(in crate::gpu) first: [u32; 2],
-    pub(in crate::gpu) size: [u32; 2],
+pub(crate) struct Groups {
+    pub(crate) first: [u32; 2],
+    pub(crate) size: [u32; 2],
 }
 
 impl Groups {
     /// An empty rectangle.
-    pub(in crate::gpu) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
+    pub(crate) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
 
     /// The workgroups that cover a rectangle of this size in pixels.
-    pub(in crate::gpu) fn of_size(pixels: [u32; 2]) -> Self {
+    pub(crate) fn of_size(pixels: [u32; 2]) -> Self {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
 
     /// The indices, row by row, of the pixels of a picture of this size that the workgroups cover.
-    pub(in crate::gpu) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
+    pub(crate) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
         let range = move |axis: usize| {
             let (first, count) = (self.first[axis], self.size[axis]);
             let end = ((first + count) * WORKGROUP_SIDE).min(size[axis]);
@@ -45,17 +45,17 @@ impl Groups {
     }
 
     /// Number of workgroups.
-    pub(in crate::gpu) fn count(self) -> u64 {
+    pub(crate) fn count(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
     /// Number of pixels of the workgroups, including any outside the picture.
-    pub(in crate::gpu) fn pixels(self) -> u64 {
+    pub(crate) fn pixels(self) -> u64 {
         self.count() * u64::from(WORKGROUP_SIDE * WORKGROUP_SIDE)
     }
 
     /// Removes at most about `count` workgroups from those that are left: whole rows, or a part of one row.
-    pub(in crate::gpu) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
+    pub(crate) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
         let Self { first: [x, y], size: [width, height] } = left.pop()?;
         if width == 0 || height == 0 {
             return Self::take(left, count);
@@ -79,7 +79,7 @@ impl Groups {
 }
 
 /// Size of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
-pub(in crate::gpu) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
+pub(crate) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
     // No device has sides of more than 2^15 pixels, so one row of workgroups always fits.
     let rows = (max_pixels / u64::from(width)) as u32;
@@ -87,7 +87,7 @@ pub(in crate::gpu) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -
 }
 
 /// Divides a tile into bands of at most `rows` rows.
-pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
+pub(crate) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
     let height = tile.size[1];
     (0..height).step_by(rows as usize).map(move |y| Tile {
         origin: [tile.origin[0], tile.origin[1] + y],
@@ -97,7 +97,7 @@ pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile>
 }
 
 /// The tiles that cover a film. Those at its right and lower edges may be smaller.
-pub(in crate::gpu) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
+pub(crate) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
     let (width, height) = (film.width(), film.height());
     (0..height).step_by(tile_size[1] as usize).flat_map(move |y| {
         (0..width).step_by(tile_size[0] as usize).map(move |x| Tile {

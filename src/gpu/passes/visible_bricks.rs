@@ -1,16 +1,17 @@
-//! Which bricks are traced in which part of a picture.
+//! Which bricks are traced in which part of a picture, and in which order.
+
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::accel::{BrickBounds, margin_of};
-use crate::camera::View;
-use crate::gpu::passes::order::nearest_first;
-use crate::gpu::passes::tiles::{Groups, Tile, tiles};
-use crate::gpu::passes::visible_region::VisibleRegion;
+use crate::camera::film::YAxis;
+use crate::camera::{Camera, CameraKind, CameraVectors, View};
+use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 
 /// The bricks of a scene that a view may show.
 #[derive(Clone, Debug)]
-pub(in crate::gpu) struct VisibleBricks {
+pub(crate) struct VisibleBricks {
     /// Where the scene may be visible.
     scene: VisibleRegion,
     /// The bricks that may be visible, the nearest first.
@@ -20,7 +21,7 @@ pub(in crate::gpu) struct VisibleBricks {
 }
 
 impl VisibleBricks {
-    pub(in crate::gpu) fn of(view: &View<'_>, space: &SceneSpace, bricks: &[BrickBounds]) -> Self {
+    pub(crate) fn of(view: &View<'_>, space: &SceneSpace, bricks: &[BrickBounds]) -> Self {
         let scene = VisibleRegion::of(view, space);
         let order = nearest_first(bricks.iter().copied(), view.camera, space);
         let nearest = order.first().copied().unwrap_or(0);
@@ -36,7 +37,7 @@ impl VisibleBricks {
 
     /// The bricks to be traced for a tile or a band, in order, and the workgroups that are dispatched for each. The
     /// first is traced wherever the scene may be visible, because its pass writes misses and records rays.
-    pub(in crate::gpu) fn parts_of(&self, tile: Tile) -> Vec<(usize, Groups)> {
+    pub(crate) fn parts_of(&self, tile: Tile) -> Vec<(usize, Groups)> {
         let regions = self.bricks.iter().map(|(brick, region)| (*brick, region.groups_of(tile)));
         let mut parts: Vec<_> = regions.filter(|(_, groups)| groups.count() > 0).collect();
         let scene = self.scene.groups_of(tile);
@@ -50,7 +51,7 @@ impl VisibleBricks {
 
 /// The box of a brick, inflated like that of the scene, outside of which no ray hits its spheres; `None` for a brick
 /// without spheres.
-pub(in crate::gpu) fn space_of(scene: &SceneSpace, brick: &BrickBounds) -> Option<SceneSpace> {
+pub(crate) fn space_of(scene: &SceneSpace, brick: &BrickBounds) -> Option<SceneSpace> {
     // The scene's box includes its margin, so this margin is slightly larger.
     let margin = 2.0 * margin_of(scene.min, scene.max);
     let (min, max) = ((brick.min - margin).max(scene.min), (brick.max + margin).min(scene.max));
@@ -58,14 +59,135 @@ pub(in crate::gpu) fn space_of(scene: &SceneSpace, brick: &BrickBounds) -> Optio
 }
 
 /// Number of pixels of a film that are traced, in whole workgroups, counted once for every brick that is traced there.
-pub(in crate::gpu) fn traced_pixels(
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    tile_size: [u32; 2],
-) -> u64 {
+pub(crate) fn traced_pixels(scene: &SceneBuffers, view: &View<'_>, tile_size: [u32; 2]) -> u64 {
     let bricks = VisibleBricks::of(view, &scene.space, &scene.brick_bounds());
     let parts = tiles(&view.film, tile_size).flat_map(|tile| bricks.parts_of(tile));
     parts.map(|(_, groups)| groups.pixels()).sum()
+}
+
+/// Squared distance from a point to the box of a brick's centres; 0 for a point inside.
+fn distance_squared(brick: &BrickBounds, point: Vec3) -> f32 {
+    (point - point.max(brick.center_min).min(brick.center_max)).length_squared()
+}
+
+/// The indices of boxes, sorted by their distance from the camera, the nearest first. Hits in near bricks then let rays
+/// skip the others. The picture does not depend on the order.
+pub(crate) fn nearest_first(
+    boxes: impl Iterator<Item = BrickBounds>,
+    camera: &dyn Camera,
+    space: &SceneSpace,
+) -> Vec<usize> {
+    let eye = (camera.ray_in_world(DVec2::ZERO).origin - space.origin).as_vec3();
+    let mut order: Vec<(f32, usize)> =
+        boxes.map(|brick| distance_squared(&brick, eye)).zip(0..).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order.into_iter().map(|(_, brick)| brick).collect()
+}
+
+/// A rectangle of the film in pixels, which may be empty. No ray of a pixel outside of it hits the scene's box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VisibleRegion {
+    first: [f64; 2],
+    /// End of the rectangle, exclusive.
+    end: [f64; 2],
+}
+
+/// Margin of the rectangle on each side in pixels. Rounding in a kernel never moves a ray so far.
+const PIXELS_AROUND: f64 = 2.0;
+
+impl VisibleRegion {
+    /// The rectangle around the projections of the box's eight corners, or the whole film if a corner is not in front
+    /// of the camera.
+    ///
+    /// If the camera projects straight lines to straight lines and has no lens, the picture of the box lies within the
+    /// rectangle of its corners. For other cameras the region is the whole film.
+    pub(crate) fn of(&View { camera, film }: &View<'_>, space: &SceneSpace) -> Self {
+        let size = [f64::from(film.width()), f64::from(film.height())];
+        let all = Self { first: [0.0; 2], end: size };
+        if !camera.kind().is_linear() || camera.has_lens() {
+            return all;
+        }
+        let whole = [film.whole().width(), film.whole().height()].map(f64::from);
+        let origin = film.origin().map(f64::from);
+        let mut region = Self { first: size, end: [0.0; 2] };
+        for corner in space.corners() {
+            let Some(location) = camera.location_of(space.origin + corner) else {
+                return all;
+            };
+            let down = match film.y_axis() {
+                YAxis::Up => -location.y,
+                YAxis::Down => location.y,
+            };
+            for (axis, along) in [location.x, down].into_iter().enumerate() {
+                let pixel = (along + 1.0) / 2.0 * whole[axis] - origin[axis];
+                region.first[axis] = region.first[axis].min(pixel - PIXELS_AROUND);
+                region.end[axis] = region.end[axis].max(pixel + PIXELS_AROUND);
+            }
+        }
+        region
+    }
+
+    /// The rectangle of [`VisibleRegion::of`], or `None` if the box is behind the camera or beside the film, so that
+    /// only rays beyond the film might hit it.
+    pub(crate) fn of_brick(view: &View<'_>, space: &SceneSpace) -> Option<Self> {
+        let camera = view.camera;
+        if camera.kind() != CameraKind::Pinhole || camera.has_lens() {
+            return Some(Self::of(view, space));
+        }
+        let CameraVectors { origin, right, up, forward, .. } = camera.vectors();
+        let volume = right.cross(up).dot(forward);
+        // A point is `x right + y up + depth forward` from the eye, and at (x, y) / depth on the film.
+        let corners = space.corners().map(|corner| {
+            let toward = space.origin + corner - origin;
+            let part = |a: DVec3, b: DVec3| toward.dot(a.cross(b)) / volume;
+            (part(up, forward), part(forward, right), part(right, up))
+        });
+        let edge = |pixels: u32| 1.0 + 2.0 * PIXELS_AROUND / f64::from(pixels);
+        let film = view.film.whole();
+        let (right, up) = (edge(film.width()), edge(film.height()));
+        // All corners are on the other side of a plane through the eye, and so is the box.
+        let is_outside = corners.iter().all(|(.., depth)| *depth <= 0.0)
+            || corners.iter().all(|(x, _, depth)| *x > right * depth)
+            || corners.iter().all(|(x, _, depth)| -x > right * depth)
+            || corners.iter().all(|(_, y, depth)| *y > up * depth)
+            || corners.iter().all(|(_, y, depth)| -y > up * depth);
+        (!is_outside).then(|| Self::of(view, space))
+    }
+
+    /// The part of the region that lies in another.
+    pub(crate) fn within(mut self, other: Self) -> Self {
+        for axis in 0..2 {
+            self.first[axis] = self.first[axis].max(other.first[axis]);
+            self.end[axis] = self.end[axis].min(other.end[axis]);
+        }
+        self
+    }
+
+    /// The region extended for rays that may be up to `pixels` pixels away from the centres of their pixels.
+    pub(crate) fn widened(mut self, pixels: f64) -> Self {
+        self.first.iter_mut().for_each(|first| *first -= pixels);
+        self.end.iter_mut().for_each(|end| *end += pixels);
+        self
+    }
+
+    /// The workgroups of a tile that overlap the rectangle. If there are none, both sides of the result are zero.
+    pub(crate) fn groups_of(&self, tile: Tile) -> Groups {
+        let side = f64::from(WORKGROUP_SIDE);
+        let mut groups = Groups::of_size(tile.size);
+        for axis in 0..2 {
+            let count = f64::from(groups.size[axis]);
+            let origin = f64::from(tile.origin[axis]);
+            // Both values are clamped to the range of workgroups, so the casts below are exact.
+            let first = ((self.first[axis] - origin) / side).floor().clamp(0.0, count);
+            let end = ((self.end[axis] - origin) / side).ceil().clamp(0.0, count);
+            groups.first[axis] = first as u32;
+            groups.size[axis] = (end - first).max(0.0) as u32;
+        }
+        if groups.count() == 0 {
+            groups.size = [0, 0];
+        }
+        groups
+    }
 }
 
 #[cfg(test)]
@@ -151,6 +273,133 @@ mod tests {
             let parts = visible(camera, film);
             assert_eq!(parts.len(), 8);
             assert!(parts.iter().all(|(_, groups)| *groups == Groups::of_size([64, 32])));
+        }
+    }
+}
+
+#[cfg(test)]
+mod order_tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::camera::{OrthographicCamera, PinholeCamera, Pose};
+
+    #[test]
+    fn from_every_side() {
+        // Three boxes along x, with a hundred spheres each between 10 i and 10 i + 9.9.
+        let boxes = [2.0_f32, 0.0, 1.0].map(|i| {
+            let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]);
+            BrickBounds::of_spheres(&spheres.collect::<Vec<_>>())
+        });
+        let space = SceneSpace {
+            origin: DVec3::new(1e6, 0.0, 0.0),
+            min: Vec3::splat(-1.0),
+            max: Vec3::new(30.9, 1.0, 1.0),
+        };
+        let order = |eye: [f64; 3]| {
+            let eye = [1e6 + eye[0], eye[1], eye[2]];
+            let pose = Pose::looking_at(eye, [1e6 + 12.0, 0.0, 0.1], [0.0, 1.0, 0.1]).unwrap();
+            let pinhole = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
+            let orthographic = OrthographicCamera::new(pose, [5.0, 5.0]).unwrap();
+            let orders: [_; 2] = [&pinhole as &dyn Camera, &orthographic]
+                .map(|camera| nearest_first(boxes.into_iter(), camera, &space));
+            assert_eq!(orders[0], orders[1]);
+            orders[0].clone()
+        };
+        assert_eq!(order([-50.0, 1.0, 0.0]), [1, 2, 0]);
+        assert_eq!(order([50.0, 1.0, 0.0]), [0, 2, 1]);
+        // The eye is in the middle box, and the last box is the nearer of the other two.
+        assert_eq!(order([19.0, 0.0, 0.0]), [2, 0, 1]);
+    }
+
+    /// The empty brick, which a scene without spheres has, and a brick with one sphere.
+    #[test]
+    fn an_empty_brick_is_the_last() {
+        let boxes = [BrickBounds::EMPTY, BrickBounds::of_spheres(&[[1.0; 4]])];
+        let pose = Pose::looking_along([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
+        let space = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ONE };
+        assert_eq!(nearest_first(boxes.into_iter(), &camera, &space), [1, 0]);
+    }
+}
+
+#[cfg(test)]
+mod visible_region_tests {
+    use glam::{DVec3, Vec3};
+
+    use super::*;
+    use crate::camera::film::Film;
+    use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+
+    fn space() -> SceneSpace {
+        let origin = DVec3::new(10.0, 0.0, 0.0);
+        SceneSpace { origin, min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
+    }
+
+    fn tile(origin: [u32; 2], size: [u32; 2]) -> Tile {
+        Tile { origin, size, in_target: [0, 0] }
+    }
+
+    /// At ten pixels per unit of length, the box is 20 pixels wide, in the middle of a film of 160 by 80.
+    #[test]
+    fn a_box_in_the_middle() {
+        let film = Film::new(160, 80).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region, VisibleRegion { first: [68.0, 28.0], end: [92.0, 52.0] });
+        let all = region.groups_of(tile([0, 0], [160, 80]));
+        assert_eq!(all, Groups { first: [8, 3], size: [4, 4] });
+        let lower = region.groups_of(tile([0, 48], [160, 32]));
+        assert_eq!(lower, Groups { first: [8, 0], size: [4, 1] });
+        assert_eq!(region.groups_of(tile([0, 56], [160, 24])).count(), 0);
+        assert_eq!(region.groups_of(tile([96, 0], [64, 80])).count(), 0);
+    }
+
+    #[test]
+    fn y_down_is_the_other_way_round() {
+        let film = Film::new(80, 80).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
+        let up = VisibleRegion::of(&View::new(&camera, film), &space());
+        let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
+        assert_eq!((up.first[1], up.end[1]), (48.0, 72.0));
+        assert_eq!((down.first[1], down.end[1]), (8.0, 32.0));
+    }
+
+    #[test]
+    fn from_inside_the_box_the_whole_film_is_visible() {
+        let film = Film::new(80, 40).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
+    }
+
+    /// The rays through all corners of the box lie in the rectangle.
+    #[test]
+    fn a_ray_at_each_corner_is_in_the_region() {
+        let film = Film::new(200, 100).unwrap();
+        let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        for i in 0..8_u8 {
+            let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let corner = DVec3::new(10.0 + sign(0), sign(1), sign(2));
+            let location = camera.location_of(corner).unwrap();
+            let ray = camera.ray_in_world(location);
+            let along = (corner - ray.origin).dot(ray.direction);
+            assert!((ray.at(along) - corner).length() < 1e-9);
+            let (x, y) = ((location.x + 1.0) * 100.0, (1.0 - location.y) * 50.0);
+            assert!(
+                region.first[0] < x
+                    && x < region.end[0]
+                    && region.first[1] < y
+                    && y < region.end[1]
+            );
         }
     }
 }

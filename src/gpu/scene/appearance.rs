@@ -6,18 +6,18 @@ use crate::scene::{Appearance, Colors, SceneAppearance, alpha_of};
 
 /// The words that encode the appearance of a brick's spheres, and the numbers that are needed to decode them.
 #[derive(Debug)]
-pub(in crate::gpu) struct AppearanceWords {
+pub(crate) struct AppearanceWords {
     /// The words, of which there is always at least one.
-    pub(in crate::gpu) words: Vec<u32>,
-    pub(in crate::gpu) color_shift: u32,
-    pub(in crate::gpu) color_mask: u32,
-    pub(in crate::gpu) material_first: u32,
-    pub(in crate::gpu) material_mask: u32,
+    pub(crate) words: Vec<u32>,
+    pub(crate) color_shift: u32,
+    pub(crate) color_mask: u32,
+    pub(crate) material_first: u32,
+    pub(crate) material_mask: u32,
 }
 
 impl AppearanceWords {
     /// Encodes the appearance of the spheres with the given ids.
-    pub(in crate::gpu) fn of(appearance: &SceneAppearance, ids: &[u32]) -> Self {
+    pub(crate) fn of(appearance: &SceneAppearance, ids: &[u32]) -> Self {
         let colors = appearance.colors();
         let mut words = color_words(colors, ids.iter().copied());
         let material_first = words.len() as u32;
@@ -40,20 +40,20 @@ impl AppearanceWords {
 
 /// The kinds of words that every sphere of a scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct SphereWords {
+pub(crate) struct SphereWords {
     colors: bool,
     materials: bool,
 }
 
 impl SphereWords {
     /// Number of words for each sphere.
-    pub(in crate::gpu) fn count(self) -> u64 {
+    pub(crate) fn count(self) -> u64 {
         u64::from(self.colors) + u64::from(self.materials)
     }
 }
 
 /// The kinds of words that every sphere of a scene with this appearance has.
-pub(in crate::gpu) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
+pub(crate) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
     SphereWords {
         colors: !matches!(appearance.colors(), Colors::One(_)),
         materials: appearance.material_rows().len() > 1,
@@ -61,7 +61,7 @@ pub(in crate::gpu) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWo
 }
 
 /// The colour words of some spheres. There are none if all spheres of the scene have the same colour.
-pub(in crate::gpu) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32>) -> Vec<u32> {
+pub(crate) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32>) -> Vec<u32> {
     match colors {
         Colors::One(_) => Vec::new(),
         Colors::Palette { indices, .. } => ids.map(|id| indices[id as usize]).collect(),
@@ -73,7 +73,7 @@ pub(in crate::gpu) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32
 }
 
 /// Number of elements of the palette.
-pub(in crate::gpu) fn palette_length(appearance: &Appearance) -> usize {
+pub(crate) fn palette_length(appearance: &Appearance) -> usize {
     match appearance.colors() {
         Colors::One(_) => 1,
         Colors::Palette { palette, .. } => palette.len().max(1),
@@ -86,7 +86,7 @@ pub(in crate::gpu) fn palette_length(appearance: &Appearance) -> usize {
 const BYTES: usize = 256;
 
 /// The palette: the colours that the indices in colour words refer to.
-pub(in crate::gpu) fn palette(appearance: &Appearance) -> Vec<Color> {
+pub(crate) fn palette(appearance: &Appearance) -> Vec<Color> {
     let opaque = |color: &LinearRgb| {
         let [r, g, b] = color.to_array();
         [r, g, b, 1.0]

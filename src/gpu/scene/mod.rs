@@ -1,10 +1,9 @@
 //! A scene on a device: its buffers, and updates of them.
 
-pub(in crate::gpu) mod appearance;
-pub(in crate::gpu) mod query_structure;
-pub(in crate::gpu) mod recolor;
-pub(in crate::gpu) mod scene_buffers;
-pub(in crate::gpu) mod scene_summary;
-pub(in crate::gpu) mod scene_upload;
-pub(in crate::gpu) mod shape_ids;
-pub(in crate::gpu) mod structures;
+pub(crate) mod appearance;
+pub(crate) mod query_structure;
+pub(crate) mod recolor;
+pub(crate) mod scene_buffers;
+pub(crate) mod scene_summary;
+pub(crate) mod scene_upload;
+pub(crate) mod structures;

@@ -4,14 +4,14 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BufferUsages, CommandEncoder, Device, Features, Tlas};
 
 /// The features that kernels with ray queries need.
-pub(in crate::gpu) const FEATURES: Features = Features::EXPERIMENTAL_RAY_QUERY;
+pub(crate) const FEATURES: Features = Features::EXPERIMENTAL_RAY_QUERY;
 
 /// What wgpu asks of those who use ray queries.
 #[expect(
     unsafe_code,
     reason = "whoever opens a device for ray queries is told that they are an experiment"
 )]
-pub(in crate::gpu) fn experiment() -> wgpu::ExperimentalFeatures {
+pub(crate) fn experiment() -> wgpu::ExperimentalFeatures {
     // SAFETY: `HeadlessOptions::ray_query`, which is off by default, says that a mistake in wgpu or in the driver may do
     // anything. Our kernels use no other experimental feature.
     unsafe { wgpu::ExperimentalFeatures::enabled() }
@@ -21,7 +21,7 @@ pub(in crate::gpu) fn experiment() -> wgpu::ExperimentalFeatures {
 const IN_PLACE: [f32; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
 /// Begins a structure of boxes, whose least coordinates come first. It exists once the encoder's work is done.
-pub(in crate::gpu) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncoder) {
+pub(crate) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncoder) {
     let buffer = device.create_buffer_init(&BufferInitDescriptor {
         label: Some("pinhole boxes"),
         contents: bytemuck::cast_slice(boxes),

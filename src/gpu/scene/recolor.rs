@@ -12,19 +12,18 @@ use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::BrickBuffers;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Kernel, part};
+use crate::gpu::shader::{Kernel, part, pipeline};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
 /// Uniform record of a dispatch: the ids of the spheres that are updated, and the number of shapes of the brick.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct RecolorRange {
-    pub(in crate::gpu) first: u32,
-    pub(in crate::gpu) count: u32,
-    pub(in crate::gpu) shape_count: u32,
-    pub(in crate::gpu) zero: u32,
+pub(crate) struct RecolorRange {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) shape_count: u32,
+    pub(crate) zero: u32,
 }
 
 /// Maximum number of workgroups in a row of a dispatch. Every WebGPU device allows at least 65,535.
@@ -37,7 +36,7 @@ pub struct Recolor {
     pipeline: ComputePipeline,
 }
 
-pub(in crate::gpu) fn recolor_kernel() -> Kernel {
+pub(crate) fn recolor_kernel() -> Kernel {
     Kernel::new("recolor", vec![part!("scene/recolor.wgsl")])
 }
 
@@ -79,7 +78,7 @@ impl Recolor {
     }
 
     /// Records the new colours like [`Recolor::record_async`], and notes the names of the passes.
-    pub(in crate::gpu) async fn record_noted(
+    pub(crate) async fn record_noted(
         &self,
         make: Make<'_>,
         (encoder, names): (&mut CommandEncoder, &mut PassNames),

@@ -10,23 +10,21 @@ use wgpu::{Device, Queue};
 use crate::accel::{
     Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure,
 };
-use crate::gpu::device_shape::DeviceShape;
+use crate::gpu::device_shape::{DeviceShape, SubmissionSize};
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::submission_size::SubmissionSize;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
-use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::scene::scene_summary::{ExcludeBy, SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{
     BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks,
 };
-use crate::gpu::scene::shape_ids::{ExcludeBy, ShapeIds};
 use crate::gpu::shader::records::SceneSpace;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
 /// Identifies a scene on a device, and the version of its shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct SceneId {
+pub(crate) struct SceneId {
     scene: u64,
     /// Number of times that the scene's spheres have moved.
     shape: u64,
@@ -34,7 +32,7 @@ pub(in crate::gpu) struct SceneId {
 
 /// Identifies what a scene on a device looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct SceneLook {
+pub(crate) struct SceneLook {
     id: SceneId,
     /// Number of times that its colours have changed since it was copied to the device.
     colors: u64,
@@ -50,26 +48,26 @@ impl SceneId {
 /// The buffers of a scene on a device. Any number of frames can use them.
 #[derive(Debug)]
 pub struct SceneBuffers {
-    pub(in crate::gpu) id: SceneId,
+    pub(crate) id: SceneId,
     colors: u64,
-    pub(in crate::gpu) space: SceneSpace,
+    pub(crate) space: SceneSpace,
     /// The data of the host's scene that pictures need.
-    pub(in crate::gpu) summary: SceneSummary,
+    pub(crate) summary: SceneSummary,
     structure: Structure,
     /// How lit pictures exclude the sphere that a ray starts on from its search.
-    pub(in crate::gpu) exclude_by: ExcludeBy,
+    pub(crate) exclude_by: ExcludeBy,
     /// In the order in which they were copied. There is at least one, so that the rays of an empty scene are marked as
     /// misses.
-    pub(in crate::gpu) bricks: Vec<BrickBuffers>,
+    pub(crate) bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
     tests_per_ray: usize,
     /// The order and the amounts of work that suit the device.
-    pub(in crate::gpu) shape: DeviceShape,
+    pub(crate) shape: DeviceShape,
     /// The submission size at the end of the last picture of the scene.
     submission_size: Mutex<SubmissionSize>,
     /// The spheres that cast shadows in a studio, if some do not and a studio was planned for.
-    pub(in crate::gpu) occluders: Option<Box<Self>>,
+    pub(crate) occluders: Option<Box<Self>>,
 }
 
 impl SceneBuffers {
@@ -151,7 +149,7 @@ impl SceneBuffers {
     }
 
     /// The scene of bricks that were copied.
-    pub(in crate::gpu) fn new_of(
+    pub(crate) fn new_of(
         uploaded: UploadedBricks,
         summary: SceneSummary,
         exclude_by: ExcludeBy,
@@ -181,17 +179,17 @@ impl SceneBuffers {
     }
 
     /// The same scene together with those of its spheres that cast shadows in a studio.
-    pub(in crate::gpu) fn with_occluders(self, occluders: Self) -> Self {
+    pub(crate) fn with_occluders(self, occluders: Self) -> Self {
         Self { occluders: Some(Box::new(occluders)), ..self }
     }
 
     /// Replaces the bricks by others of the same scene. Views of frames stay valid.
-    pub(in crate::gpu) fn set_bricks(&mut self, bricks: Vec<BrickBuffers>) {
+    pub(crate) fn set_bricks(&mut self, bricks: Vec<BrickBuffers>) {
         self.bricks = bricks;
     }
 
     /// Replaces the summary after the colours in the buffers were changed.
-    pub(in crate::gpu) fn set_summary(&mut self, summary: SceneSummary) {
+    pub(crate) fn set_summary(&mut self, summary: SceneSummary) {
         self.summary = summary;
         self.colors += 1;
     }
@@ -216,12 +214,12 @@ impl SceneBuffers {
     }
 
     /// The buffers of the spheres that can hide lights from surfaces. In a studio these are only the opaque spheres.
-    pub(in crate::gpu) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
+    pub(crate) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
         if settings.studio_parameters().is_none() { Ok(self) } else { self.studio_occluders() }
     }
 
     /// The buffers of the spheres that can hide lights from surfaces in a studio.
-    pub(in crate::gpu) fn studio_occluders(&self) -> Result<&Self, GpuError> {
+    pub(crate) fn studio_occluders(&self) -> Result<&Self, GpuError> {
         match &self.occluders {
             _ if self.summary.is_opaque() => Ok(self),
             Some(occluders) => Ok(occluders),
@@ -230,7 +228,7 @@ impl SceneBuffers {
     }
 
     /// The settings by which primary rays are shaded.
-    pub(in crate::gpu) fn primary_settings(
+    pub(crate) fn primary_settings(
         &self,
         settings: &RenderSettings,
     ) -> Result<PrimarySettings, GpuError> {
@@ -240,32 +238,32 @@ impl SceneBuffers {
         Ok(primary)
     }
 
-    pub(in crate::gpu) fn look(&self) -> SceneLook {
+    pub(crate) fn look(&self) -> SceneLook {
         SceneLook { id: self.id, colors: self.colors }
     }
 
     /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres,
     /// the iteration limit bounds their number.
-    pub(in crate::gpu) fn rays_at_once(&self, max: u32) -> u32 {
+    pub(crate) fn rays_at_once(&self, max: u32) -> u32 {
         let fits = LIST_LEN / self.tests_per_ray.max(1);
         u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, max)
     }
 
     /// The size of the next submission.
-    pub(in crate::gpu) fn submission_size(&self) -> SubmissionSize {
+    pub(crate) fn submission_size(&self) -> SubmissionSize {
         *self.submission_size.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of
     /// this one, because most pictures of a scene cost about the same.
-    pub(in crate::gpu) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
+    pub(crate) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
         self.submission_size
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .adapt(groups.count(), elapsed);
     }
 
-    pub(in crate::gpu) fn appearance(&self) -> &SceneAppearance {
+    pub(crate) fn appearance(&self) -> &SceneAppearance {
         &self.summary.appearance
     }
 
@@ -276,7 +274,7 @@ impl SceneBuffers {
     }
 
     /// The kinds of the bricks, without repetition.
-    pub(in crate::gpu) fn kinds(&self) -> Vec<BrickKind> {
+    pub(crate) fn kinds(&self) -> Vec<BrickKind> {
         let mut kinds = Vec::new();
         for brick in &self.bricks {
             if !kinds.contains(&brick.kind) {
@@ -287,13 +285,13 @@ impl SceneBuffers {
     }
 
     /// The boxes of the bricks, in the same order.
-    pub(in crate::gpu) fn brick_bounds(&self) -> Vec<BrickBounds> {
+    pub(crate) fn brick_bounds(&self) -> Vec<BrickBounds> {
         self.bricks.iter().map(|brick| brick.bounds).collect()
     }
 }
 
 /// Maximum size of a storage binding in bytes on a device with these limits.
-pub(in crate::gpu) fn binding_limit(limits: &wgpu::Limits) -> u64 {
+pub(crate) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 

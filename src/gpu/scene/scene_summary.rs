@@ -1,40 +1,42 @@
-//! The data of a scene, besides its buffers, that pictures need. With them the host's scene can be dropped after the
-//! upload.
+//! The data of a scene, besides its buffers, that pictures need, so that the host's scene can be dropped after the upload;
+//! and the ids by which kernels identify its shapes.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::gpu::shader::Constant;
 use crate::image::color::LinearRgb;
 use crate::light::emitters::Emitters;
 use crate::scene::material::SurfaceProperties;
-use crate::scene::{Scene, SceneAppearance};
+use crate::scene::{Duplicates, Scene, SceneAppearance};
 
 /// Palette, surfaces and emissive spheres of a scene.
 #[derive(Debug)]
-pub(in crate::gpu) struct SceneSummary {
+pub(crate) struct SceneSummary {
     /// Origin of the scene's frame, in world space.
-    pub(in crate::gpu) origin: DVec3,
-    pub(in crate::gpu) appearance: Arc<SceneAppearance>,
-    pub(in crate::gpu) emitters: Emitters,
+    pub(crate) origin: DVec3,
+    pub(crate) appearance: Arc<SceneAppearance>,
+    pub(crate) emitters: Emitters,
     /// The spheres of `emitters`, in the same order.
-    pub(in crate::gpu) emissive: Vec<EmissiveSphere>,
+    pub(crate) emissive: Vec<EmissiveSphere>,
 }
 
 /// A sphere that emits light.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct EmissiveSphere {
+pub(crate) struct EmissiveSphere {
     /// Centre in the scene's frame, and radius.
-    pub(in crate::gpu) sphere: [f32; 4],
-    pub(in crate::gpu) color: LinearRgb,
-    pub(in crate::gpu) surface: SurfaceProperties,
+    pub(crate) sphere: [f32; 4],
+    pub(crate) color: LinearRgb,
+    pub(crate) surface: SurfaceProperties,
 }
 
 impl SceneSummary {
     /// Bytes of an emissive sphere.
-    pub(in crate::gpu) const BYTES_PER_EMITTER: u64 = 8 + size_of::<EmissiveSphere>() as u64;
+    pub(crate) const BYTES_PER_EMITTER: u64 = 8 + size_of::<EmissiveSphere>() as u64;
 
-    pub(in crate::gpu) fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(scene: &Scene) -> Self {
         let emitters = Emitters::of(scene);
         let emissive = |id: &u32| EmissiveSphere {
             sphere: scene.spheres()[*id as usize],
@@ -50,7 +52,7 @@ impl SceneSummary {
     }
 
     /// The summary for a structure of occluders, whose appearance is never used.
-    pub(in crate::gpu) fn of_occluders(scene: &Scene) -> Self {
+    pub(crate) fn of_occluders(scene: &Scene) -> Self {
         Self {
             origin: scene.origin(),
             appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
@@ -60,7 +62,60 @@ impl SceneSummary {
     }
 
     /// Whether every sphere is opaque.
-    pub(in crate::gpu) fn is_opaque(&self) -> bool {
+    pub(crate) fn is_opaque(&self) -> bool {
         self.appearance.is_opaque()
+    }
+}
+
+/// How the shape that a ray starts on is excluded from its search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum ExcludeBy {
+    /// By the shape's index in the structure, if no equal shape is in another brick. This costs nothing for each test.
+    Index,
+    /// By the shape's id. This costs one memory access for each test.
+    Id,
+}
+
+impl ExcludeBy {
+    /// All variants.
+    pub(crate) const ALL: [Self; 2] = [Self::Index, Self::Id];
+
+    pub(crate) fn constant(self) -> Constant {
+        ("EXCLUDES_BY_ID", u32::from(self == Self::Id))
+    }
+}
+
+/// The ids of the spheres of a structure, and the way in which rays exclude the sphere that they start on.
+#[derive(Clone, Debug)]
+pub(crate) struct ShapeIds {
+    /// The id of every sphere that the structure was built from; `None` if every sphere's id is its index.
+    ids: Option<Vec<u32>>,
+    pub(crate) exclude_by: ExcludeBy,
+}
+
+impl ShapeIds {
+    /// The ids for a structure of all spheres. Spheres with the same centre may be in different bricks if
+    /// `may_part_equals`.
+    pub(crate) fn of_all(scene: &Scene, may_part_equals: bool) -> Self {
+        // If equal spheres are always in the same brick, their indices in the structure suffice.
+        let duplicates = may_part_equals.then(|| Duplicates::of(scene.spheres()));
+        let ids = duplicates.and_then(Duplicates::into_firsts);
+        let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
+        Self { ids, exclude_by }
+    }
+
+    /// The ids for a structure of the opaque spheres only: their indices among all spheres.
+    pub(crate) fn of_opaque(scene: &Scene) -> Self {
+        let duplicates = Duplicates::of(scene.spheres());
+        let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
+        Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
+    }
+
+    /// The ids of spheres that are given by their indices in the input of the structure.
+    pub(crate) fn of<'a>(&self, numbers: &'a [u32]) -> Cow<'a, [u32]> {
+        match &self.ids {
+            None => numbers.into(),
+            Some(ids) => numbers.iter().map(|number| ids[*number as usize]).collect(),
+        }
     }
 }

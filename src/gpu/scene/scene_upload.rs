@@ -12,45 +12,44 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::resources::numbered_group;
 use crate::gpu::scene::appearance::{self, AppearanceWords};
 use crate::gpu::scene::query_structure;
-use crate::gpu::scene::scene_summary::SceneSummary;
-use crate::gpu::scene::shape_ids::ShapeIds;
+use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::shader::records;
 use crate::scene::SceneAppearance;
 
 /// Buffers and bind groups of a brick.
 #[derive(Debug)]
-pub(in crate::gpu) struct BrickBuffers {
+pub(crate) struct BrickBuffers {
     /// Structure and primitive, which determine the kernels.
-    pub(in crate::gpu) kind: BrickKind,
+    pub(crate) kind: BrickKind,
     /// The boxes of the shapes, by which bricks are sorted and looked for in pictures.
-    pub(in crate::gpu) bounds: BrickBounds,
+    pub(crate) bounds: BrickBounds,
     /// Bind group 1 of `trace`.
-    pub(in crate::gpu) trace_group: BindGroup,
+    pub(crate) trace_group: BindGroup,
     /// Bind group 1 of `shade`.
-    pub(in crate::gpu) surface_group: BindGroup,
+    pub(crate) surface_group: BindGroup,
     /// Bind group 3 of kernels that search the brick and shade its shapes.
-    pub(in crate::gpu) appearance_group: BindGroup,
+    pub(crate) appearance_group: BindGroup,
     /// The id of every sphere, in the order of the structure, and after them words of some structures.
-    pub(in crate::gpu) ids: Buffer,
+    pub(crate) ids: Buffer,
     /// The appearance words of the spheres.
-    pub(in crate::gpu) appearances: Buffer,
-    pub(in crate::gpu) shape_count: u32,
+    pub(crate) appearances: Buffer,
+    pub(crate) shape_count: u32,
 }
 
 /// What all bricks of a scene have in common.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct BrickSpace {
+pub(crate) struct BrickSpace {
     /// The planned structure. Grids of some bricks may be nested nevertheless.
-    pub(in crate::gpu) structure: Structure,
+    pub(crate) structure: Structure,
     /// The inflated box of the scene.
-    pub(in crate::gpu) bounds: (Vec3, Vec3),
+    pub(crate) bounds: (Vec3, Vec3),
 }
 
 /// The bricks of a scene that are to be copied. Each may be built when it is asked for.
-pub(in crate::gpu) struct BrickSource<I> {
-    pub(in crate::gpu) space: BrickSpace,
-    pub(in crate::gpu) may_part_equals: bool,
-    pub(in crate::gpu) bricks: I,
+pub(crate) struct BrickSource<I> {
+    pub(crate) space: BrickSpace,
+    pub(crate) may_part_equals: bool,
+    pub(crate) bricks: I,
 }
 
 impl<'a> From<&'a Accel> for BrickSource<std::slice::Iter<'a, Brick>> {
@@ -70,15 +69,15 @@ impl<'a> From<Bricks<'a>> for BrickSource<Bricks<'a>> {
 
 /// The bricks of a scene on a device.
 #[derive(Debug)]
-pub(in crate::gpu) struct UploadedBricks {
+pub(crate) struct UploadedBricks {
     /// The structure is that of the bricks.
-    pub(in crate::gpu) space: BrickSpace,
-    pub(in crate::gpu) bricks: Vec<BrickBuffers>,
-    pub(in crate::gpu) bytes: u64,
+    pub(crate) space: BrickSpace,
+    pub(crate) bricks: Vec<BrickBuffers>,
+    pub(crate) bytes: u64,
 }
 
 /// The state of copying the bricks of a scene to a device.
-pub(in crate::gpu) struct SceneUpload<'a> {
+pub(crate) struct SceneUpload<'a> {
     renderer: &'a Renderer,
     device: &'a Device,
     queue: &'a Queue,
@@ -95,7 +94,7 @@ pub(in crate::gpu) struct SceneUpload<'a> {
 const LARGEST_SHAPE: usize = 64;
 
 impl<'a> SceneUpload<'a> {
-    pub(in crate::gpu) async fn new(
+    pub(crate) async fn new(
         renderer: &'a Renderer,
         device: &'a Device,
         queue: &'a Queue,
@@ -125,7 +124,7 @@ impl<'a> SceneUpload<'a> {
     }
 
     /// Queues the copy of a brick. The brick can be dropped afterwards.
-    pub(in crate::gpu) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
+    pub(crate) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
         let (renderer, device, queue) = (self.renderer, self.device, self.queue);
         let Self { palette, uploaded, .. } = self;
         let ids = self.ids.of(&brick.ids);
@@ -231,17 +230,17 @@ impl<'a> SceneUpload<'a> {
     }
 
     /// Returns the work since the last call that has to be submitted before the bricks are searched.
-    pub(in crate::gpu) fn take_work(&mut self) -> Vec<CommandEncoder> {
+    pub(crate) fn take_work(&mut self) -> Vec<CommandEncoder> {
         std::mem::take(&mut self.work)
     }
 
     /// Returns the bricks since the last call, each of which is searched as what it is.
-    pub(in crate::gpu) fn take_bricks(&mut self) -> Vec<BrickBuffers> {
+    pub(crate) fn take_bricks(&mut self) -> Vec<BrickBuffers> {
         std::mem::take(&mut self.uploaded.bricks)
     }
 
     /// Returns the bricks, which are all searched as nested grids if any of them is one.
-    pub(in crate::gpu) fn finish(self) -> Result<UploadedBricks, GpuError> {
+    pub(crate) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
         let is_nested =
             |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);

@@ -87,9 +87,9 @@ mod tests {
     use crate::accel::AccelPlan;
     use crate::camera::film::Film;
     use crate::camera::{PinholeCamera, Pose, View};
-    use crate::gpu::headless::device_limits::DeviceLimits;
+    use crate::gpu::device_shape::DeviceLimits;
     use crate::gpu::headless::plan::{PictureRequest, StructurePlans};
-    use crate::gpu::waiting::block_on;
+    use crate::gpu::headless::waiting::block_on;
     use crate::image::LayerSet;
     use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;

@@ -1,8 +1,8 @@
 //! Tests that a device that computes like the CPU passes, and that a fault in one result fails the right property.
 
-use super::records::{Arithmetic, Exact, Operands, Values};
-use super::report::{PropertyOutcome, TestedProperty};
-use super::{exactness, inputs, rounding};
+use crate::gpu::self_test::records::{Arithmetic, Exact, Operands, Values};
+use crate::gpu::self_test::report::{PropertyOutcome, TestedProperty};
+use crate::gpu::self_test::{records, rounding};
 
 const COUNT: usize = 256;
 
@@ -61,17 +61,17 @@ fn honest_exact(v: &Values) -> Exact {
 
 /// The properties that fail after `plant` has changed one result.
 fn failing_arithmetic(at: usize, plant: impl Fn(&Operands, &mut Arithmetic)) -> Vec<&'static str> {
-    let operands = inputs::operands(COUNT);
+    let operands = records::operands(COUNT);
     let mut answers: Vec<_> = operands.iter().map(honest_arithmetic).collect();
     plant(&operands[at], &mut answers[at]);
     names_of_failing(&rounding::judge(&operands, &answers))
 }
 
 fn failing_exact(at: usize, plant: impl Fn(&Values, &mut Exact)) -> Vec<&'static str> {
-    let values = inputs::values(COUNT);
+    let values = records::values(COUNT);
     let mut answers: Vec<_> = values.iter().map(honest_exact).collect();
     plant(&values[at], &mut answers[at]);
-    names_of_failing(&exactness::judge(&values, &answers))
+    names_of_failing(&rounding::judge_exact(&values, &answers))
 }
 
 fn names_of_failing(properties: &[TestedProperty]) -> Vec<&'static str> {
@@ -91,7 +91,7 @@ fn an_honest_device_passes() {
 
 #[test]
 fn no_answers_fail() {
-    for properties in [rounding::judge(&[], &[]), exactness::judge(&[], &[])] {
+    for properties in [rounding::judge(&[], &[]), rounding::judge_exact(&[], &[])] {
         assert_eq!(names_of_failing(&properties).len(), properties.len());
     }
 }
@@ -113,7 +113,7 @@ fn fences_that_leak_are_found() {
 
 #[test]
 fn unfenced_sums_are_counted_and_may_be_anything() {
-    let operands = inputs::operands(COUNT);
+    let operands = records::operands(COUNT);
     let mut answers: Vec<_> = operands.iter().map(honest_arithmetic).collect();
     let share = |answers: &[Arithmetic]| {
         let fence = &rounding::judge(&operands, answers)[0];
@@ -143,7 +143,7 @@ fn a_sum_a_difference_and_a_product_beyond_the_neighbours_are_found() {
 /// A device may round down. Half of its results are then not the nearest numbers.
 #[test]
 fn rounding_down_is_legal() {
-    let operands = inputs::operands(COUNT);
+    let operands = records::operands(COUNT);
     let mut answers: Vec<_> = operands.iter().map(honest_arithmetic).collect();
     for (o, answer) in operands.iter().zip(&mut answers) {
         let (a, b) = (f64::from(o.a), f64::from(o.b));
@@ -228,7 +228,7 @@ fn every_operation_that_is_not_exact_is_found() {
         |answer| answer.lowest ^= 1,
     ];
     // An input whose f is so small that its floor can change by one.
-    let values = inputs::values(COUNT);
+    let values = records::values(COUNT);
     let at = values.iter().position(|v| v.f.abs() < 1000.0).unwrap();
     for (index, fault) in faults.iter().enumerate() {
         let names = failing_exact(at, |_, answer| fault(answer));
@@ -238,8 +238,8 @@ fn every_operation_that_is_not_exact_is_found() {
 
 #[test]
 fn subnormals_may_be_flushed_and_nothing_else() {
-    let values = inputs::values(COUNT);
-    let judged = |answers: &[Exact]| exactness::judge(&values, answers).swap_remove(0);
+    let values = records::values(COUNT);
+    let judged = |answers: &[Exact]| rounding::judge_exact(&values, answers).swap_remove(0);
     let mut answers: Vec<_> = values.iter().map(honest_exact).collect();
     let kept = judged(&answers);
     assert_eq!((kept.name, kept.outcome), ("subnormals", PropertyOutcome::Noted));

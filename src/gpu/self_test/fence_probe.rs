@@ -1,13 +1,13 @@
 //! Judging fences in a kernel that traces rays: with the frame of a picture, and with all that a compiler may make of
 //! such a kernel.
 
-use super::report::{Tally, TestedProperty, percent};
 use crate::gpu::edit::ShaderEdit;
+use crate::gpu::self_test::report::{Tally, TestedProperty, percent};
 use crate::gpu::shader::part;
 use crate::verify::{TracedPixel, TracedRay};
 
 /// What turns the kernel that records rays into the one that probes fences.
-pub(in crate::gpu) fn edit() -> ShaderEdit {
+pub(crate) fn edit() -> ShaderEdit {
     let recorded = part!("primary/entry.wgsl", "recorded");
     let probed = part!("primary/entry.wgsl", "probed");
     ShaderEdit {
@@ -18,7 +18,7 @@ pub(in crate::gpu) fn edit() -> ShaderEdit {
 }
 
 /// Judges what the kernel recorded in place of rays.
-pub(in crate::gpu) fn judge(pixels: &[TracedPixel]) -> TestedProperty {
+pub(crate) fn judge(pixels: &[TracedPixel]) -> TestedProperty {
     let mut tally = Tally::default();
     let (mut rounded, mut rewritten) = (0, 0);
     for TracedRay { origin: [sum, back, error], direction: [a, b, _], distance: unfenced } in

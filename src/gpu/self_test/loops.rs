@@ -1,7 +1,7 @@
 //! Judging whether loops run to their end.
 
-use super::records::{Looped, SelfTest};
-use super::report::{PropertyOutcome, Tally, TestedProperty};
+use crate::gpu::self_test::records::{Looped, SelfTest};
+use crate::gpu::self_test::report::{PropertyOutcome, Tally, TestedProperty};
 
 /// Number of invocations of the single workgroup.
 pub(super) const INVOCATIONS: u32 = 64;

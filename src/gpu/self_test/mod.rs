@@ -6,12 +6,9 @@
 
 #![expect(clippy::float_cmp, reason = "the self-test compares numbers for equality")]
 
-mod exactness;
 #[cfg(test)]
 mod fault_tests;
 pub(super) mod fence_probe;
-mod float;
-mod inputs;
 mod loops;
 pub(super) mod records;
 mod report;

@@ -65,7 +65,7 @@ impl SelfTestReport {
 
     /// The report with one more property.
     #[must_use]
-    pub(in crate::gpu) fn with(mut self, property: TestedProperty) -> Self {
+    pub(crate) fn with(mut self, property: TestedProperty) -> Self {
         self.properties.push(property);
         self
     }

@@ -7,17 +7,16 @@ use wgpu::{
     BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device,
 };
 
-use super::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
-use super::report::{SelfTestExtent, SelfTestReport};
-use super::{exactness, inputs, loops, rounding};
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::resources::{buffer, numbered_group};
+use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
+use crate::gpu::self_test::report::{SelfTestExtent, SelfTestReport};
+use crate::gpu::self_test::{loops, records, rounding};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Probe, self_test_kernel};
+use crate::gpu::shader::{Probe, pipeline, self_test_kernel};
 
 /// Numbers of inputs of each operation, which are multiples of the workgroup size.
 const QUICK: usize = 512;
@@ -27,7 +26,7 @@ const WORKGROUP: u32 = 64;
 
 /// The dispatches of a self-test, with their inputs.
 #[derive(Debug)]
-pub(in crate::gpu) struct SelfTestRun {
+pub(crate) struct SelfTestRun {
     operands: Vec<Operands>,
     arithmetic: Dispatch,
     full: Option<Full>,
@@ -43,16 +42,13 @@ struct Full {
 }
 
 impl SelfTestRun {
-    pub(in crate::gpu) async fn new(
-        device: &Device,
-        extent: SelfTestExtent,
-    ) -> Result<Self, GpuError> {
+    pub(crate) async fn new(device: &Device, extent: SelfTestExtent) -> Result<Self, GpuError> {
         let checks = Checks::default();
         let count = match extent {
             SelfTestExtent::Quick => QUICK,
             SelfTestExtent::Full => FULL,
         };
-        let operands = inputs::operands(count);
+        let operands = records::operands(count);
         let kernel = TestKernel::<_, Arithmetic>::new(device, Probe::Arithmetic, &checks);
         let arithmetic = kernel.dispatch(device, &SelfTest::default(), &operands, &checks);
         let full = match extent {
@@ -69,22 +65,22 @@ impl SelfTestRun {
         std::iter::once(&self.arithmetic).chain(rest)
     }
 
-    pub(in crate::gpu) fn record(&self, encoder: &mut CommandEncoder) {
+    pub(crate) fn record(&self, encoder: &mut CommandEncoder) {
         for dispatch in self.dispatches() {
             dispatch.record(encoder);
         }
     }
 
     /// The buffers that must be mapped before [`SelfTestRun::judge`].
-    pub(in crate::gpu) fn buffers(&self) -> Vec<&Buffer> {
+    pub(crate) fn buffers(&self) -> Vec<&Buffer> {
         self.dispatches().map(|dispatch| &dispatch.readable.buffer).collect()
     }
 
     /// Judges the results of the device.
-    pub(in crate::gpu) fn judge(&self) -> Result<SelfTestReport, GpuError> {
+    pub(crate) fn judge(&self) -> Result<SelfTestReport, GpuError> {
         let mut properties = rounding::judge(&self.operands, &self.arithmetic.read()?);
         if let Some(Full { values, exact, limit, loops }) = &self.full {
-            properties.extend(exactness::judge(values, &exact.read()?));
+            properties.extend(rounding::judge_exact(values, &exact.read()?));
             let answers = loops.iter().map(Dispatch::read).collect::<Result<Vec<_>, _>>()?;
             properties.push(loops::judge(*limit, &answers));
         }
@@ -94,7 +90,7 @@ impl SelfTestRun {
 
 impl Full {
     fn new(device: &Device, count: usize, checks: &Checks) -> Self {
-        let values = inputs::values(count);
+        let values = records::values(count);
         let kernel = TestKernel::<_, Exact>::new(device, Probe::Exact, checks);
         let exact = kernel.dispatch(device, &SelfTest::default(), &values, checks);
         let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops, checks);
@@ -199,7 +195,7 @@ fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::waiting::block_on;
+    use crate::gpu::headless::waiting::block_on;
 
     #[test]
     fn every_kernel_is_accepted_by_a_device_with_webgpu_limits() {

@@ -10,7 +10,7 @@ pub(in crate::gpu) type Constant = (&'static str, u32);
 /// An entry point, the parts that it is composed of, and the values of the `override` constants that they declare.
 /// Kernels that differ in the values alone have the same source, and a pipeline for each set of values.
 #[derive(Clone, Debug)]
-pub(in crate::gpu) struct Kernel {
+pub(crate) struct Kernel {
     pub(in crate::gpu) entry_point: &'static str,
     pub(in crate::gpu) parts: Vec<Part>,
     pub(in crate::gpu) constants: Vec<Constant>,

@@ -12,7 +12,7 @@ use crate::gpu::shader::records;
 
 /// The layouts of all bind groups of the kernels for primary rays.
 #[derive(Debug)]
-pub(in crate::gpu) struct Layouts {
+pub(crate) struct Layouts {
     /// Layout of bind group 0 of every kernel.
     pub(in crate::gpu) frame: BindGroupLayout,
     /// Layouts of bind group 1 of `trace`: brick, shapes, ids, and the words of the structure.

@@ -8,7 +8,7 @@ use crate::gpu::shader::formats::ColorTarget;
 
 /// Whether a brick is the first that is traced for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum BrickPass {
+pub(crate) enum BrickPass {
     First,
     Later,
 }

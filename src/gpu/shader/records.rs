@@ -27,7 +27,7 @@ pub(in crate::gpu) struct Camera {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct FrameParameters {
+pub(crate) struct FrameParameters {
     camera: Camera,
     background: [f32; 3],
     shading: u32,
@@ -79,7 +79,7 @@ pub(in crate::gpu) type RecordedRays = [f32; 16];
 
 /// The position of a scene: the origin of its frame in world space, and its box in that frame, to which rays are moved.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct SceneSpace {
+pub(crate) struct SceneSpace {
     pub(in crate::gpu) origin: DVec3,
     pub(in crate::gpu) min: Vec3,
     pub(in crate::gpu) max: Vec3,

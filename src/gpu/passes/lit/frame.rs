@@ -1,25 +1,25 @@
-//! Buffers of a lit picture: those that all tiles share, and the sums of each tile.
+//! Buffers of a lit picture: its light, those that all tiles share, and the sums of each tile.
 
-use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Queue};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Device, Queue, TextureView};
 
-use super::lighting::LightingData;
-use super::lighting_buffers::LightingBuffers;
-use super::passes::{LitLayouts, LitPasses};
-use super::records::{DispatchParameters, GROUPS_NEEDED, QUEUE_HEAD};
-use super::sizes::LitSizes;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::emitter_table;
+use crate::gpu::passes::lit::lighting::LightingData;
+use crate::gpu::passes::lit::passes::{LitLayouts, LitPasses};
+use crate::gpu::passes::lit::records::{DispatchParameters, GROUPS_NEEDED, LitSizes, QUEUE_HEAD};
 use crate::gpu::passes::tiles::Tile;
-use crate::gpu::resources::{Entry, Make, bind_group, part, whole};
+use crate::gpu::resources::{Entry, Make, bind_group, numbered_group, part, whole};
 use crate::gpu::shader::records::FrameParameters;
+use crate::light::environment::Environment;
 
 /// Maximum number of dispatches in a submission.
-pub(in crate::gpu) const MAX_DISPATCHES: usize = 1024;
+pub(crate) const MAX_DISPATCHES: usize = 1024;
 
 /// The workgroups of a tile that a dispatch covers, and the box to which the origins of its rays are moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum Area {
+pub(crate) enum Area {
     /// All workgroups of the tile.
     Whole,
     /// The workgroups in which the scene may be visible.
@@ -29,31 +29,31 @@ pub(in crate::gpu) enum Area {
 }
 
 /// Records of a tile, indexed by [`Area`].
-pub(in crate::gpu) type Frames = [FrameParameters; 3];
+pub(crate) type Frames = [FrameParameters; 3];
 
 /// The buffers of a lit picture in progress.
 #[derive(Debug)]
-pub(in crate::gpu) struct LitFrame {
-    pub(in crate::gpu) sizes: LitSizes,
+pub(crate) struct LitFrame {
+    pub(crate) sizes: LitSizes,
     parameters: Buffer,
     parameter_stride: usize,
     frame_stride: usize,
     pub(super) queue: Buffer,
     pub(super) groups_needed: Buffer,
     /// The state of all paths, slot by slot.
-    pub(in crate::gpu) paths: Buffer,
+    pub(crate) paths: Buffer,
     variations: Buffer,
     pub(super) lit: LightingBuffers,
-    pub(in crate::gpu) tiles: Vec<LitTile>,
+    pub(crate) tiles: Vec<LitTile>,
     /// Read-back buffer of the status word, which is nonzero if an invocation reached its iteration limit.
-    pub(in crate::gpu) spent_back: ReadableBuffer,
-    pub(in crate::gpu) film_back: ReadableBuffer,
-    pub(in crate::gpu) variations_back: ReadableBuffer,
+    pub(crate) spent_back: ReadableBuffer,
+    pub(crate) film_back: ReadableBuffer,
+    pub(crate) variations_back: ReadableBuffer,
 }
 
 /// Who records the passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum RecordedBy {
+pub(crate) enum RecordedBy {
     /// This crate, which submits one recording before it makes the next, and reads the sums.
     Headless,
     /// A host program, which may have so many recordings under way, and shows the sums.
@@ -74,12 +74,12 @@ impl RecordedBy {
 
 /// A tile, and the sums of its pixels.
 #[derive(Debug)]
-pub(in crate::gpu) struct LitTile {
-    pub(in crate::gpu) tile: Tile,
+pub(crate) struct LitTile {
+    pub(crate) tile: Tile,
     pub(super) frames: Frames,
     records: Buffer,
     /// The sums of the tile's pixels, as in `shaders/path/film_sums.wgsl`.
-    pub(in crate::gpu) film: Buffer,
+    pub(crate) film: Buffer,
     /// Bind group 0 of most passes, indexed by [`Area`].
     pub(super) groups: [BindGroup; 3],
     pub(super) advance: BindGroup,
@@ -91,7 +91,7 @@ pub(in crate::gpu) struct LitTile {
 
 impl LitFrame {
     /// Creates the buffers for some tiles, none of which may be larger than `sizes.tile`.
-    pub(in crate::gpu) async fn new(
+    pub(crate) async fn new(
         make: Make<'_>,
         passes: &LitPasses,
         sizes: LitSizes,
@@ -175,7 +175,7 @@ impl LitFrame {
 
     /// Queues the parameters of a recording's dispatches, of which there may be at most [`MAX_DISPATCHES`]. `place` is
     /// the number of the recording among those under way.
-    pub(in crate::gpu) fn queue_parameters(
+    pub(crate) fn queue_parameters(
         &self,
         queue: &Queue,
         place: usize,
@@ -195,7 +195,7 @@ impl LitFrame {
     }
 
     /// Queues other records for the tiles, in order, and returns whether any differs from what was there.
-    pub(in crate::gpu) fn set_frames(
+    pub(crate) fn set_frames(
         &mut self,
         queue: &Queue,
         frames: impl Iterator<Item = Frames>,
@@ -212,7 +212,7 @@ impl LitFrame {
     }
 
     /// Queues other light, as [`LightingBuffers::set`] does.
-    pub(in crate::gpu) async fn set_lighting(
+    pub(crate) async fn set_lighting(
         &mut self,
         make: Make<'_>,
         passes: &LitPasses,
@@ -223,27 +223,27 @@ impl LitFrame {
     }
 
     /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
-    pub(in crate::gpu) fn spent(&self) -> &Buffer {
+    pub(crate) fn spent(&self) -> &Buffer {
         &self.queue
     }
 
     /// Records a command that empties the lists.
-    pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
+    pub(crate) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
         encoder.clear_buffer(&self.queue, 4, Some(QUEUE_HEAD - 4));
     }
 
     /// Records a command that clears the sums of a tile.
-    pub(in crate::gpu) fn record_clear_film(&self, encoder: &mut CommandEncoder, tile: usize) {
+    pub(crate) fn record_clear_film(&self, encoder: &mut CommandEncoder, tile: usize) {
         encoder.clear_buffer(&self.tiles[tile].film, 0, None);
     }
 
     /// Records the copy of the status word.
-    pub(in crate::gpu) fn record_copy_spent(&self, encoder: &mut CommandEncoder) {
+    pub(crate) fn record_copy_spent(&self, encoder: &mut CommandEncoder) {
         self.spent_back.record_copy(encoder, &self.queue);
     }
 
     /// Returns an error if the searches of some rays were abandoned. The copy of the status word must be mapped.
-    pub(in crate::gpu) fn read_spent(&self) -> Result<(), GpuError> {
+    pub(crate) fn read_spent(&self) -> Result<(), GpuError> {
         match self.spent_back.read(|words: &[u32]| words[0])? {
             0 => Ok(()),
             _ => Err(GpuError::Steps),
@@ -251,12 +251,12 @@ impl LitFrame {
     }
 
     /// Records the copy of a tile's sums.
-    pub(in crate::gpu) fn record_copy_film(&self, encoder: &mut CommandEncoder, tile: usize) {
+    pub(crate) fn record_copy_film(&self, encoder: &mut CommandEncoder, tile: usize) {
         self.film_back.record_copy(encoder, &self.tiles[tile].film);
     }
 
     /// Records the copy of the sums of variances and luminances of a tile.
-    pub(in crate::gpu) fn record_copy_variations(&self, encoder: &mut CommandEncoder) {
+    pub(crate) fn record_copy_variations(&self, encoder: &mut CommandEncoder) {
         self.variations_back.record_copy(encoder, &self.variations);
     }
 }
@@ -268,4 +268,103 @@ fn strided(frames: &Frames, stride: usize) -> Vec<u8> {
         target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
     }
     bytes
+}
+
+/// The record of a lighting, its tables, emitters and sky.
+#[derive(Debug)]
+pub(crate) struct LightingBuffers {
+    record: Buffer,
+    tables: Buffer,
+    emitters: TextureView,
+    /// Bind group of lights and materials.
+    pub(crate) group: BindGroup,
+    /// Bind group of the image of the sky.
+    pub(crate) sky: Option<BindGroup>,
+}
+
+impl LightingBuffers {
+    pub(crate) async fn new(
+        make: Make<'_>,
+        layouts: &LitLayouts,
+        lighting: &LightingData,
+    ) -> Result<Self, GpuError> {
+        Self::with(make, layouts, lighting, None).await
+    }
+
+    /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
+    /// the sky are uploaded if `is_new` says that they may be others.
+    pub(crate) async fn set(
+        &mut self,
+        make: Make<'_>,
+        layouts: &LitLayouts,
+        lighting: &LightingData,
+        is_new: bool,
+    ) -> Result<(), GpuError> {
+        if is_new || self.tables.size() != lighting.table_bytes() {
+            let kept = (!is_new).then_some(&*self);
+            *self = Self::with(make, layouts, lighting, kept).await?;
+        } else {
+            let queue = make.queue;
+            queue.write_buffer(&self.record, 0, bytemuck::bytes_of(&lighting.parameters));
+            queue.write_buffer(&self.tables, 0, bytemuck::cast_slice(&lighting.tables));
+        }
+        Ok(())
+    }
+
+    /// Creates the buffers, with the emitters and the sky that are kept.
+    async fn with(
+        make: Make<'_>,
+        layouts: &LitLayouts,
+        lighting: &LightingData,
+        kept: Option<&Self>,
+    ) -> Result<Self, GpuError> {
+        let Make { device, queue } = make;
+        check(device, lighting)?;
+        scoped(device, || {
+            let record = bytemuck::bytes_of(&lighting.parameters);
+            let record = make.filled("pinhole lighting", record, BufferUsages::UNIFORM);
+            let tables = bytemuck::cast_slice(&lighting.tables);
+            let tables = make.filled("pinhole tables", tables, BufferUsages::STORAGE);
+            let (emitters, sky) = match kept {
+                Some(kept) => (kept.emitters.clone(), kept.sky.clone()),
+                None => (
+                    emitter_table::upload(device, queue, &lighting.emitters),
+                    lighting.sky.as_deref().map(|image| sky_group(make, layouts, image)),
+                ),
+            };
+            let texture = (2, wgpu::BindingResource::TextureView(&emitters));
+            let entries = [whole(0, &record), whole(1, &tables), texture];
+            let group = bind_group(device, "pinhole lighting", &layouts.lighting, &entries);
+            Self { record, tables, emitters, group, sky }
+        })
+        .await
+    }
+}
+
+fn sky_group(make: Make<'_>, layouts: &LitLayouts, environment: &Environment) -> BindGroup {
+    let texels: Vec<[f32; 4]> =
+        environment.texels().iter().map(|[r, g, b]| [*r, *g, *b, 0.0]).collect();
+    let shares: Vec<f32> =
+        environment.rows().iter().chain(environment.columns()).copied().collect();
+    let storage = BufferUsages::STORAGE;
+    let texels = make.filled("pinhole sky", bytemuck::cast_slice(&texels), storage);
+    let shares = make.filled("pinhole sky shares", bytemuck::cast_slice(&shares), storage);
+    let bound = [&texels, &shares].map(Buffer::as_entire_binding);
+    numbered_group(make.device, "pinhole sky", &layouts.sky, bound)
+}
+
+/// Returns an error if the device has no room for the tables of a lighting.
+fn check(device: &Device, lighting: &LightingData) -> Result<(), GpuError> {
+    check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
+    let (limit_name, limit) = emitter_table::limit(&device.limits());
+    let needed = emitter_table::planned(lighting.emitters.len()).map_or(0, |table| table.bytes);
+    if needed > limit {
+        let what = emitter_table::WHAT;
+        return Err(GpuError::Limit { what, needed, limit_name, limit });
+    }
+    if let Some(environment) = &lighting.sky {
+        let bytes = 16 * environment.texels().len() as u64;
+        check_storage_size(device, "the image of the sky", bytes)?;
+    }
+    Ok(())
 }

@@ -2,30 +2,30 @@
 
 use crate::accel::Structure;
 use crate::camera::CameraKind;
-use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::{
     BrickPass, Constant, Kernel, Part, camera_constant, camera_parts, part, structure_parts,
 };
 
 /// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum Mode {
+pub(crate) enum Mode {
     Studio,
     Path(Materials, Sources, SkyKind),
 }
 
 impl Mode {
     /// Whether paths sample lights.
-    pub(in crate::gpu) fn samples_light(self) -> bool {
+    pub(crate) fn samples_light(self) -> bool {
         matches!(self, Self::Path(_, Sources::Any, _))
     }
 
     /// Whether light may be absorbed between surfaces.
-    pub(in crate::gpu) fn has_medium(self) -> bool {
+    pub(crate) fn has_medium(self) -> bool {
         matches!(self, Self::Path(Materials::Any, ..))
     }
 
-    pub(in crate::gpu) fn is_studio(self) -> bool {
+    pub(crate) fn is_studio(self) -> bool {
         self == Self::Studio
     }
 
@@ -40,21 +40,21 @@ impl Mode {
 
 /// Whether all surfaces are matt or emissive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum Materials {
+pub(crate) enum Materials {
     Matt,
     Any,
 }
 
 /// Whether there is a light source that can be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum Sources {
+pub(crate) enum Sources {
     None,
     Any,
 }
 
 /// Whether the sky is an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum SkyKind {
+pub(crate) enum SkyKind {
     Plain,
     Image,
 }

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::kernels::{Materials, Mode, SkyKind, Sources};
-use super::one_pass::OnePass;
-use super::records::{BITS, LightingParameters};
 use crate::camera::Camera;
 use crate::geometry::math::unit;
 use crate::gpu::passes::emitter_table;
+use crate::gpu::passes::lit::kernels::{Materials, Mode, SkyKind, Sources};
+use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::passes::lit::records::{BITS, LightingParameters};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::shader::records::NO_HIT;
 use crate::image::color::LinearRgb;
@@ -25,16 +25,16 @@ use crate::scene::material::{Material, SurfaceProperties};
 
 /// The data of a picture's lighting for its kernels.
 #[derive(Debug)]
-pub(in crate::gpu) struct LightingData {
-    pub(in crate::gpu) mode: Mode,
-    pub(in crate::gpu) parameters: LightingParameters,
+pub(crate) struct LightingData {
+    pub(crate) mode: Mode,
+    pub(crate) parameters: LightingParameters,
     /// The tables of lights, materials and energies, which are never empty.
-    pub(in crate::gpu) tables: Vec<[f32; 4]>,
+    pub(crate) tables: Vec<[f32; 4]>,
     /// The table of emitters, which is empty unless light sampling chooses among them.
-    pub(in crate::gpu) emitters: Vec<[f32; 4]>,
+    pub(crate) emitters: Vec<[f32; 4]>,
     /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
-    pub(in crate::gpu) max_surfaces: u32,
+    pub(crate) max_surfaces: u32,
     /// Whether all spheres are opaque.
     is_opaque: bool,
     /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
@@ -49,7 +49,7 @@ pub(in crate::gpu) struct LightingData {
 
 impl LightingData {
     /// Computes the data for settings that have been checked. Positions are in the scene's frame.
-    pub(in crate::gpu) fn new(
+    pub(crate) fn new(
         settings: &RenderSettings,
         scene: &SceneSummary,
         camera: &dyn Camera,
@@ -110,7 +110,7 @@ impl LightingData {
 
 impl LightingData {
     /// Whether pictures with this light are the same as with another light, of the same scene.
-    pub(in crate::gpu) fn is_same(&self, other: &Self) -> bool {
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         let counts = |of: &Self| (of.mode, of.max_surfaces, of.is_opaque, of.has_shadows);
         counts(self) == counts(other)
             && self.has_same_images(other)
@@ -120,7 +120,7 @@ impl LightingData {
     }
 
     /// Whether other light is hidden than with another light, apart from where lamps are.
-    pub(in crate::gpu) fn rays_differ(&self, other: &Self) -> bool {
+    pub(crate) fn rays_differ(&self, other: &Self) -> bool {
         let hidden =
             |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.has_shadows);
         let radius = |of: &Self| of.parameters.occlusion_radius.to_bits();
@@ -130,7 +130,7 @@ impl LightingData {
     }
 
     /// Whether the image of the sky and the table of emitters are the same as for another light, of the same scene.
-    pub(in crate::gpu) fn has_same_images(&self, other: &Self) -> bool {
+    pub(crate) fn has_same_images(&self, other: &Self) -> bool {
         let is_same_sky = match (&self.sky, &other.sky) {
             (Some(sky), Some(other)) => Arc::ptr_eq(sky, other),
             (None, None) => true,
@@ -180,7 +180,7 @@ impl LightingData {
     }
 
     /// Size of the tables on the device in bytes, without that of emitters.
-    pub(in crate::gpu) fn table_bytes(&self) -> u64 {
+    pub(crate) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }
 }

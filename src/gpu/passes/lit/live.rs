@@ -6,16 +6,16 @@ use std::num::NonZeroU64;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, BindingType, ComputePipeline, Device};
 
-use super::kernels::{base, light_search};
-use super::one_pass::OnePass;
-use super::passes::LitLayouts;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
+use crate::gpu::passes::lit::kernels::{base, light_search};
+use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::passes::lit::passes::LitLayouts;
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
@@ -24,48 +24,48 @@ use crate::gpu::shader::{
 
 /// The properties in which sets of passes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) struct LiveKey {
-    pub(in crate::gpu) camera: CameraKind,
-    pub(in crate::gpu) structure: Structure,
-    pub(in crate::gpu) exclude_by: ExcludeBy,
-    pub(in crate::gpu) has_ground: bool,
+pub(crate) struct LiveKey {
+    pub(crate) camera: CameraKind,
+    pub(crate) structure: Structure,
+    pub(crate) exclude_by: ExcludeBy,
+    pub(crate) has_ground: bool,
 }
 
 /// The cameras of a frame and of the one before. Twin: `LiveView` in `shaders/live/view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct LiveView {
-    pub(in crate::gpu) right: [f32; 3],
-    pub(in crate::gpu) is_parallel: u32,
-    pub(in crate::gpu) up: [f32; 3],
-    pub(in crate::gpu) footprint: f32,
-    pub(in crate::gpu) forward: [f32; 3],
-    pub(in crate::gpu) y_sign: f32,
-    pub(in crate::gpu) shift: [f32; 3],
-    pub(in crate::gpu) has_before: u32,
-    pub(in crate::gpu) across: [f32; 3],
-    pub(in crate::gpu) most_lamps: u32,
-    pub(in crate::gpu) down: [f32; 3],
-    pub(in crate::gpu) most_open: u32,
-    pub(in crate::gpu) along: [f32; 3],
-    pub(in crate::gpu) zero: u32,
-    pub(in crate::gpu) size: [u32; 2],
-    pub(in crate::gpu) pad: [u32; 2],
+pub(crate) struct LiveView {
+    pub(crate) right: [f32; 3],
+    pub(crate) is_parallel: u32,
+    pub(crate) up: [f32; 3],
+    pub(crate) footprint: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) y_sign: f32,
+    pub(crate) shift: [f32; 3],
+    pub(crate) has_before: u32,
+    pub(crate) across: [f32; 3],
+    pub(crate) most_lamps: u32,
+    pub(crate) down: [f32; 3],
+    pub(crate) most_open: u32,
+    pub(crate) along: [f32; 3],
+    pub(crate) zero: u32,
+    pub(crate) size: [u32; 2],
+    pub(crate) pad: [u32; 2],
 }
 
 /// The pipelines, and the layouts of their bind groups.
 #[derive(Debug)]
-pub(in crate::gpu) struct LivePasses {
-    pub(in crate::gpu) lit: LitLayouts,
+pub(crate) struct LivePasses {
+    pub(crate) lit: LitLayouts,
     /// Layout of bind group 0 of the passes after the first.
-    pub(in crate::gpu) known: BindGroupLayout,
-    pub(in crate::gpu) live: ComputePipeline,
-    pub(in crate::gpu) reproject: ComputePipeline,
-    pub(in crate::gpu) show: ComputePipeline,
+    pub(crate) known: BindGroupLayout,
+    pub(crate) live: ComputePipeline,
+    pub(crate) reproject: ComputePipeline,
+    pub(crate) show: ComputePipeline,
 }
 
 /// The kernel that traces the rays of a frame.
-pub(in crate::gpu) fn live_kernel(key: LiveKey) -> Kernel {
+pub(crate) fn live_kernel(key: LiveKey) -> Kernel {
     let mut parts = base();
     parts.extend(light_search(key.structure));
     // The functions that cameras use are among the parts of lights.
@@ -96,14 +96,14 @@ pub(in crate::gpu) fn live_kernel(key: LiveKey) -> Kernel {
 }
 
 /// The kernel that averages over frames.
-pub(in crate::gpu) fn reproject_kernel() -> Kernel {
+pub(crate) fn reproject_kernel() -> Kernel {
     let parts =
         vec![part!("live/records.wgsl"), part!("live/view.wgsl"), part!("live/reproject.wgsl")];
     Kernel::new("reproject", parts)
 }
 
 /// The kernel that averages over neighbours and writes the picture.
-pub(in crate::gpu) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
+pub(crate) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
     let parts = vec![
         part!("live/records.wgsl"),
         part!("live/view.wgsl"),
@@ -115,7 +115,7 @@ pub(in crate::gpu) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel 
 }
 
 /// All kernels of live pictures.
-pub(in crate::gpu) fn live_kernels() -> Vec<Kernel> {
+pub(crate) fn live_kernels() -> Vec<Kernel> {
     let mut kernels = vec![reproject_kernel()];
     for &color in ColorTarget::ALL {
         kernels.extend([false, true].map(|has_data| show_kernel(color, has_data)));
@@ -134,7 +134,7 @@ pub(in crate::gpu) fn live_kernels() -> Vec<Kernel> {
 
 impl LiveKey {
     /// The key for a studio that one pass can take whole samples of.
-    pub(in crate::gpu) fn new(of: &super::LitKey) -> Option<Self> {
+    pub(crate) fn new(of: &super::LitKey) -> Option<Self> {
         let super::LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
         one_pass.filter(|pass| !pass.is_paths()).map(|studio| Self {
             camera,
@@ -147,7 +147,7 @@ impl LiveKey {
 
 impl LivePasses {
     /// Builds the pipelines. `targets` is the layout of the host's textures, in a renderer with these formats.
-    pub(in crate::gpu) async fn new(
+    pub(crate) async fn new(
         device: &Device,
         key: LiveKey,
         (color, has_data, targets): (ColorTarget, bool, &BindGroupLayout),

@@ -9,21 +9,17 @@
 //! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] records them
 //! into any encoder.
 
-mod all_kernels;
 mod frame;
 mod kernels;
 mod lighting;
-mod lighting_buffers;
 mod live;
 mod one_pass;
-mod pass;
 mod passes;
 mod plan;
 mod recorder;
-pub(in crate::gpu) mod records;
+pub(crate) mod records;
 mod round;
-mod sizes;
-pub(in crate::gpu) mod sums;
+pub(crate) mod sums;
 
 use wgpu::Device;
 
@@ -31,68 +27,45 @@ use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::tiles::{Groups, Tile};
-use crate::gpu::passes::visible_region::VisibleRegion;
+use crate::gpu::passes::visible_bricks::VisibleRegion;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 
-pub(in crate::gpu) use all_kernels::all_kernels;
-pub(in crate::gpu) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
-pub(in crate::gpu) use kernels::Mode;
-pub(in crate::gpu) use lighting::LightingData;
-pub(in crate::gpu) use lighting_buffers::LightingBuffers;
-pub(in crate::gpu) use live::{LiveKey, LivePasses, LiveView};
-pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
-pub(in crate::gpu) use recorder::Recorder;
-pub(in crate::gpu) use round::{Moment, Round, Step};
-pub(in crate::gpu) use sizes::LitSizes;
-
-/// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum Attempt {
-    /// One pass takes whole samples, where there is such a pass.
-    OnePass,
-    /// A ray for each invocation, except those towards ambient light.
-    Steps,
-    /// A ray for each invocation.
-    OneByOne,
-}
-
-impl Attempt {
-    /// The next way, if some invocations needed too many iterations.
-    pub(in crate::gpu) fn easier(self, lighting: &LightingData) -> Option<Self> {
-        match self {
-            Self::OnePass => Some(Self::Steps),
-            Self::Steps if lighting.parameters.occlusion_samples > 1 => Some(Self::OneByOne),
-            Self::Steps | Self::OneByOne => None,
-        }
-    }
-
-    /// The key of the passes that take samples in this way.
-    pub(in crate::gpu) fn key(self, key: LitKey) -> LitKey {
-        LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
-    }
-
-    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
-    /// state that it reads does not depend on the direction.
-    pub(in crate::gpu) fn at_once(self) -> u32 {
-        if self == Self::OneByOne { 1 } else { 32 }
-    }
-}
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::passes::lit::kernels::{
+    Materials, Schedule, SkyKind, Sources, accumulate_kernel, advance_kernel, ambient_kernel,
+    extend_kernel, gather_kernel, illuminate_kernel, noise_kernel, occlude_kernel, scatter_kernel,
+    shadow_kernel, start_kernel, surface_kernel,
+};
+use crate::gpu::passes::lit::live::live_kernels;
+use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::scene::scene_summary::ExcludeBy;
+use crate::gpu::shader::{BrickPass, Kernel};
+pub(crate) use frame::LightingBuffers;
+pub(crate) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
+pub(crate) use kernels::Mode;
+pub(crate) use lighting::LightingData;
+pub(crate) use live::{LiveKey, LivePasses, LiveView};
+pub(crate) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
+pub(crate) use recorder::Recorder;
+pub(crate) use records::LitSizes;
+pub(crate) use round::{Attempt, Moment, Round, Step};
 
 /// A scene as a lit picture shows it.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct LitScene<'a> {
-    pub(in crate::gpu) all: &'a SceneBuffers,
+pub(crate) struct LitScene<'a> {
+    pub(crate) all: &'a SceneBuffers,
     /// The spheres that cast shadows.
-    pub(in crate::gpu) occluders: &'a SceneBuffers,
-    pub(in crate::gpu) view: &'a View<'a>,
-    pub(in crate::gpu) settings: &'a RenderSettings,
+    pub(crate) occluders: &'a SceneBuffers,
+    pub(crate) view: &'a View<'a>,
+    pub(crate) settings: &'a RenderSettings,
 }
 
 impl<'a> LitScene<'a> {
     /// Checks the settings.
-    pub(in crate::gpu) fn new(
+    pub(crate) fn new(
         all: &'a SceneBuffers,
         view: &'a View<'a>,
         settings: &'a RenderSettings,
@@ -101,12 +74,12 @@ impl<'a> LitScene<'a> {
         Ok(Self { all, occluders: all.occluders(settings)?, view, settings })
     }
 
-    pub(in crate::gpu) fn lighting(&self) -> LightingData {
+    pub(crate) fn lighting(&self) -> LightingData {
         LightingData::new(self.settings, &self.all.summary, self.view.camera)
     }
 
     /// The key of the passes that the picture needs.
-    pub(in crate::gpu) fn key(&self, lighting: &LightingData, limits: &wgpu::Limits) -> LitKey {
+    pub(crate) fn key(&self, lighting: &LightingData, limits: &wgpu::Limits) -> LitKey {
         let Self { all, occluders, view, .. } = *self;
         LitKey {
             camera: view.camera.kind(),
@@ -128,7 +101,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// The records of tiles.
-    pub(in crate::gpu) fn records(self, device: &Device) -> impl Fn(Tile) -> (Tile, Frames) + 'a {
+    pub(crate) fn records(self, device: &Device) -> impl Fn(Tile) -> (Tile, Frames) + 'a {
         let Self { all, occluders, view, settings } = self;
         let limit = iteration_limit(device);
         // The region in which the scene may be visible. The ground may be visible everywhere.
@@ -147,4 +120,44 @@ impl<'a> LitScene<'a> {
             (tile, frames)
         }
     }
+}
+
+/// Returns one kernel for every camera, structure, kind of lighting and schedule.
+pub(crate) fn all_kernels() -> Vec<Kernel> {
+    const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
+    let mut modes = vec![Mode::Studio];
+    for materials in [Materials::Matt, Materials::Any] {
+        for sources in [Sources::None, Sources::Any] {
+            for sky in [SkyKind::Plain, SkyKind::Image] {
+                modes.push(Mode::Path(materials, sources, sky));
+            }
+        }
+    }
+    let mut kernels = vec![advance_kernel(), noise_kernel(), illuminate_kernel(), gather_kernel()];
+    for &mode in &modes {
+        kernels.push(accumulate_kernel(mode));
+        if let Mode::Path(materials, sources, sky) = mode {
+            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, materials, sources, sky)));
+        }
+        let cameras = CameraKind::ALL.iter();
+        kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
+    }
+    for (&structure, exclude_by) in Structure::WITH_KERNELS
+        .iter()
+        .flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
+    {
+        for brick_pass in [BrickPass::First, BrickPass::Later] {
+            kernels
+                .extend(SCHEDULES.map(|by| extend_kernel(structure, exclude_by, brick_pass, by)));
+        }
+        let cameras = CameraKind::ALL.iter();
+        kernels.extend(cameras.flat_map(|camera| {
+            OnePass::ALL.map(|pass| pass.kernel(*camera, structure, exclude_by))
+        }));
+        kernels.extend(modes.iter().map(|mode| occlude_kernel(structure, exclude_by, *mode)));
+        kernels.extend([shadow_kernel, ambient_kernel].map(|of| of(structure, exclude_by)));
+    }
+    kernels.extend(live_kernels());
+    kernels.extend(SCHEDULES.map(surface_kernel));
+    kernels
 }

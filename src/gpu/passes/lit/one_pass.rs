@@ -1,17 +1,17 @@
 //! The kernels that take whole samples of scenes of one brick, each in one dispatch.
 
-use super::kernels::{
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::passes::lit::kernels::{
     Materials, Mode, SkyKind, Sources, base, excluded_with_light, light_search, sampled_search,
     scattering,
 };
-use crate::accel::Structure;
-use crate::camera::CameraKind;
-use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::{Kernel, camera_constant, camera_rays, part};
 
 /// The pictures of which one pass takes whole samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum OnePass {
+pub(crate) enum OnePass {
     /// A studio of opaque spheres with lamps at the eye or infinitely far away, without a size and without shadows; all
     /// surfaces are matt, and there is no ground.
     Sharp,
@@ -25,7 +25,7 @@ pub(in crate::gpu) enum OnePass {
 
 impl OnePass {
     /// All of them.
-    pub(in crate::gpu) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Sharp,
         Self::Lamps,
         Self::Ground,

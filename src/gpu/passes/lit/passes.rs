@@ -3,48 +3,52 @@
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 
-use wgpu::{BindGroupLayout, BindingType, Device};
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingType, Buffer, CommandEncoder, ComputePassDescriptor,
+    ComputePipeline, Device,
+};
 
-use super::kernels::{self, Mode, Schedule, SkyKind};
-use super::one_pass::OnePass;
-use super::pass::Pass;
-use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
+use crate::gpu::passes::lit::kernels::{self, Mode, Schedule, SkyKind};
+use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::passes::lit::records::{
+    DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD,
+};
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::profile::PassNames;
+use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
-use crate::gpu::shader::records;
-use crate::gpu::shader::{BrickPass, Kernel};
+use crate::gpu::shader::{BrickPass, Kernel, pipeline, records};
 
 /// The properties in which sets of passes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) struct LitKey {
-    pub(in crate::gpu) camera: CameraKind,
-    pub(in crate::gpu) mode: Mode,
-    pub(in crate::gpu) structure: Structure,
+pub(crate) struct LitKey {
+    pub(crate) camera: CameraKind,
+    pub(crate) mode: Mode,
+    pub(crate) structure: Structure,
     /// The structure of the spheres that cast shadows.
-    pub(in crate::gpu) occluders: Structure,
+    pub(crate) occluders: Structure,
     /// How rays exclude the sphere on which they start, among all spheres and among those that cast shadows.
-    pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
+    pub(crate) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
-    pub(in crate::gpu) several_bricks: bool,
+    pub(crate) several_bricks: bool,
     /// The kind of picture, if one pass takes whole samples, which needs one brick.
-    pub(in crate::gpu) one_pass: Option<OnePass>,
+    pub(crate) one_pass: Option<OnePass>,
 }
 
 /// Layouts of bind group 0 of most passes (`frame`), of `advance`, and of passes over sums (`film`), and of groups 2
 /// and 3.
 #[derive(Debug)]
-pub(in crate::gpu) struct LitLayouts {
+pub(crate) struct LitLayouts {
     pub(super) frame: BindGroupLayout,
     pub(super) advance: BindGroupLayout,
-    pub(in crate::gpu) film: BindGroupLayout,
+    pub(crate) film: BindGroupLayout,
     /// Layout of bind group 0 of the pass that takes whole samples.
-    pub(in crate::gpu) samples: BindGroupLayout,
+    pub(crate) samples: BindGroupLayout,
     pub(super) lighting: BindGroupLayout,
     pub(super) sky: BindGroupLayout,
 }
@@ -58,13 +62,13 @@ pub(super) struct BySchedule {
 
 /// The passes of lit pictures for a device, camera, kind of lighting and structure.
 #[derive(Debug)]
-pub(in crate::gpu) struct LitPasses {
+pub(crate) struct LitPasses {
     pub(super) layouts: LitLayouts,
     pub(super) of_samples: SamplePasses,
     /// The pass that computes the numbers of workgroups of indirect dispatches.
-    pub(in crate::gpu) advance: Pass,
+    pub(crate) advance: Pass,
     /// The pass that sums variances and luminances of pixels.
-    pub(in crate::gpu) noise: Pass,
+    pub(crate) noise: Pass,
 }
 
 /// The passes that take samples.
@@ -102,7 +106,7 @@ pub(super) enum ShadePasses {
 }
 
 impl LitLayouts {
-    pub(in crate::gpu) fn new(device: &Device) -> Self {
+    pub(crate) fn new(device: &Device) -> Self {
         let frame = uniform::<records::FrameParameters>();
         let queue = storage_of(QUEUE_HEAD + 4);
         let paths = storage::<[f32; 4]>(false);
@@ -146,11 +150,7 @@ fn storage_of(bytes: u64) -> BindingType {
 
 impl LitPasses {
     /// Builds all pipelines.
-    pub(in crate::gpu) async fn new(
-        device: &Device,
-        key: LitKey,
-        edits: &Edits,
-    ) -> Result<Self, GpuError> {
+    pub(crate) async fn new(device: &Device, key: LitKey, edits: &Edits) -> Result<Self, GpuError> {
         let checks = Checks::default();
         let passes = Self::begin(device, key, edits, &checks)?;
         checks.passed().await?;
@@ -241,14 +241,89 @@ impl LitPasses {
 }
 
 /// The passes of a device. Each set is built when it is first needed.
-pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
+pub(crate) type AllLitPasses = HashMap<LitKey, LitPasses>;
+
+/// The pipeline of a kernel, which can be recorded into any encoder of its device.
+#[derive(Debug)]
+pub(crate) struct Pass {
+    /// The name of the entry point.
+    name: &'static str,
+    pipeline: ComputePipeline,
+}
+
+/// The bind groups of a dispatch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bound<'a> {
+    /// Bind group 0: the frame, the lists, the paths and the parameters of the dispatch.
+    pub(super) frame: &'a BindGroup,
+    /// Offset of the parameters of the dispatch in bytes.
+    pub(super) dispatch: u32,
+    /// Bind group 1: a brick.
+    pub(super) brick: Option<&'a BindGroup>,
+    /// Bind group 2: lights and materials.
+    pub(super) lighting: &'a BindGroup,
+    /// Bind group 3: the image of the sky, or the appearance of the shapes of the brick.
+    pub(super) last: Option<&'a BindGroup>,
+}
+
+/// The number of workgroups of a dispatch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Extent<'a> {
+    /// The numbers of workgroups along the three axes.
+    Groups([u32; 3]),
+    /// An indirect dispatch, which reads the numbers from a buffer at an offset in bytes.
+    Indirect(&'a Buffer, u64),
+}
+
+impl Pass {
+    /// Builds the pipeline. `groups` are the layouts of its bind groups, in order. Whether the device accepts it is
+    /// known when the checks have passed.
+    pub(super) fn new(
+        device: &Device,
+        kernel: Kernel,
+        groups: &[&BindGroupLayout],
+        edits: &Edits,
+        checks: &Checks,
+    ) -> Result<Self, GpuError> {
+        let name = kernel.entry_point;
+        Ok(Self { name, pipeline: pipeline(device, &kernel.edited(edits)?, groups, checks) })
+    }
+
+    /// Records one dispatch, and notes its name. Nothing is submitted.
+    pub(super) fn record(
+        &self,
+        encoder: &mut CommandEncoder,
+        bound: Bound<'_>,
+        extent: Extent<'_>,
+        names: &mut PassNames,
+    ) {
+        names.note(self.name);
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("pinhole"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bound.frame, &[bound.dispatch]);
+        if let Some(brick) = bound.brick {
+            pass.set_bind_group(1, brick, &[]);
+            pass.set_bind_group(2, bound.lighting, &[]);
+            if let Some(last) = bound.last {
+                pass.set_bind_group(3, last, &[]);
+            }
+        }
+        match extent {
+            Extent::Groups([x, y, z]) => pass.dispatch_workgroups(x, y, z),
+            Extent::Indirect(buffer, offset) => pass.dispatch_workgroups_indirect(buffer, offset),
+        }
+    }
+}
 
 #[cfg(test)]
 mod tests {
     use super::super::kernels::{Materials, Sources};
     use super::super::one_pass::one_pass_fits;
     use super::*;
-    use crate::gpu::waiting::block_on;
+    use crate::gpu::headless::waiting::block_on;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
     /// device supports, without any driver.

@@ -1,20 +1,19 @@
 //! Planning the memory that a lit picture needs on the device and on the host.
 
-use super::lighting::LightingData;
-use super::records::GROUPS_NEEDED;
-use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
-use crate::gpu::headless::device_limits::DeviceLimits;
+use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::headless::plan::{
     HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count, total,
 };
 use crate::gpu::passes::emitter_table;
+use crate::gpu::passes::lit::lighting::LightingData;
+use crate::gpu::passes::lit::records::{GROUPS_NEEDED, LitSizes};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::scene::Scene;
 
 impl RenderPlan {
     /// Plans a lit picture.
-    pub(in crate::gpu) fn of_lit(
+    pub(crate) fn of_lit(
         request: &PictureRequest<'_>,
         StructurePlans { accel, occluders }: StructurePlans,
         device: &DeviceLimits,

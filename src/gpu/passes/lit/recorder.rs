@@ -2,10 +2,10 @@
 
 use wgpu::CommandEncoder;
 
-use super::frame::{Area, LitFrame, LitTile};
-use super::pass::{Bound, Extent, Pass};
-use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
-use super::round::{Step, Work};
+use crate::gpu::passes::lit::frame::{Area, LitFrame, LitTile};
+use crate::gpu::passes::lit::passes::{Bound, Extent, Pass};
+use crate::gpu::passes::lit::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
+use crate::gpu::passes::lit::round::{Step, Work};
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 use crate::gpu::profile::PassNames;
 
@@ -15,10 +15,10 @@ const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 /// Records the dispatches of a submission. The parameters from [`Recorder::take_parameters`] must be queued before the
 /// encoder is submitted.
 #[derive(Debug)]
-pub(in crate::gpu) struct Recorder<'a> {
+pub(crate) struct Recorder<'a> {
     frame: &'a LitFrame,
     /// Index of the tile for which dispatches are recorded.
-    pub(in crate::gpu) tile: usize,
+    pub(crate) tile: usize,
     /// The number of the recording among those under way.
     place: usize,
     advance: &'a Pass,
@@ -30,7 +30,7 @@ pub(in crate::gpu) struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     /// A recorder for the recording with the number `place` among those under way.
-    pub(in crate::gpu) fn new(
+    pub(crate) fn new(
         frame: &'a LitFrame,
         advance: &'a Pass,
         is_indirect: bool,
@@ -41,22 +41,22 @@ impl<'a> Recorder<'a> {
     }
 
     /// Number of dispatches since the last call of [`Recorder::take_parameters`].
-    pub(in crate::gpu) fn dispatches(&self) -> usize {
+    pub(crate) fn dispatches(&self) -> usize {
         self.parameters.len()
     }
 
     /// Returns the parameters of the dispatches, in order, and starts a new submission.
-    pub(in crate::gpu) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
+    pub(crate) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
         std::mem::take(&mut self.parameters)
     }
 
     /// Notes the dispatches of the next submission in `names`, and returns what was noted of the last one.
-    pub(in crate::gpu) fn replace_names(&mut self, names: PassNames) -> PassNames {
+    pub(crate) fn replace_names(&mut self, names: PassNames) -> PassNames {
         std::mem::replace(&mut self.names, names)
     }
 
     /// The maximum number of workgroups of a dispatch, in each of its [`Step::layers`].
-    pub(in crate::gpu) fn groups(&self, step: &Step<'_>) -> Groups {
+    pub(crate) fn groups(&self, step: &Step<'_>) -> Groups {
         let tile = &self.frame.tiles[self.tile];
         match step.work {
             Work::Pixels(area) => {
@@ -75,7 +75,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records a dispatch, or a slice of its workgroups.
-    pub(in crate::gpu) fn record(
+    pub(crate) fn record(
         &mut self,
         encoder: &mut CommandEncoder,
         step: &Step<'a>,
@@ -130,7 +130,7 @@ impl<'a> Recorder<'a> {
 
     /// Records the pass that sums variances and luminances of a tile whose pixels have `samples` samples each. Returns
     /// the number of sums.
-    pub(in crate::gpu) fn record_noise(
+    pub(crate) fn record_noise(
         &mut self,
         encoder: &mut CommandEncoder,
         noise: &Pass,
@@ -146,7 +146,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records the pass that writes the means of a tile whose pixels have `samples` samples each to the host's textures.
-    pub(in crate::gpu) fn record_resolve(
+    pub(crate) fn record_resolve(
         &mut self,
         encoder: &mut CommandEncoder,
         resolve: &wgpu::ComputePipeline,

@@ -4,18 +4,18 @@ use std::ops::Range;
 
 use wgpu::BindGroup;
 
-use super::Attempt;
-use super::frame::Area;
-use super::lighting::LightingData;
-use super::pass::Pass;
-use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses, StudioPasses};
-use super::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
+use crate::gpu::passes::lit::frame::Area;
+use crate::gpu::passes::lit::lighting::LightingData;
+use crate::gpu::passes::lit::passes::{
+    BySchedule, LitKey, LitPasses, Pass, SamplePasses, ShadePasses, StepPasses, StudioPasses,
+};
+use crate::gpu::passes::lit::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 /// A dispatch of a round.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct Step<'a> {
+pub(crate) struct Step<'a> {
     pub(super) pass: &'a Pass,
     pub(super) dispatch: DispatchParameters,
     /// Bind group 1, if the pass uses a brick.
@@ -30,23 +30,23 @@ pub(in crate::gpu) struct Step<'a> {
     /// Whether the dispatch traces rays, and so may take long.
     is_search: bool,
     /// The stage of the sample that this dispatch completes, if it is the last one of the stage.
-    pub(in crate::gpu) moment: Option<Moment>,
+    pub(crate) moment: Option<Moment>,
 }
 
 impl Step<'_> {
     /// Number of rays of the invocations at one place, over all layers; 0 if the dispatch traces none, so that it never takes
     /// long.
-    pub(in crate::gpu) fn rays_in_layers(&self) -> u64 {
+    pub(crate) fn rays_in_layers(&self) -> u64 {
         if self.is_search { u64::from(self.layers()) * u64::from(self.rays) } else { 0 }
     }
 
     /// Number of samples that every pixel has after the dispatch, if it completes samples.
-    pub(in crate::gpu) fn samples_after(&self) -> u32 {
+    pub(crate) fn samples_after(&self) -> u32 {
         self.dispatch.sample + self.dispatch.count
     }
 
     /// Number of layers of workgroups, each of which covers the area of a tile.
-    pub(in crate::gpu) fn layers(&self) -> u32 {
+    pub(crate) fn layers(&self) -> u32 {
         match self.work {
             Work::Pixels(_) => self.in_flight,
             Work::List(_) | Work::Advance | Work::Sums | Work::Samples => 1,
@@ -71,7 +71,7 @@ pub(super) enum Work {
 
 /// Stages of a sample after which its state can be recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum Moment {
+pub(crate) enum Moment {
     Started,
     Extended,
     /// The hits of all rays are shaded.
@@ -89,16 +89,49 @@ pub(in crate::gpu) enum Moment {
     Accumulated,
 }
 
+/// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Attempt {
+    /// One pass takes whole samples, where there is such a pass.
+    OnePass,
+    /// A ray for each invocation, except those towards ambient light.
+    Steps,
+    /// A ray for each invocation.
+    OneByOne,
+}
+
+impl Attempt {
+    /// The next way, if some invocations needed too many iterations.
+    pub(crate) fn easier(self, lighting: &LightingData) -> Option<Self> {
+        match self {
+            Self::OnePass => Some(Self::Steps),
+            Self::Steps if lighting.parameters.occlusion_samples > 1 => Some(Self::OneByOne),
+            Self::Steps | Self::OneByOne => None,
+        }
+    }
+
+    /// The key of the passes that take samples in this way.
+    pub(crate) fn key(self, key: LitKey) -> LitKey {
+        LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
+    }
+
+    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
+    /// state that it reads does not depend on the direction.
+    pub(crate) fn at_once(self) -> u32 {
+        if self == Self::OneByOne { 1 } else { 32 }
+    }
+}
+
 /// The inputs of a round, which traces some samples of every pixel of a tile together.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct Round<'a> {
-    pub(in crate::gpu) passes: &'a LitPasses,
-    pub(in crate::gpu) lighting: &'a LightingData,
-    pub(in crate::gpu) scene: &'a SceneBuffers,
-    pub(in crate::gpu) occluders: &'a SceneBuffers,
+pub(crate) struct Round<'a> {
+    pub(crate) passes: &'a LitPasses,
+    pub(crate) lighting: &'a LightingData,
+    pub(crate) scene: &'a SceneBuffers,
+    pub(crate) occluders: &'a SceneBuffers,
     /// Number of paths that the buffers have room for.
-    pub(in crate::gpu) room: u32,
-    pub(in crate::gpu) attempt: Attempt,
+    pub(crate) room: u32,
+    pub(crate) attempt: Attempt,
 }
 
 /// Number of samples that an invocation of the pass over whole samples takes.
@@ -110,7 +143,7 @@ pub(super) const MOST_LOOPS: u32 = 2500;
 
 impl<'a> Round<'a> {
     /// The dispatches of some samples, which are traced together.
-    pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
+    pub(crate) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
         let dispatch = DispatchParameters {
             sample: samples.start,

@@ -1,6 +1,6 @@
 //! Computing a picture from the sums of its pixels.
 
-use super::records::FILM_SLOTS;
+use crate::gpu::passes::lit::records::FILM_SLOTS;
 use crate::gpu::passes::tiles::Tile;
 use crate::image::color::luminance;
 use crate::image::{Averages, Image};
@@ -10,12 +10,7 @@ use crate::render::Totals;
 type Sums = [[f32; 4]; FILM_SLOTS as usize];
 
 /// Writes the means of a tile to the layers of an image.
-pub(in crate::gpu) fn write(
-    image: &mut Image,
-    tile: Tile,
-    sums: &[[f32; 4]],
-    samples: u32,
-) -> Totals {
+pub(crate) fn write(image: &mut Image, tile: Tile, sums: &[[f32; 4]], samples: u32) -> Totals {
     let (pixels, _) = sums.as_chunks::<{ FILM_SLOTS as usize }>();
     let [x, y] = tile.origin.map(|start| start as usize);
     let [width, height] = tile.size.map(|side| side as usize);

@@ -11,7 +11,7 @@ use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 use crate::gpu::resources::buffer;
 
 /// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next.
-pub(in crate::gpu::host) const AT_ONCE: usize = 3;
+pub(super) const AT_ONCE: usize = 3;
 
 const FREE: u8 = 0;
 const WAITING: u8 = 1;
@@ -19,7 +19,7 @@ const EXECUTED: u8 = 2;
 
 /// The recordings under way.
 #[derive(Debug)]
-pub(in crate::gpu::host) struct Tickets {
+pub(super) struct Tickets {
     slots: [Slot; AT_ONCE],
     /// Number of the next recording.
     next: u64,
@@ -82,15 +82,15 @@ impl Drop for Ticket {
 
 /// What has become known since the last question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::gpu::host) struct News {
+pub(super) struct News {
     /// Commands were dropped, or executed in another order than they were recorded in.
-    pub(in crate::gpu::host) is_lost: bool,
+    pub(super) is_lost: bool,
     /// A search was abandoned.
-    pub(in crate::gpu::host) is_spent: bool,
+    pub(super) is_spent: bool,
 }
 
 impl Tickets {
-    pub(in crate::gpu::host) fn new(device: &Device) -> Self {
+    pub(super) fn new(device: &Device) -> Self {
         let slot = |_| Slot {
             buffer: buffer(device, "pinhole recording", 8, BufferUsages::MAP_READ),
             state: Arc::new(AtomicU8::new(FREE)),
@@ -99,7 +99,7 @@ impl Tickets {
     }
 
     /// Takes the results that have arrived. This never waits.
-    pub(in crate::gpu::host) fn news(&mut self) -> News {
+    pub(super) fn news(&mut self) -> News {
         let mut news = News::default();
         for slot in &self.slots {
             if slot.state.load(Ordering::Acquire) == EXECUTED {
@@ -115,23 +115,23 @@ impl Tickets {
     }
 
     /// The place of a recording that can be made now.
-    pub(in crate::gpu::host) fn free(&self) -> Option<usize> {
+    pub(super) fn free(&self) -> Option<usize> {
         self.slots.iter().position(|slot| slot.state.load(Ordering::Acquire) == FREE)
     }
 
     /// Whether no recording is under way.
-    pub(in crate::gpu::host) fn are_all_free(&self) -> bool {
+    pub(super) fn are_all_free(&self) -> bool {
         self.slots.iter().all(|slot| slot.state.load(Ordering::Acquire) == FREE)
     }
 
     /// Notes that the next recording begins with clearing what all earlier ones made.
-    pub(in crate::gpu::host) fn begin_again(&mut self) {
+    pub(super) fn begin_again(&mut self) {
         let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
         *order = Order { first: self.next, expected: self.next, is_broken: false };
     }
 
     /// Records the copies of two status words, whose recording takes this place.
-    pub(in crate::gpu::host) fn record(
+    pub(super) fn record(
         &mut self,
         encoder: &mut CommandEncoder,
         place: usize,

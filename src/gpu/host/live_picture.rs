@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Queue};
 
-use super::view::{SeenFrom, record};
-use crate::camera::View;
-use crate::camera::film::Film;
+use crate::camera::film::{Film, YAxis};
+use crate::camera::{Camera, CameraKind, CameraVectors, View};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
-use crate::gpu::host::lit::progress::LitState;
-use crate::gpu::host::lit::renderer::{LitRenderer, lit_key};
-use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
+use crate::gpu::host::lit_picture::LitState;
+use crate::gpu::host::lit_renderer::{LitRenderer, lit_key};
+use crate::gpu::host::tickets::{AT_ONCE, Tickets};
 use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::lit::records::DispatchParameters;
 use crate::gpu::passes::lit::{
@@ -343,4 +343,70 @@ fn frames_of(device: &Device, scenes: LitScene<'_>) -> [FrameParameters; 2] {
     let tile = Tile { origin: [0, 0], size: [film.width(), film.height()], in_target: [0, 0] };
     let (_, [all, visible, _]) = scenes.records(device)(tile);
     [all, visible]
+}
+
+/// The value of `has_before` for a frame before with another view, and with the same view.
+const OTHER_VIEW: u32 = 1;
+const SAME_VIEW: u32 = 2;
+
+/// A camera whose points can be found in pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SeenFrom {
+    kind: CameraKind,
+    vectors: CameraVectors,
+}
+
+impl SeenFrom {
+    pub(super) fn new(camera: &dyn Camera) -> Self {
+        Self { kind: camera.kind(), vectors: camera.vectors() }
+    }
+
+    /// Whether the place of a point on the film is a linear map, divided by one.
+    fn is_linear(self) -> bool {
+        matches!(self.kind, CameraKind::Pinhole | CameraKind::ThinLens | CameraKind::Orthographic)
+    }
+}
+
+/// The record of a frame seen by the camera `now`. `before` is the camera of a frame before that shows the same surfaces; `most` are the maximum
+/// numbers of frames over which the shares of lamps and of ambient light are averaged.
+pub(super) fn record(
+    now: SeenFrom,
+    film: &Film,
+    before: Option<SeenFrom>,
+    most: [u32; 2],
+) -> LiveView {
+    let CameraVectors { origin, right, up, forward, .. } = now.vectors;
+    let narrow = |v: DVec3| v.as_vec3().to_array();
+    let is_parallel = now.kind == CameraKind::Orthographic;
+    let height = f64::from(film.height());
+    let at_one = if is_parallel { 1.0 } else { forward.length() };
+    let mut record = LiveView {
+        right: narrow(right),
+        is_parallel: is_parallel.into(),
+        up: narrow(up),
+        footprint: (2.0 * up.length() / (height * at_one)) as f32,
+        forward: narrow(forward),
+        y_sign: match film.y_axis() {
+            YAxis::Up => 1.0,
+            YAxis::Down => -1.0,
+        },
+        most_lamps: most[0],
+        most_open: most[1],
+        size: [film.width(), film.height()],
+        ..bytemuck::Zeroable::zeroed()
+    };
+    if let Some(before) = before {
+        if before == now {
+            record.has_before = SAME_VIEW;
+        } else if before.kind == now.kind && now.is_linear() {
+            let CameraVectors { origin: old, right, up, forward, .. } = before.vectors;
+            let dual = |a: DVec3, b: DVec3, of: DVec3| narrow(a.cross(b) / of.dot(a.cross(b)));
+            record.has_before = OTHER_VIEW;
+            record.shift = narrow(origin - old);
+            record.across = dual(up, forward, right);
+            record.down = dual(forward, right, up);
+            record.along = dual(right, up, forward);
+        }
+    }
+    record
 }

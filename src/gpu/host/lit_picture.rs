@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use wgpu::{CommandEncoder, ComputePassDescriptor, ComputePipeline, Device, Queue};
+use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, ComputePipeline, Device, Queue};
 
-use super::cursor::{Budget, Cursor, RAYS_PER_GROUP};
-use super::progress::{LitProgress, LitState, LitSums};
-use super::renderer::{LitRenderer, lit_key};
-use super::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
+use crate::gpu::host::lit_cursor::{Budget, Cursor, RAYS_PER_GROUP};
+use crate::gpu::host::lit_renderer::{LitRenderer, lit_key};
+use crate::gpu::host::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::lit::{
     Attempt, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder,
@@ -348,4 +347,47 @@ async fn new_frame(
     let records = tiles(&scenes.view.film, sizes.tile).map(scenes.records(make.device));
     let by = RecordedBy::Host { at_once: RECORDINGS };
     LitFrame::new(make, passes, sizes, lighting, by, records).await
+}
+
+/// What a recording has done for a lit picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LitProgress {
+    /// Number of samples that every pixel has when the recording has been executed. Some may have more. With 0, the
+    /// colours may be those of primary rays, or of the view before.
+    pub samples: u32,
+    /// Number of samples that the picture will have.
+    pub total: u32,
+    /// Number of rays that the recorded commands trace at most.
+    pub rays: u64,
+    /// What the next recording will do.
+    pub state: LitState,
+    /// Whether commands of an earlier recording were not executed, or not in order, so that the samples accumulate from
+    /// the first one again.
+    pub was_lost: bool,
+}
+
+/// The state of a lit picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LitState {
+    /// More samples remain.
+    Refining,
+    /// All samples are recorded, and nothing remains to do until something changes.
+    Done,
+    /// The device has not finished the recordings before, so nothing was recorded.
+    Waiting,
+}
+
+/// The accumulated sums of a part of a picture.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct LitSums<'a> {
+    /// First column and row of the part, in pixels.
+    pub origin: [u32; 2],
+    /// Width and height of the part, in pixels.
+    pub size: [u32; 2],
+    /// Buffer with three `vec4f` for each pixel, row by row: the sums of colour and opacity; the rounding errors of the
+    /// sums of colour and of squared luminance; the sums of the first surfaces' albedos and of squared luminance. Its
+    /// usages are `STORAGE` and `COPY_SRC`.
+    pub buffer: &'a Buffer,
 }

@@ -4,14 +4,19 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::{ComputePipeline, Device};
+use wgpu::{BindGroupLayout, ComputePipeline, Device};
 
-use super::resolve::resolve_pipeline;
 use crate::camera::View;
+use crate::gpu::checks::Checks;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene, LiveKey, LivePasses};
+use crate::gpu::passes::lit::{
+    LightingData, LitKey, LitLayouts, LitPasses, LitScene, LiveKey, LivePasses,
+};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::formats::ColorTarget;
+use crate::gpu::shader::{Kernel, color_target, part, pipeline_with};
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
@@ -94,7 +99,7 @@ impl LitRenderer {
         self.passes.of(key, LitPasses::new(device, key, &self.renderer.edits)).await
     }
 
-    pub(in crate::gpu::host) async fn live_passes(
+    pub(super) async fn live_passes(
         &self,
         device: &Device,
         key: LiveKey,
@@ -142,7 +147,7 @@ impl<K, T> Default for Built<K, T> {
 }
 
 /// A lit picture, its light, and the key of the passes that it needs.
-pub(in crate::gpu::host) fn lit_key<'a>(
+pub(super) fn lit_key<'a>(
     device: &Device,
     scene: &'a SceneBuffers,
     view: &'a View<'a>,
@@ -155,4 +160,35 @@ pub(in crate::gpu::host) fn lit_key<'a>(
     let lighting = scenes.lighting();
     let key = scenes.key(&lighting, &device.limits());
     Ok((scenes, lighting, key))
+}
+
+pub(crate) fn resolve_kernel(color: ColorTarget) -> Kernel {
+    let parts = vec![
+        part!("scene/records.wgsl"),
+        part!("scene/lighting_records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("path/state.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        color_target(color),
+        part!("host/mean.wgsl"),
+        part!("host/resolve.wgsl"),
+    ];
+    Kernel::new("resolve", parts)
+}
+
+/// Builds the pipeline. `targets` is the layout of the host's textures.
+pub(crate) async fn resolve_pipeline(
+    device: &Device,
+    color: ColorTarget,
+    targets: &BindGroupLayout,
+    edits: &Edits,
+) -> Result<ComputePipeline, GpuError> {
+    let checks = Checks::default();
+    let kernel = resolve_kernel(color).edited(edits)?;
+    let film = checks.create(device, || LitLayouts::new(device).film);
+    let pipeline = pipeline_with(device, &kernel, &[Some(&film), None, Some(targets)], &checks);
+    checks.passed().await?;
+    Ok(pipeline)
 }
