@@ -62,9 +62,12 @@ pub(super) enum Frames {
     /// The same of positions alone, where another file, the topology, says what the spheres are.
     Positions {
         /// Finds all frames, or those up to one that is wanted; an error if there is no topology.
-        find: fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>,
+        find: FindPositions,
     },
 }
+
+type FindPositions =
+    fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
 
 /// Reads frames of binary data, with what was found out about the file.
 pub(super) trait FrameReader: fmt::Debug + Send + Sync {

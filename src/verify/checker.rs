@@ -322,10 +322,10 @@ impl PixelCheck<'_> {
 }
 
 fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Illegal> {
-    for axis in 0..3 {
+    for (axis, name) in AXES.iter().enumerate() {
         let (found, legal) = (ray.direction[axis], entered.direction[axis]);
         if !legal.contains(found.into()) {
-            let message = format!("the direction's {} is {found:?}; legal is {legal}", AXES[axis]);
+            let message = format!("the direction's {name} is {found:?}; legal is {legal}");
             return Err(Illegal::new("camera", message));
         }
     }

@@ -76,6 +76,7 @@ pub(crate) struct MovingCamera {
 }
 
 /// Where a camera is.
+#[expect(clippy::large_enum_variant, reason = "a job has one of them")]
 pub(crate) enum Course {
     /// Turned about an axis, at the end once around.
     Turn { count: usize, axis: Axis },
@@ -84,7 +85,7 @@ pub(crate) enum Course {
         clock: PathClock,
         frames_per_second: f64,
         /// The camera before it is moved, with its position.
-        base: Box<CameraParameters>,
+        base: CameraParameters,
         /// The middle of what it frames, and how far from it the camera is.
         center: DVec3,
         distance: f64,
@@ -109,7 +110,6 @@ impl MovingCamera {
         let center = stage.framed.bounds_to_frame().center();
         let distance = eye_of(&base).map_or(1.0, |eye| eye.distance(center));
         let (clock, frames_per_second) = (wanted.path.clock(), f64::from(frames_per_second));
-        let base = Box::new(base);
         let course = Course::Path { motion, clock, frames_per_second, base, center, distance };
         Ok(Self { course, stage })
     }

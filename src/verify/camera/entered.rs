@@ -129,12 +129,11 @@ impl EnteredRay {
     /// enters the box.
     pub(crate) fn check_start(&self, ray: &TracedRay) -> Result<(), Illegal> {
         let mut enter = self.enter;
-        for axis in 0..3 {
+        for (axis, name) in AXES.iter().enumerate() {
             let found = ray.origin[axis];
             let legal = self.origin(axis, enter);
             if !legal.contains(found.into()) {
-                let axis = AXES[axis];
-                let message = format!("the origin's {axis} is {found:?}; legal is {legal}");
+                let message = format!("the origin's {name} is {found:?}; legal is {legal}");
                 return Err(Illegal::new("camera", message));
             }
             enter = enter.intersection(self.enter_by(axis, found.into()));
