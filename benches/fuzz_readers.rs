@@ -22,8 +22,6 @@ use peak_alloc::PeakAlloc;
 use pinhole::load::{FORMATS, Format};
 use tempfile::TempDir;
 
-#[path = "../tests/support/arrays.rs"]
-mod arrays;
 #[allow(dead_code, reason = "the tests of the readers use all of it")]
 #[path = "../tests/support/binary_files/mod.rs"]
 mod binary_files;

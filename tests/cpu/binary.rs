@@ -52,29 +52,25 @@ fn read_dcd(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
 #[test]
 fn every_layout_of_dcd() {
     let cell = [10.0, 90.0, 20.0, 90.0, 90.0, 30.0];
-    for order in [Order::Little, Order::Big] {
-        for marker_bytes in [4, 8] {
-            for has_fourth in [false, true] {
-                for has_fixed in [false, true] {
-                    let cell = Some(cell).filter(|_| has_fourth != has_fixed);
-                    let layout = Layout { order, marker_bytes, cell, has_fourth, has_fixed };
-                    let bytes = dcd::file(layout);
-                    assert_eq!(Format::of_content(&bytes).unwrap().name, "dcd");
-                    for frame in [2, 0, 1] {
-                        let loaded = read_dcd(&bytes, frame).unwrap();
-                        assert_eq!(loaded.frames, Some(dcd::FRAMES_WRITTEN));
-                        let edges = [[10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 30.0]];
-                        assert_eq!(loaded.cell, cell.map(|_| edges));
-                        assert_eq!(loaded.notes.len(), usize::from(has_fourth));
-                        for (atom, [x, y, z, radius]) in spheres(&loaded).into_iter().enumerate() {
-                            let is_fixed = has_fixed && (1..3).contains(&atom);
-                            let from = if is_fixed { 0 } else { frame };
-                            let expected =
-                                [0, 1, 2].map(|axis| dcd::coordinate(from, atom, axis).into());
-                            assert_eq!(([x, y, z], radius), (expected, 1.5), "{frame} {atom}");
-                        }
-                    }
-                }
+    for bits in 0..16 {
+        let [is_big, is_wide, has_fourth, has_fixed] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
+        let order = if is_big { Order::Big } else { Order::Little };
+        let marker_bytes = if is_wide { 8 } else { 4 };
+        let cell = Some(cell).filter(|_| has_fourth != has_fixed);
+        let layout = Layout { order, marker_bytes, cell, has_fourth, has_fixed };
+        let bytes = dcd::file(layout);
+        assert_eq!(Format::of_content(&bytes).unwrap().name, "dcd");
+        for frame in [2, 0, 1] {
+            let loaded = read_dcd(&bytes, frame).unwrap();
+            assert_eq!(loaded.frames, Some(dcd::FRAMES_WRITTEN));
+            let edges = [[10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 30.0]];
+            assert_eq!(loaded.cell, cell.map(|_| edges));
+            assert_eq!(loaded.notes.len(), usize::from(has_fourth));
+            for (atom, [x, y, z, radius]) in spheres(&loaded).into_iter().enumerate() {
+                let is_fixed = has_fixed && (1..3).contains(&atom);
+                let from = if is_fixed { 0 } else { frame };
+                let expected = [0, 1, 2].map(|axis| dcd::coordinate(from, atom, axis).into());
+                assert_eq!(([x, y, z], radius), (expected, 1.5), "{bits} {frame} {atom}");
             }
         }
     }

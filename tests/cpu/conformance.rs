@@ -284,7 +284,7 @@ fn a_repeated_row_is_found() {
 }
 
 #[test]
-fn depths_that_are_a_little_off_are_found() {
+fn depths_that_are_a_little_off_and_the_textbooks_formula_are_found() {
     let planted = Planted::new();
     let mut made = planted.made.clone();
     made.depths.iter_mut().for_each(|depth| *depth *= 1.000_01);
@@ -292,11 +292,6 @@ fn depths_that_are_a_little_off_are_found() {
     let violated = found.count(Outcome::Violated);
     assert!(violated > planted.hits() * 9 / 10, "{violated} of {}", planted.hits());
     assert!(found.worst.iter().all(|finding| finding.reason == Reason::Depth));
-}
-
-#[test]
-fn the_textbooks_formula_is_found() {
-    let planted = Planted::new();
     let made = Made::by_testing_all(&planted.scene, planted.made.size, &planted.rays, textbook);
     let violated = planted.judged(&made).count(Outcome::Violated);
     assert!(violated > planted.hits() / 20, "{violated} of {}", planted.hits());

@@ -7,7 +7,6 @@ use pinhole::write;
 use pinhole::write::npy::write_spheres;
 
 use crate::arrays::{npy, zip};
-use crate::seeds::structured;
 
 /// Two spheres: x, y, z, radius.
 const ROWS: [[f32; 4]; 2] = [[1.0, 2.0, 3.0, 0.5], [4.0, -5.0, 6.5, 0.25]];
@@ -131,7 +130,7 @@ fn archives() {
     assert!(error(&whole[..whole.len() - 1]).starts_with("this is not a complete .npz file: "));
 }
 
-fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
+pub(crate) fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
     match loaded.column(name) {
         Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
         other => panic!("{name}: {other:?}"),
@@ -198,9 +197,10 @@ fn more_columns_are_a_value_or_colors() {
     assert!(three.notes[0].contains("--radius sets it"), "{:?}", three.notes);
 }
 
+/// Two structures with positions, colours, opacities, text and what is not used.
 #[test]
 fn fields_have_names() {
-    let loaded = reader::read(&structured(), None).unwrap();
+    let loaded = reader::read(include_bytes!("../files/good/structured.npy"), None).unwrap();
     assert_eq!(loaded.spheres, SphereArray::F64(vec![[1., 10., 0., 0.5], [2., 20., 0., 1.0]]));
     assert_eq!(colors(&loaded), [[255, 0, 51]; 2]);
     assert_eq!(loaded.opacities, Some(vec![0.2, 0.4]));

@@ -17,8 +17,8 @@ use pinhole::{
 
 use crate::support::{View, random_light};
 
-fn parse(text: &str) -> SceneFile {
-    SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
+pub(crate) fn parse(text: &str) -> SceneFile {
+    SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// The settings of the file for primary rays.
@@ -180,7 +180,7 @@ fn round_trip(settings: &RenderSettings, scene: &Scene) -> (RenderSettings, Stri
         spheres: Vec::new(),
     };
     let text = write(&contents);
-    let file = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let file = parse(&text);
     let camera = file.camera(&file.film, scene).unwrap();
     let kind = file.integrator().unwrap();
     let read = file.settings(kind, scene, camera.as_ref(), image).unwrap();
@@ -255,7 +255,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
 /// What is read from the file that is written of what this text says; it must be the same.
 #[track_caller]
 fn round_trip_file(text: &str) -> SceneFile {
-    let file = SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let file = parse(text);
     let spheres: Vec<Sphere> = file.spheres().collect();
     let contents = Contents {
         film: file.film,
@@ -268,7 +268,7 @@ fn round_trip_file(text: &str) -> SceneFile {
         spheres: spheres.clone(),
     };
     let text = write(&contents);
-    let again = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let again = parse(&text);
     assert_eq!(again.film, file.film);
     assert_eq!(again.encoding, file.encoding);
     assert_eq!(again.annotations, file.annotations, "{text}");

@@ -9,11 +9,9 @@ use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studi
 use pinhole::scene_file::{AppliedData, DataSpheres, IntegratorKind, SceneFile};
 use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
 
-const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
+use crate::scene_file::parse;
 
-fn parse(text: &str) -> SceneFile {
-    SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
-}
+const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
 
 fn scene(file: &SceneFile) -> Scene {
     file.scene(&[]).unwrap_or_else(|error| panic!("{error}"))

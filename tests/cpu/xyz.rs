@@ -4,9 +4,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use fastrand::Rng;
-use pinhole::load::{self, ColumnValues, LoadError, Loaded, Options, Trajectory, xyz};
+use pinhole::load::{self, LoadError, Loaded, Options, Trajectory, xyz};
 use pinhole::{LinearRgb, Sphere};
 use tempfile::TempDir;
+
+use crate::npy::numbers;
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 
@@ -102,13 +104,9 @@ fn every_declared_column_and_the_cell_are_kept() {
     let names: Vec<&str> = loaded.columns.iter().map(|column| column.name.as_str()).collect();
     let expected = "species id forces.x forces.y forces.z site fixed q.0 q.1 q.2 q.3";
     assert_eq!(names.join(" "), expected);
-    let numbers = |name: &str| match loaded.column(name) {
-        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
-        other => panic!("{name}: {other:?}"),
-    };
-    assert_eq!(numbers("id"), [7.0, 9.0]);
-    assert_eq!(numbers("forces.x"), [0.5, 100.0]);
-    assert_eq!(numbers("q.3"), [4.0, 8.0]);
+    assert_eq!(numbers(&loaded, "id"), [7.0, 9.0]);
+    assert_eq!(numbers(&loaded, "forces.x"), [0.5, 100.0]);
+    assert_eq!(numbers(&loaded, "q.3"), [4.0, 8.0]);
     assert_eq!(loaded.labels("site").unwrap().names, ["top", "hollow"]);
     assert_eq!(loaded.labels("fixed").unwrap().indices, [0, 1]);
 }
@@ -128,12 +126,9 @@ fn columns_are_used_or_noted() {
     assert_eq!(one("color:R:4", "1 0 0.2 0.5").opacities, Some(vec![0.5]));
     let odd = one("color:R:3", "-1 0 0");
     assert_eq!(srgb(&odd), [255, 13, 13]);
-    assert_eq!(odd.column("color.x"), Some(&ColumnValues::Numbers(vec![-1.0])));
+    assert_eq!(numbers(&odd, "color.x"), [-1.0]);
     // Values that are missing are kept where no sphere needs them.
-    let Some(ColumnValues::Numbers(charge)) = one("q:R:1", "nan").column("q").cloned() else {
-        panic!()
-    };
-    assert!(charge[0].is_nan());
+    assert!(numbers(&one("q:R:1", "nan"), "q")[0].is_nan());
     let plain = loaded("1\n\nO 0 0 0 7 8\n");
     assert_eq!(
         plain.notes,
