@@ -1,5 +1,6 @@
 //! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
+/// The example of docs/verify.md for tests of other renderers.
 #[path = "../../examples/legal.rs"]
 #[allow(dead_code, reason = "an example has a main function")]
 mod example;
@@ -21,8 +22,6 @@ use pinhole::{
 use crate::planted::{Fault, named, planted};
 use crate::support::{View, shaded, spheres};
 use crate::{headless, planted, scenes};
-
-/// The example of docs/verify.md for tests of other renderers.
 
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
