@@ -9,11 +9,11 @@ use pinhole::gpu::{
     ColorTarget, Decision, GpuError, Headless, PictureRequest, RenderPlan, RendererOptions,
     SceneBuffers, StructurePlans, UploadProgress, UploadStep, wgpu,
 };
-use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, View};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene};
 
-use crate::embedding::size_of_film;
 use crate::host_program::{Drawing, Host};
-use crate::support::spheres;
+use crate::pictures::go_on;
+use crate::support::{View, spheres};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -62,10 +62,13 @@ fn cameras() -> Vec<Box<dyn Camera>> {
     poses.into_iter().flat_map(of).collect()
 }
 
-fn render(headless: &Headless, scene: &Scene, accel: &Accel, view: &View<'_>) -> Image {
-    let buffers = headless.upload(scene, &accel.clone().into()).unwrap();
-    let (settings, go_on) = (RenderSettings::default(), &mut |_: &_| Decision::GoOn);
-    headless.render_uploaded(&buffers, view, &settings, LayerSet::ALL, go_on).unwrap().image
+fn view(scene: &Scene, camera: Box<dyn Camera>, [width, height]: [u32; 2]) -> View {
+    let (film, settings) = (Film::new(width, height).unwrap(), RenderSettings::default());
+    View { scene: scene.clone(), camera, film, settings }
+}
+
+fn views(scene: &Scene, size: [u32; 2]) -> impl Iterator<Item = View> {
+    cameras().into_iter().map(move |camera| view(scene, camera, size))
 }
 
 fn every_camera(headless: &'static Headless) {
@@ -73,18 +76,17 @@ fn every_camera(headless: &'static Headless) {
     let accels = trees(&scene, 16 * 300);
     assert!(accels[1].bricks().len() >= 10);
     let mut seen = 0;
-    for camera in cameras() {
-        let view = View::new(camera.as_ref(), Film::new(93, 62).unwrap());
-        let [one, several] = accels.each_ref().map(|accel| render(headless, &scene, accel, &view));
-        assert!(one == several, "{:?}", camera.kind());
+    for view in views(&scene, [93, 62]) {
+        let [one, several] = accels.each_ref().map(|accel| view.traced(headless, accel).unwrap());
+        let kind = view.camera.kind();
+        assert!(one == several, "{kind:?}");
         seen += usize::from(one.id().unwrap().iter().any(|id| *id != u32::MAX));
         // The recording has all rays, and they are legal.
         let buffers = headless.upload(&scene, &accels[1].clone().into()).unwrap();
-        let settings = RenderSettings::default();
-        let go_on = &mut |_: &_| Decision::GoOn;
-        let recording = headless.record_and_render(&buffers, &view, &settings, go_on).unwrap();
+        let (seen, settings) = (view.seen(), &view.settings);
+        let recording = headless.record_and_render(&buffers, &seen, settings, &mut go_on).unwrap();
         let checker = pinhole::verify::Checker::new(&scene).unwrap();
-        assert!(checker.certify(&recording).is_legal(), "{:?}", camera.kind());
+        assert!(checker.certify(&recording).is_legal(), "{kind:?}");
     }
     assert!(seen >= 20, "{seen}");
 }
@@ -93,10 +95,9 @@ fn many(headless: &'static Headless) {
     let scene = scene();
     let accels = trees(&scene, 16 * 40);
     assert!(accels[1].bricks().len() > 64, "{}", accels[1].bricks().len());
-    for camera in cameras() {
-        let view = View::new(camera.as_ref(), Film::new(61, 40).unwrap());
-        let [one, several] = accels.each_ref().map(|accel| render(headless, &scene, accel, &view));
-        assert!(one == several, "{:?}", camera.kind());
+    for view in views(&scene, [61, 40]) {
+        let [one, several] = accels.each_ref().map(|accel| view.traced(headless, accel).unwrap());
+        assert!(one == several, "{:?}", view.camera.kind());
     }
 }
 
@@ -112,49 +113,36 @@ fn bands(_: &'static Headless) {
         structures: vec![accels[0].structure()],
         ..RendererOptions::default()
     };
-    let film = Film::new(150, 100).unwrap();
-    let mut drawing = Drawing::new(&host, &options, size_of_film(&film));
+    let mut drawing = Drawing::new(&host, &options, [150, 100]);
     let uploaded = accels.each_ref().map(|accel| {
         let Host { device, queue } = &host;
         SceneBuffers::with_accel(&drawing.renderer, device, queue, &scene, accel).unwrap()
     });
-    for camera in cameras() {
+    for view in views(&scene, [150, 100]) {
         let pictures = uploaded.each_ref().map(|scene| {
-            let (view, settings) = (View::new(camera.as_ref(), film), RenderSettings::default());
-            let encoder = drawing.record(&host, scene, &view, &settings);
+            let encoder = drawing.record(&host, scene, &view.seen(), &view.settings);
             host.submit_and_read::<u8>(encoder, &drawing.layers.color)
         });
-        assert!(pictures[0] == pictures[1], "{:?}", camera.kind());
+        assert!(pictures[0] == pictures[1], "{:?}", view.camera.kind());
     }
 }
 
 /// A plan with bricks for a binding of some bytes.
-fn planned(
-    headless: &Headless,
-    scene: &Scene,
-    view: &View<'_>,
-    choice: AccelChoice,
-    bytes: u64,
-) -> RenderPlan {
+fn planned(headless: &Headless, view: &View, choice: AccelChoice, bytes: u64) -> RenderPlan {
     let request = PictureRequest {
-        scene,
-        view: *view,
-        settings: &RenderSettings::default(),
+        scene: &view.scene,
+        view: view.seen(),
+        settings: &view.settings,
         layers: LayerSet::ALL,
         host_bytes_per_pixel: 0,
     };
-    let accel = AccelPlan::new(scene.spheres(), choice, bytes);
+    let accel = AccelPlan::new(view.scene.spheres(), choice, bytes);
     let structures = StructurePlans { accel, occluders: None };
     RenderPlan::new(&request, structures, &headless.device_limits())
 }
 
 /// Renders without keeping bricks, and returns the picture and how many bricks were built.
-fn dropped(
-    headless: &Headless,
-    scene: &Scene,
-    view: &View<'_>,
-    plan: &RenderPlan,
-) -> (Image, usize) {
+fn dropped(headless: &Headless, view: &View, plan: &RenderPlan) -> (Image, usize) {
     let mut built = 0;
     let count = &mut |progress: &UploadProgress| {
         built += usize::from(progress.step == UploadStep::Building);
@@ -165,9 +153,9 @@ fn dropped(
         parts.push(progress.part);
         Decision::GoOn
     };
-    let settings = RenderSettings::default();
+    let (scene, settings, seen) = (&view.scene, &view.settings, view.seen());
     let picture =
-        headless.render_planned(scene, plan, view, &settings, LayerSet::ALL, (count, watch));
+        headless.render_planned(scene, plan, &seen, settings, LayerSet::ALL, (count, watch));
     let picture = picture.unwrap();
     assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
     (picture.image, built)
@@ -186,16 +174,12 @@ fn one_picture(headless: &'static Headless) {
             (AccelChoice::Grid, 4 * 68 * 600),
             (AccelChoice::List, 4800),
         ] {
-            for camera in cameras() {
-                let view = View::new(camera.as_ref(), Film::new(93, 62).unwrap());
-                let plan = planned(headless, &scene, &view, choice, bytes);
+            for view in views(&scene, [93, 62]) {
+                let plan = planned(headless, &view, choice, bytes);
                 assert!(plan.accel.brick_count > 1);
-                let (found, built) = dropped(headless, &scene, &view, &plan);
-                assert!(
-                    found == render(headless, &scene, &one, &view),
-                    "{choice} {:?}",
-                    camera.kind()
-                );
+                let (found, built) = dropped(headless, &view, &plan);
+                let expected = view.traced(headless, &one).unwrap();
+                assert!(found == expected, "{choice} {:?}", view.camera.kind());
                 assert!((1..=plan.accel.brick_count).contains(&built));
             }
         }
@@ -211,15 +195,14 @@ fn built(headless: &'static Headless) {
         all.push([x, y, 3.0, 0.3]);
     }
     let scene = Scene::from_f32(all, LinearRgb::WHITE).unwrap();
-    let film = Film::new(64, 64).unwrap();
     let bricks = |eye: [f64; 3], toward: [f64; 3], half: f64| {
         let pose = Pose::looking_at(eye, toward, [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [half, half]).unwrap();
-        let view = View::new(&camera, film);
-        let plan = planned(headless, &scene, &view, AccelChoice::Tree, 16 * 300);
-        let (image, built) = dropped(headless, &scene, &view, &plan);
+        let view = view(&scene, Box::new(camera), [64, 64]);
+        let plan = planned(headless, &view, AccelChoice::Tree, 16 * 300);
+        let (image, built) = dropped(headless, &view, &plan);
         let [one, _] = trees(&scene, 16 * 300);
-        assert!(image == render(headless, &scene, &one, &view));
+        assert!(image == view.traced(headless, &one).unwrap());
         (built, plan.accel.brick_count)
     };
     let (wide, all) = bricks([0.5, 0.5, -9.0], [0.5, 0.5, 0.0], 1.0);

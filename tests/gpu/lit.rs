@@ -8,21 +8,20 @@ use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
 use pinhole::gpu::{Decision, GpuError, Headless, Structures};
 use pinhole::image::NO_ID;
-use pinhole::render::PrimarySettings;
+use pinhole::light::{Ground, LightKind};
+use pinhole::render::{Integrator, PrimarySettings, Studio};
+use pinhole::scene::material::Material;
 use pinhole::verify::run_file::{Extras, LitSamples, Provenance, RunFile, write_with};
 use pinhole::verify::{
     Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PathRecording, Recording,
     Rendered, StudioRecording, TracedPixel,
 };
-use pinhole::{Film, Image, Integrator, LayerSet, Scene};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
-use crate::lit_inputs::{self, Change};
-use crate::lit_scenes;
-use crate::planted::{self, Fault, planted};
-use crate::support::View;
+use crate::planted::{Fault, planted};
 use crate::support::effort::tries;
-use crate::support::random_light;
-use crate::{headless, trial};
+use crate::support::{View, random_light};
+use crate::{headless, lit_scenes, planted, trial};
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
@@ -65,7 +64,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials.extend(planted::trials("paths::faults::", planted("paths_by_id"), |fault| {
         is_found(fault, "paths", |_, view| in_bricks(view, AccelChoice::Tree).into())
     }));
-    for (suite, name, change) in lit_inputs::all() {
+    for (suite, name, change) in inputs() {
         let name = format!("{suite}::faults::input_{name}");
         trials.push(Trial::test(name, move || input_fault_is_found(suite, change)));
     }
@@ -224,8 +223,8 @@ fn is_violated(certificate: &LitCertificate) -> Result<(), Failed> {
 
 /// The device was given other inputs than the requested ones, or the recording is damaged.
 fn input_fault_is_found(suite: &str, change: Change) -> Result<(), Failed> {
-    let view = lit_inputs::view(suite);
-    let mut given = lit_inputs::view(suite);
+    let view = view_to_change(suite);
+    let mut given = view_to_change(suite);
     if let Change::View(change) = change {
         change(&mut given);
     }
@@ -303,4 +302,166 @@ fn replay(scene: &Scene, recording: LitRecording<'_>, certificate: &LitCertifica
     assert!(file.light(&run, &mut |one| again.join(checker.certify_lit(one))).unwrap());
     // Every number and text; no number is NaN.
     assert_eq!(&again, certificate);
+}
+
+#[derive(Clone, Copy)]
+enum Change {
+    /// Before the device renders the scene.
+    View(fn(&mut View)),
+    /// After the recording.
+    Paths(fn(&mut PathRecording)),
+    Studio(fn(&mut StudioRecording)),
+}
+
+/// The suite, the name and the change of a fault.
+type Input = (&'static str, &'static str, Change);
+
+fn given(suite: &'static str, name: &'static str, change: fn(&mut View)) -> Input {
+    (suite, name, Change::View(change))
+}
+
+fn of_paths(name: &'static str, change: fn(&mut PathRecording)) -> Input {
+    ("paths", name, Change::Paths(change))
+}
+
+fn of_studio(name: &'static str, change: fn(&mut StudioRecording)) -> Input {
+    ("studio", name, Change::Studio(change))
+}
+
+/// A scene with all kinds of inputs that can be changed.
+fn view_to_change(suite: &str) -> View {
+    lit_scenes::view(suite, if suite == "paths" { "everything" } else { "translucent" })
+}
+
+fn on_spheres(view: &mut View, change: impl FnOnce(&mut [Sphere])) {
+    let (mut spheres, _) = lit_scenes::read("paths", "everything");
+    change(&mut spheres);
+    view.scene = Scene::new(&spheres).unwrap();
+}
+
+fn in_studio(view: &mut View) -> &mut Studio {
+    match &mut view.settings.integrator {
+        Integrator::Studio(studio) => studio,
+        _ => panic!("no studio"),
+    }
+}
+
+/// Moves the lights at points.
+fn move_lights(view: &mut View) {
+    for light in &mut view.settings.lights {
+        if let LightKind::Point { position, .. } = &mut light.kind {
+            position.x += 1e-4;
+        }
+    }
+}
+
+fn ground(view: &mut View) -> &mut Ground {
+    view.settings.ground.as_mut().unwrap()
+}
+
+fn inputs() -> Vec<Input> {
+    vec![
+        given("paths", "color_a_thousandth_off", |view| {
+            on_spheres(view, |spheres| {
+                let [r, g, b] = spheres[3].color.to_array();
+                spheres[3].color = LinearRgb::new([r, g * 0.999, b]).unwrap();
+            });
+        }),
+        given("paths", "opacity_off", |view| {
+            on_spheres(view, |spheres| {
+                spheres[6] = spheres[6].with_opacity(0.8);
+            });
+        }),
+        given("paths", "roughness_a_thousandth_off", |view| {
+            on_spheres(view, |spheres| {
+                spheres[1] = spheres[1].with_material(Material::Conductor { roughness: 0.3003 });
+            });
+        }),
+        given("paths", "emitter_a_thousandth_brighter", |view| {
+            on_spheres(view, |spheres| {
+                spheres[0] = spheres[0].with_material(Material::Emissive { strength: 1.001 });
+            });
+        }),
+        given("paths", "two_spheres_swapped", |view| {
+            on_spheres(view, |spheres| spheres.swap(0, 3));
+        }),
+        given("paths", "light_moved", move_lights),
+        given("paths", "another_seed", |view| view.settings.sampling.seed += 1),
+        given("paths", "another_filter", |view| {
+            view.settings.sampling.filter = pinhole::PixelFilter::Box;
+        }),
+        given("paths", "ground_moved", |view| ground(view).point.y -= 1e-5),
+        given("paths", "sky_seen", |view| view.settings.sky.is_visible ^= true),
+        given("paths", "light_left_out", |view| {
+            view.settings.lights.pop();
+        }),
+        of_paths("another_number_of_sources", |recording| {
+            recording.given.lighting.source_count += 1;
+        }),
+        of_paths("energy_of_a_lobe", |recording| {
+            let last = recording.given.tables.len() - 3;
+            recording.given.tables[last][1] ^= 1;
+        }),
+        of_paths("opacity_of_a_material", |recording| {
+            let at = recording.given.lighting.material_first as usize + 2 * 3 + 1;
+            recording.given.tables[at][3] ^= 1 << 3;
+        }),
+        of_paths("emitter_more_likely", |recording| recording.given.emitters[1][1] += 1 << 20),
+        of_paths("one_surface_less", |recording| {
+            recording.samples[0].surfaces.pop();
+        }),
+        of_paths("a_sample_of_another_number", |recording| recording.samples[0].sample = 5),
+        of_paths("a_pixel_less", |recording| {
+            recording.samples[1].start.pop();
+        }),
+        of_paths("a_bit_of_a_sum", |recording| {
+            recording.samples[1].film.after[777][0][0] ^= 1 << 3;
+        }),
+        of_paths("a_bit_of_an_ended_path", |recording| {
+            let surfaces = &mut recording.samples[0].surfaces;
+            let last = surfaces.len() - 1;
+            surfaces[last].scattered[0].slots[4][1] ^= 1;
+        }),
+        of_paths("a_camera_elsewhere", |recording| recording.given.uploaded.origin[1] += 1e-5),
+        given("studio", "ambient_light_a_thousandth_brighter", |view| {
+            in_studio(view).ambient = LinearRgb::new([0.25025; 3]).unwrap();
+        }),
+        given("studio", "no_shadows", |view| in_studio(view).has_shadows = false),
+        given("studio", "a_surface_less", |view| in_studio(view).max_surfaces -= 1),
+        given("studio", "fog_a_thousandth_nearer", |view| {
+            in_studio(view).depth_cue.as_mut().unwrap().near *= 0.999;
+        }),
+        given("studio", "another_radius_of_occlusion", |view| {
+            in_studio(view).occlusion.as_mut().unwrap().radius = Some(0.801);
+        }),
+        given("studio", "light_moved", move_lights),
+        given("studio", "a_catcher_for_a_ground", |view| ground(view).is_shadow_catcher = true),
+        given("studio", "another_seed", |view| view.settings.sampling.seed += 1),
+        of_studio("box_of_the_occluders_too_small", |recording| {
+            recording.given.occluders[1][0] -= 0.05;
+        }),
+        of_studio("a_sample_of_another_number", |recording| recording.samples[1].sample = 5),
+        of_studio("a_hidden_light", |recording| {
+            recording.samples[2].surfaces[0].lights[0].hidden[900] ^= 1;
+        }),
+        of_studio("a_bit_of_the_radiance", |recording| {
+            recording.samples[0].surfaces[0].lights[0].radiance[900][1] ^= 1 << 4;
+        }),
+        of_studio("a_bit_of_a_sum", |recording| {
+            recording.samples[2].film.after[900][0][2] ^= 1 << 3;
+        }),
+        of_studio("a_bit_of_the_rest_of_a_sum", |recording| {
+            recording.samples[2].film.after[900][1][2] ^= 1 << 30;
+        }),
+        of_studio("a_film_that_was_cleared", |recording| {
+            let film = &mut recording.samples[1].film;
+            film.before.iter_mut().for_each(|sums| *sums = [[0; 4]; 3]);
+        }),
+        of_studio("a_surface_that_is_missing", |recording| {
+            recording.samples[0].surfaces.pop();
+        }),
+        of_studio("a_pixel_less", |recording| {
+            recording.samples[1].surfaces[0].ambient[0].left.pop();
+        }),
+    ]
 }

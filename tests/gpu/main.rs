@@ -20,7 +20,6 @@ mod embedding;
 mod host;
 mod light;
 mod lit;
-mod lit_inputs;
 mod lit_scenes;
 mod parts;
 mod pictures;

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use libtest_mimic::Trial;
-use pinhole::accel::AccelChoice;
+use pinhole::accel::{Accel, AccelChoice};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{self, Decision, GpuError, Headless, Progress, SceneBuffers, Structures};
@@ -131,6 +131,12 @@ pub(crate) fn go_on(_: &Progress) -> Decision {
 impl View {
     pub(crate) fn picture(&self, device: &Headless, layers: LayerSet) -> Image {
         device.render(&self.scene, &self.seen(), &self.settings, layers).unwrap()
+    }
+
+    /// All layers of a picture of the scene in a structure.
+    pub(crate) fn traced(&self, device: &Headless, accel: &Accel) -> Result<Image, GpuError> {
+        let scene = device.upload(&self.scene, &accel.clone().into())?;
+        Ok(self.watched(device, &scene, LayerSet::ALL, &mut go_on)?.image)
     }
 
     /// The scene in a structure, without one for occluders.

@@ -10,6 +10,11 @@ use crate::support::{View, shaded};
 
 /// The names and views of all scenes.
 pub(crate) fn all() -> Vec<(&'static str, View)> {
+    let pinhole: Lens = |pose| Box::new(wide_pinhole(pose));
+    let orthographic: Lens = |pose| Box::new(OrthographicCamera::new(pose, [3.2, 2.4]).unwrap());
+    let thin: Lens = |pose| Box::new(ThinLensCamera::new(wide_pinhole(pose), 0.2, 5.0).unwrap());
+    let panorama: Lens = |pose| Box::new(PanoramaCamera::new(pose));
+    let fisheye_of_60: Lens = |pose| Box::new(fisheye(pose, 60.0, 160.0 / 120.0));
     vec![
         ("three_spheres", View::three_spheres()),
         ("three_spheres_orthographic", View::three_spheres_orthographic()),
@@ -36,21 +41,21 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("more_than_one_tile", three_wide(2100, 2003)),
         ("more_than_one_slice", more_than_one_slice()),
         ("no_spheres", no_spheres()),
-        ("random_pinhole_y_up", random_1000(YAxis::Up, Lens::Pinhole)),
-        ("random_pinhole_y_down", random_1000(YAxis::Down, Lens::Pinhole)),
-        ("random_orthographic_y_up", random_1000(YAxis::Up, Lens::Orthographic)),
-        ("random_orthographic_y_down", random_1000(YAxis::Down, Lens::Orthographic)),
-        ("thin_lens_y_up", random_1000(YAxis::Up, Lens::Thin)),
-        ("thin_lens_y_down", random_1000(YAxis::Down, Lens::Thin)),
-        ("left_eye", random_1000(YAxis::Up, Lens::LeftEye)),
-        ("right_eye_y_down", random_1000(YAxis::Down, Lens::RightEye)),
-        ("panorama_from_outside", random_1000(YAxis::Up, Lens::Panorama)),
-        ("panorama_from_outside_y_down", random_1000(YAxis::Down, Lens::Panorama)),
+        ("random_pinhole_y_up", random_1000(YAxis::Up, pinhole)),
+        ("random_pinhole_y_down", random_1000(YAxis::Down, pinhole)),
+        ("random_orthographic_y_up", random_1000(YAxis::Up, orthographic)),
+        ("random_orthographic_y_down", random_1000(YAxis::Down, orthographic)),
+        ("thin_lens_y_up", random_1000(YAxis::Up, thin)),
+        ("thin_lens_y_down", random_1000(YAxis::Down, thin)),
+        ("left_eye", random_1000(YAxis::Up, |pose| Box::new(eyes(pose)[0]))),
+        ("right_eye_y_down", random_1000(YAxis::Down, |pose| Box::new(eyes(pose)[1]))),
+        ("panorama_from_outside", random_1000(YAxis::Up, panorama)),
+        ("panorama_from_outside_y_down", random_1000(YAxis::Down, panorama)),
         ("panorama", all_around(|pose, _| PanoramaCamera::new(pose))),
         ("panorama_left_eye", all_around(|pose, _| around(pose)[0])),
         ("panorama_right_eye", all_around(|pose, _| around(pose)[1])),
-        ("fisheye_from_outside", random_1000(YAxis::Up, Lens::Fisheye)),
-        ("fisheye_from_outside_y_down", random_1000(YAxis::Down, Lens::Fisheye)),
+        ("fisheye_from_outside", random_1000(YAxis::Up, fisheye_of_60)),
+        ("fisheye_from_outside_y_down", random_1000(YAxis::Down, fisheye_of_60)),
         ("fisheye_180", all_around(|pose, aspect| fisheye(pose, 180.0, aspect))),
         ("fisheye_360", all_around(|pose, aspect| fisheye(pose, 360.0, aspect))),
         ("example_thin_lens", View::from_toml(include_str!("../../examples/thin-lens.toml"))),
@@ -60,16 +65,8 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
     ]
 }
 
-#[derive(Clone, Copy)]
-enum Lens {
-    Pinhole,
-    Orthographic,
-    Thin,
-    LeftEye,
-    RightEye,
-    Panorama,
-    Fisheye,
-}
+/// Makes a camera at a pose.
+type Lens = fn(Pose) -> Box<dyn Camera>;
 
 fn flat() -> RenderSettings {
     let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
@@ -236,35 +233,26 @@ fn no_spheres() -> View {
 }
 
 fn random_1000(y_axis: YAxis, lens: Lens) -> View {
-    let spheres = random_spheres(9, 1000, 0.12);
     let up = match y_axis {
         YAxis::Up => [0.1, 1.0, 0.2],
         YAxis::Down => [-0.1, -1.0, -0.2],
     };
     let pose = Pose::looking_at([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], up).unwrap();
-    let camera: Box<dyn Camera> = match lens {
-        Lens::Pinhole => Box::new(PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap()),
-        Lens::Orthographic => Box::new(OrthographicCamera::new(pose, [3.2, 2.4]).unwrap()),
-        Lens::Thin => {
-            let pinhole = PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap();
-            Box::new(ThinLensCamera::new(pinhole, 0.2, 5.0).unwrap())
-        }
-        Lens::LeftEye => Box::new(eyes(pose)[0]),
-        Lens::RightEye => Box::new(eyes(pose)[1]),
-        Lens::Panorama => Box::new(PanoramaCamera::new(pose)),
-        Lens::Fisheye => Box::new(fisheye(pose, 60.0, 160.0 / 120.0)),
-    };
     View {
-        scene: Scene::new(&spheres).unwrap(),
-        camera,
+        scene: Scene::new(&random_spheres(9, 1000, 0.12)).unwrap(),
+        camera: lens(pose),
         film: Film::new(160, 120).unwrap().with_y_axis(y_axis),
         settings: headlight(),
     }
 }
 
+fn wide_pinhole(pose: Pose) -> PinholeCamera {
+    PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap()
+}
+
 /// The distance between the eyes is unrealistically large, so that rays are shifted far.
 fn eyes(pose: Pose) -> [PinholeCamera; 2] {
-    PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap().stereo_pair(1.0, 4.0).unwrap()
+    wide_pinhole(pose).stereo_pair(1.0, 4.0).unwrap()
 }
 
 fn around(pose: Pose) -> [PanoramaCamera; 2] {

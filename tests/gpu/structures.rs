@@ -102,8 +102,26 @@ fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
     kinds.into_iter().flat_map(build).collect()
 }
 
+fn view(scene: &Scene, camera: impl Camera + 'static, size: [u32; 2]) -> View {
+    View {
+        scene: scene.clone(),
+        camera: Box::new(camera),
+        film: Film::new(size[0], size[1]).unwrap(),
+        settings: RenderSettings::default(),
+    }
+}
+
+fn white(spheres: Spheres) -> Scene {
+    Scene::from_f32(spheres, LinearRgb::WHITE).unwrap()
+}
+
+/// A structure in one brick.
+fn built(scene: &Scene, choice: AccelChoice) -> Accel {
+    AccelPlan::new(scene.spheres(), choice, ROOMY).build(scene.spheres())
+}
+
 /// Views from the front, from inside, and of parallel rays along an axis, with films of odd sizes.
-fn views(scene: &Scene) -> Vec<(Box<dyn Camera>, Film)> {
+fn views(scene: &Scene) -> [View; 3] {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let from_front = PinholeCamera::framing_from_the_front(bounds, 1.5).unwrap();
@@ -112,32 +130,15 @@ fn views(scene: &Scene) -> Vec<(Box<dyn Camera>, Film)> {
     let eye = center + glam::DVec3::X * size;
     let pose = Pose::looking_along(eye, [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let parallel = OrthographicCamera::new(pose, [size * 1.1, size * 1.1]).unwrap();
-    vec![
-        (Box::new(from_front), Film::new(101, 67).unwrap()),
-        (Box::new(from_within), Film::new(45, 83).unwrap()),
-        (Box::new(parallel), Film::new(64, 33).unwrap()),
+    [
+        view(scene, from_front, [101, 67]),
+        view(scene, from_within, [45, 83]),
+        view(scene, parallel, [64, 33]),
     ]
 }
 
-fn render(headless: &Headless, scene: &Scene, accel: &Accel) -> Vec<Image> {
-    let render = |(camera, film): &(Box<dyn Camera>, Film)| {
-        render_view(headless, scene, accel, camera.as_ref(), film).unwrap()
-    };
-    views(scene).iter().map(render).collect()
-}
-
-fn render_view(
-    headless: &Headless,
-    scene: &Scene,
-    accel: &Accel,
-    camera: &dyn Camera,
-    film: &Film,
-) -> Result<Image, GpuError> {
-    let buffers = headless.upload(scene, &accel.clone().into())?;
-    let (view, settings) = (pinhole::View::new(camera, *film), RenderSettings::default());
-    let go_on = &mut |_: &_| Decision::GoOn;
-    let picture = headless.render_uploaded(&buffers, &view, &settings, LayerSet::ALL, go_on)?;
-    Ok(picture.image)
+fn render(headless: &Headless, views: &[View], accel: &Accel) -> Vec<Image> {
+    views.iter().map(|view| view.traced(headless, accel).unwrap()).collect()
 }
 
 /// Asserts that distances and ids are the same, to the bit.
@@ -157,17 +158,17 @@ fn assert_same(name: &str, found: &[Image], expected: &[Image]) {
 }
 
 fn check(headless: &Headless, spheres: Spheres) {
-    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-    let list = AccelPlan::new(scene.spheres(), AccelChoice::List, ROOMY).build(scene.spheres());
-    let expected = render(headless, &scene, &list);
+    let scene = white(spheres);
+    let views = views(&scene);
+    let expected = render(headless, &views, &built(&scene, AccelChoice::List));
     let is_hit = |image: &Image| image.id().unwrap().iter().any(|id| *id != u32::MAX);
     assert!(expected.iter().any(is_hit), "nothing is seen");
     for accel in all(scene.spheres()) {
         let name = format!("{} in {}", accel.structure().name(), accel.bricks().len());
-        assert_same(&name, &render(headless, &scene, &accel), &expected);
+        assert_same(&name, &render(headless, &views, &accel), &expected);
         if accel.bricks().len() > 1 {
             let name = format!("{name}, with the limits of WebGPU");
-            assert_same(&name, &render(&WEBGPU, &scene, &accel), &expected);
+            assert_same(&name, &render(&WEBGPU, &views, &accel), &expected);
         }
     }
 }
@@ -175,64 +176,54 @@ fn check(headless: &Headless, spheres: Spheres) {
 /// The grid keeps only the first of a million equal spheres, because only that one can be hit.
 fn coincident(headless: &'static Headless) {
     let million = vec![[0.5, 0.25, 0.0, 1.0]; 1_000_000];
-    let few = Scene::from_f32(million[..100].to_vec(), LinearRgb::WHITE).unwrap();
-    let scene = Scene::from_f32(million, LinearRgb::WHITE).unwrap();
-    let list = AccelPlan::new(few.spheres(), AccelChoice::List, ROOMY).build(few.spheres());
-    let grid = AccelPlan::new(scene.spheres(), AccelChoice::Grid, ROOMY).build(scene.spheres());
-    assert_same("grid", &render(headless, &scene, &grid), &render(headless, &few, &list));
+    let few = white(million[..100].to_vec());
+    let scene = white(million);
+    let [list, grid] = [(few, AccelChoice::List), (scene, AccelChoice::Grid)]
+        .map(|(scene, choice)| render(headless, &views(&scene), &built(&scene, choice)));
+    assert_same("grid", &grid, &list);
 }
 
 /// A crowd beside an outlier, seen from near and from the outlier's side.
 fn outliers(headless: &'static Headless) {
-    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e4, false);
-    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let scene = white(spheres::crowd_and_outliers(3_000, 3, 1e4, false));
     let plan = AccelPlan::new(scene.spheres(), AccelChoice::Auto, ROOMY);
     assert_eq!(plan.crowd.map(|crowd| crowd.outliers), Some(3));
-    let list = AccelPlan::new(scene.spheres(), AccelChoice::List, ROOMY).build(scene.spheres());
-    let film = Film::new(101, 67).unwrap();
-    let pinhole = |eye: [f64; 3], fov: f64| {
+    for (eye, fov) in [([0.5, 0.6, -1.2], 0.7), ([7e3, 0.4, 5e3], 2e-4)] {
         let pose = Pose::looking_at(eye, [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
-        PinholeCamera::with_vertical_fov(pose, fov, 1.5).unwrap()
-    };
-    for camera in [pinhole([0.5, 0.6, -1.2], 0.7), pinhole([7e3, 0.4, 5e3], 2e-4)] {
-        let image = |accel: &Accel| render_view(headless, &scene, accel, &camera, &film).unwrap();
-        let expected = [image(&list)];
+        let camera = PinholeCamera::with_vertical_fov(pose, fov, 1.5).unwrap();
+        let views = [view(&scene, camera, [101, 67])];
+        let expected = render(headless, &views, &built(&scene, AccelChoice::List));
         let ids = expected[0].id().unwrap();
         assert!(ids.iter().filter(|id| **id != u32::MAX).count() > 500, "little is seen");
         for accel in all(scene.spheres()) {
-            assert_same(accel.structure().name(), &[image(&accel)], &expected);
+            assert_same(accel.structure().name(), &render(headless, &views, &accel), &expected);
         }
     }
 }
 
 /// A tree whose boxes are not wider for rays that start far from the crowd loses spheres.
 fn unwidened(headless: &'static Headless) {
-    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e5, false);
-    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let scene = white(spheres::crowd_and_outliers(3_000, 3, 1e5, false));
     let widening = "max(0x1p-17 * farthest - brick.crowd_margin, 0.0)";
     let faulty = faulty("accel/wide_tree.wgsl", widening, "0.0 * farthest").unwrap();
-    let tree = AccelPlan::new(scene.spheres(), AccelChoice::Tree, ROOMY).build(scene.spheres());
+    let tree = built(&scene, AccelChoice::Tree);
     let pose = Pose::looking_at([7e4, 0.4, 5e4], [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::with_vertical_fov(pose, 2e-5, 1.25).unwrap();
-    let film = Film::new(1000, 800).unwrap();
-    let [right, wrong] = [headless, &faulty]
-        .map(|device| render_view(device, &scene, &tree, &camera, &film).unwrap());
+    let view = view(&scene, camera, [1000, 800]);
+    let [right, wrong] = [headless, &faulty].map(|device| view.traced(device, &tree).unwrap());
     let pairs = right.id().unwrap().iter().zip(wrong.id().unwrap());
     let lost = pairs.filter(|(right, wrong)| right != wrong).count();
     assert!(lost > 0, "no pixel shows the fault");
 }
 
 fn slices(headless: &'static Headless) {
-    let scene = Scene::from_f32(spheres::clusters(10, 200), LinearRgb::WHITE).unwrap();
-    let bounds = scene.bounds_to_frame();
-    let camera = PinholeCamera::framing_from_the_front(bounds, 1.0).unwrap();
-    let film = Film::new(1103, 997).unwrap();
+    let scene = white(spheres::clusters(10, 200));
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
+    let view = view(&scene, camera, [1103, 997]);
     let mut rng = Rng::with_seed(1);
     let mut first = None;
     for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List, AccelChoice::Grid] {
-        let accel = headless.plan_accel(&scene, choice).build(scene.spheres());
-        let buffers = headless.upload(&scene, &accel.into()).unwrap();
-        let settings = RenderSettings::default();
+        let buffers = view.uploaded(headless, choice);
         let mut told = Vec::new();
         let watch = &mut |progress: &pinhole::gpu::Progress| {
             // This runs between slices, so it must not change the picture.
@@ -240,16 +231,7 @@ fn slices(headless: &'static Headless) {
             told.push(progress.part);
             Decision::GoOn
         };
-        let image = headless
-            .render_uploaded(
-                &buffers,
-                &pinhole::View::new(&camera, film),
-                &settings,
-                LayerSet::ALL,
-                watch,
-            )
-            .unwrap()
-            .image;
+        let image = view.watched(headless, &buffers, LayerSet::ALL, watch).unwrap().image;
         assert!(told.is_sorted(), "{told:?}");
         // There are two tiles, and all of both is traced.
         assert!(told.len() >= 2 && told.last() == Some(&1.0), "{told:?}");
@@ -264,19 +246,15 @@ fn any(headless: &'static Headless) {
     let host = Host::new();
     let mut met = Vec::new();
     for spheres in [spheres::random(2_000, 2, |_| 0.02), spheres::clusters(10, 200)] {
-        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-        let built = all(scene.spheres());
+        let scene = white(spheres);
+        let structures = all(scene.spheres());
         let mut answers = Vec::new();
-        for (camera, film) in views(&scene) {
-            let list = AccelPlan::new(scene.spheres(), AccelChoice::List, ROOMY);
-            let list = list.build(scene.spheres());
-            let nearest = render_view(headless, &scene, &list, camera.as_ref(), &film).unwrap();
+        for view in views(&scene) {
+            let nearest = view.traced(headless, &built(&scene, AccelChoice::List)).unwrap();
             let hits: Vec<bool> = nearest.id().unwrap().iter().map(|id| *id != NO_ID).collect();
             answers.extend(&hits);
-            let view =
-                View { scene: scene.clone(), camera, film, settings: RenderSettings::default() };
             assert_is_reference(&view, &nearest);
-            for accel in &built {
+            for accel in &structures {
                 let found = any_hits(&host, &view, accel);
                 let wrong = (0..hits.len()).filter(|i| found[*i] != hits[*i]).count();
                 let (name, bricks) = (accel.structure().name(), accel.bricks().len());
@@ -284,7 +262,7 @@ fn any(headless: &'static Headless) {
             }
         }
         assert!(answers.contains(&true) && answers.contains(&false), "nothing to tell apart");
-        met.extend(built.iter().map(Accel::structure));
+        met.extend(structures.iter().map(Accel::structure));
     }
     assert!(Structure::ALL.iter().all(|structure| met.contains(structure)), "{met:?}");
 }
@@ -340,50 +318,41 @@ fn assert_is_reference(view: &View, image: &Image) {
 
 /// The list has more spheres than one dispatch tests, with nearest spheres in each of its bricks.
 fn long_list(headless: &'static Headless) {
-    let spheres = spheres::random(120_000, 26, |_| 0.005);
-    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let scene = white(spheres::random(120_000, 26, |_| 0.005));
     let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
-    let film = Film::new(24, 16).unwrap();
-    let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
+    let view = view(&scene, camera, [24, 16]);
+    let [list, grid] = [AccelChoice::List, AccelChoice::Grid]
+        .map(|choice| headless.plan_accel(&scene, choice).build(scene.spheres()));
     assert_eq!((list.structure(), list.bricks().len()), (Structure::List, 3));
-    let found = render_view(headless, &scene, &list, &camera, &film).unwrap();
+    let found = view.traced(headless, &list).unwrap();
     let seen = |brick: &Brick| {
         let ids = brick.ids[0]..=brick.ids[brick.ids.len() - 1];
         found.id().unwrap().iter().any(|id| ids.contains(id))
     };
     assert!(list.bricks().iter().all(seen), "a slice without a nearest sphere");
-    let grid = headless.plan_accel(&scene, AccelChoice::Grid).build(scene.spheres());
-    let expected = render_view(headless, &scene, &grid, &camera, &film).unwrap();
+    let expected = view.traced(headless, &grid).unwrap();
     assert_same("list", std::slice::from_ref(&found), &[expected]);
-    let camera = Box::new(camera);
-    let view = View { scene, camera, film, settings: RenderSettings::default() };
     assert_is_reference(&view, &found);
 }
 
 /// A ray must test 30,000 spheres that are in one cell, and in all nodes. This exceeds the iteration limit of a
 /// software device; all other devices must render the same picture as the list.
 fn too_many_steps(headless: &'static Headless) {
-    let scene = Scene::from_f32(spheres::nearly_coincident(30_000), LinearRgb::WHITE).unwrap();
+    let scene = white(spheres::nearly_coincident(30_000));
     let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
-    let film = Film::new(24, 16).unwrap();
+    let view = view(&scene, camera, [24, 16]);
     let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
-    let expected = render_view(headless, &scene, &list, &camera, &film).unwrap();
+    let expected = [view.traced(headless, &list).unwrap()];
     let is_software = headless.adapter_info().device_type == wgpu::DeviceType::Cpu;
     for accel in all(scene.spheres()).iter().filter(|accel| accel.bricks().len() == 1) {
         let name = accel.structure().name();
-        let result = render_view(headless, &scene, accel, &camera, &film);
+        let result = view.traced(headless, accel);
         if is_software && accel.structure() != Structure::List {
             assert_eq!(result.err(), Some(GpuError::Steps), "{name}");
         } else {
-            assert_same(name, &[result.unwrap()], std::slice::from_ref(&expected));
+            assert_same(name, &[result.unwrap()], &expected);
         }
     }
     // With an automatic choice of the structure, the picture is rendered on every device.
-    let image = headless.render(
-        &scene,
-        &pinhole::View::new(&camera, film),
-        &RenderSettings::default(),
-        LayerSet::ALL,
-    );
-    assert_same("auto", &[image.unwrap()], std::slice::from_ref(&expected));
+    assert_same("auto", &[view.picture(headless, LayerSet::ALL)], &expected);
 }

@@ -6,13 +6,13 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, Decision, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions,
-    SceneBuffers,
+    ColorTarget, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Colors, Film, Image, LayerSet, RenderSettings, Scene, View};
 
 use crate::host_program::Host;
+use crate::pictures::go_on;
 use crate::support::appearances::{kinds, settings};
 use crate::{headless, trial};
 
@@ -56,10 +56,9 @@ fn shown(
     buffers: &SceneBuffers,
     settings: &RenderSettings,
 ) -> Result<Image, GpuError> {
-    let camera = camera();
-    let view = View::new(&camera, Film::new(40, 40).unwrap());
-    let layers = LayerSet::ALL;
-    Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut |_| Decision::GoOn)?.image)
+    let (camera, film) = (camera(), Film::new(40, 40).unwrap());
+    let (view, layers) = (View::new(&camera, film), LayerSet::ALL);
+    Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut go_on)?.image)
 }
 
 fn uploaded(headless: &Headless, scene: &Scene) -> Result<SceneBuffers, GpuError> {

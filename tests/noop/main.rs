@@ -8,13 +8,12 @@ mod building;
 mod host_program;
 mod passes;
 mod steady_state;
-mod version;
 
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, wgpu};
+use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, WGPU_VERSION, wgpu};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use host_program::Host;
@@ -95,4 +94,34 @@ fn ready(host: &Host, renderer: &Renderer, options: &RendererOptions) -> (SceneB
     let view = View::new(&camera, film());
     frame.set_view(&host.queue, &buffers, &view, &RenderSettings::default()).unwrap();
     (buffers, frame)
+}
+
+fn file(path: &str) -> String {
+    std::fs::read_to_string(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+/// Every requirement of wgpu in the manifest is of the version that the library and its documentation name.
+#[test]
+fn the_documented_version_of_wgpu_is_that_of_the_manifest() {
+    let manifest = file("Cargo.toml");
+    let required: Vec<&str> = manifest
+        .lines()
+        .filter_map(|line| line.strip_prefix("wgpu = { version = \""))
+        .filter_map(|rest| rest.split('"').next())
+        .collect();
+    assert!(required.len() >= 2, "{required:?}");
+    for version in &required {
+        assert!(
+            version.starts_with(&format!("{WGPU_VERSION}.")),
+            "{version} is not {WGPU_VERSION}"
+        );
+    }
+    let release = env!("CARGO_PKG_VERSION");
+    let row = format!("| {release} | {WGPU_VERSION} |");
+    assert!(file("docs/embedding.md").contains(&row), "docs/embedding.md lacks the row `{row}`");
+    let major = WGPU_VERSION.split('.').next().unwrap();
+    let said = format!("wgpu {major}");
+    for page in ["docs/embedding.md", "CHANGELOG.md"] {
+        assert!(file(page).contains(&said), "{page} does not say `{said}`");
+    }
 }

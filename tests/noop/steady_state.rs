@@ -7,7 +7,7 @@ use std::sync::Once;
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
-    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, wgpu,
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, wgpu,
 };
 use pinhole::{RenderSettings, View};
 
@@ -131,16 +131,20 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
     }
 }
 
+fn lit_renderer(host: &Host) -> (RendererOptions, SceneBuffers, LitRenderer) {
+    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
+    (options, scene, LitRenderer::new(renderer))
+}
+
 /// Lit pictures allocate nothing while the camera moves and while samples accumulate. Each recording asks for a few
 /// bytes to be mapped when it is submitted, and reads those of an earlier one.
 #[test]
 fn lit_pictures_create_submit_and_await_nothing() {
     let host = Host::new();
     let (device, queue) = (&host.device, &host.queue);
-    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let renderer = Renderer::new(device, &options).unwrap();
-    let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
-    let lit = LitRenderer::new(renderer);
+    let (options, scene, lit) = lit_renderer(&host);
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
         let camera = pinhole_camera();
         let pose = Pose::looking_at([0.5, 1.0, 12.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
@@ -182,10 +186,7 @@ fn lit_pictures_create_submit_and_await_nothing() {
 fn live_pictures_create_submit_and_await_nothing() {
     let host = Host::new();
     let (device, queue) = (&host.device, &host.queue);
-    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let renderer = Renderer::new(device, &options).unwrap();
-    let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
-    let lit = LitRenderer::new(renderer);
+    let (options, scene, lit) = lit_renderer(&host);
     let settings = RenderSettings::studio();
     let camera = pinhole_camera();
     let view = View::new(&camera, film());

@@ -59,6 +59,14 @@ impl Show {
         Self::new([view.film.width(), view.film.height()])
     }
 
+    /// With the scene of a view, and a picture of it.
+    fn ready(view: &View) -> (Self, SceneBuffers, LitPicture) {
+        let show = Self::of(view);
+        let scene = show.scene(&view.scene);
+        let picture = show.picture(&scene, view).unwrap();
+        (show, scene, picture)
+    }
+
     pub(super) fn scene(&self, scene: &Scene) -> SceneBuffers {
         let (renderer, Host { device, queue }) = (self.renderer.renderer(), &self.host);
         SceneBuffers::for_studio(renderer, device, queue, scene).unwrap()
@@ -92,20 +100,22 @@ impl Show {
         picture.record(&self.renderer, &self.host.queue, encoder, scene, max_rays)
     }
 
+    fn submit(&self, picture: &mut LitPicture, scene: &SceneBuffers, max_rays: u64) -> LitProgress {
+        let mut encoder = self.host.encoder();
+        let done = self.record(picture, &mut encoder, scene, max_rays).unwrap();
+        self.host.submit(encoder);
+        done
+    }
+
     /// Records and submits until the picture is done. Returns the number of recordings with work.
     fn finish(&self, picture: &mut LitPicture, scene: &SceneBuffers, max_rays: u64) -> usize {
         let mut recordings = 0;
         loop {
-            let mut encoder = self.host.encoder();
-            let done = self.record(picture, &mut encoder, scene, max_rays).unwrap();
-            assert!(done.rays <= max_rays, "{done:?}");
-            assert!(!done.was_lost, "{done:?}");
-            self.host.submit(encoder);
+            let done = self.submit(picture, scene, max_rays);
+            assert!(done.rays <= max_rays && !done.was_lost, "{done:?}");
             match done.state {
                 LitState::Done if done.rays == 0 => return recordings,
-                LitState::Waiting => {
-                    self.host.wait();
-                }
+                LitState::Waiting => self.host.wait(),
                 _ => recordings += 1,
             }
         }
@@ -126,14 +136,10 @@ impl Show {
     }
 }
 
-fn headless_picture(headless: &Headless, view: &View) -> Image {
-    view.picture(headless, LAYERS)
-}
-
 fn budgets(headless: &'static Headless) {
     for name in ["studio_ambient_occlusion", "studio_opacity", "path_lobes_and_metals"] {
         let view = named(name, 7);
-        let wanted = headless_picture(headless, &view);
+        let wanted = view.picture(headless, LAYERS);
         let show = Show::of(&view);
         let scene = show.scene(&view.scene);
         // The smallest part of a sample has 34 rays in each of 64 invocations.
@@ -150,41 +156,37 @@ fn every_scene(headless: &'static Headless) {
     for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = 3;
         view.settings.is_transparent = true;
-        let show = Show::of(&view);
-        let scene = show.scene(&view.scene);
-        let mut picture = show.picture(&scene, &view).unwrap();
+        let (show, scene, mut picture) = Show::ready(&view);
         show.finish(&mut picture, &scene, u64::MAX);
-        show.assert_shows(&headless_picture(headless, &view), &name);
+        show.assert_shows(&view.picture(headless, LAYERS), &name);
     }
 }
 
 /// Every change begins again, and what was accumulated before leaves no trace.
 fn changes(headless: &'static Headless) {
     let view = named("studio_ambient_occlusion", 4);
-    let show = Show::of(&view);
-    let scene = show.scene(&view.scene);
-    let mut picture = show.picture(&scene, &view).unwrap();
-    let mut others = vec![named("studio_key_and_fill", 4), named("path_matt_under_a_sky", 4)];
-    let mut brighter = named("studio_ambient_occlusion", 4);
-    let key = brighter.settings.lights[0];
-    brighter.settings.lights.push(key);
-    let mut transparent = named("studio_ambient_occlusion", 4);
-    transparent.settings.is_transparent = true;
-    let mut seeded = named("studio_ambient_occlusion", 4);
-    seeded.settings.sampling.seed += 1;
-    let mut nearer = named("studio_ambient_occlusion", 4);
-    nearer.camera = nearer_camera(&nearer);
-    others.extend([brighter, transparent, seeded, nearer]);
+    let (show, scene, mut picture) = Show::ready(&view);
+    let changed = |change: &dyn Fn(&mut View)| {
+        let mut view = named("studio_ambient_occlusion", 4);
+        change(&mut view);
+        view
+    };
+    let others = [
+        named("studio_key_and_fill", 4),
+        named("path_matt_under_a_sky", 4),
+        changed(&|view| view.settings.lights.push(view.settings.lights[0])),
+        changed(&|view| view.settings.is_transparent = true),
+        changed(&|view| view.settings.sampling.seed += 1),
+        changed(&|view| view.camera = nearer_camera(view)),
+    ];
     for (number, other) in others.iter().enumerate() {
         show.set(&mut picture, &scene, &view).unwrap();
         // In the middle of a picture.
-        let mut encoder = show.host.encoder();
-        show.record(&mut picture, &mut encoder, &scene, 60_000).unwrap();
-        show.host.submit(encoder);
+        show.submit(&mut picture, &scene, 60_000);
         assert!(show.set(&mut picture, &scene, other).unwrap(), "change {number}");
         show.host.wait();
         show.finish(&mut picture, &scene, 60_000);
-        show.assert_shows(&headless_picture(headless, other), &format!("change {number}"));
+        show.assert_shows(&other.picture(headless, LAYERS), &format!("change {number}"));
     }
 }
 
@@ -197,9 +199,7 @@ fn nearer_camera(view: &View) -> Box<dyn pinhole::camera::Camera> {
 
 fn same(headless: &'static Headless) {
     let mut view = named("path_lobes_and_metals", 2);
-    let show = Show::of(&view);
-    let scene = show.scene(&view.scene);
-    let mut picture = show.picture(&scene, &view).unwrap();
+    let (show, scene, mut picture) = Show::ready(&view);
     show.finish(&mut picture, &scene, u64::MAX);
     assert!(!show.set(&mut picture, &scene, &view).unwrap());
     assert_eq!(show.finish(&mut picture, &scene, u64::MAX), 0, "nothing is left to do");
@@ -208,30 +208,24 @@ fn same(headless: &'static Headless) {
         view.settings.sampling.samples = samples;
         show.set(&mut picture, &scene, &view).unwrap();
         show.finish(&mut picture, &scene, u64::MAX);
-        show.assert_shows(&headless_picture(headless, &view), &format!("{samples} samples"));
+        show.assert_shows(&view.picture(headless, LAYERS), &format!("{samples} samples"));
     }
 }
 
 fn lost(headless: &'static Headless) {
     let view = named("studio_ambient_occlusion", 6);
-    let wanted = headless_picture(headless, &view);
-    let show = Show::of(&view);
-    let scene = show.scene(&view.scene);
-    let settle = || show.host.wait();
+    let wanted = view.picture(headless, LAYERS);
+    let (show, scene, _) = Show::ready(&view);
     let finish = |mut picture: LitPicture, what: &str| {
-        settle();
-        let mut encoder = show.host.encoder();
-        let noticed = show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
+        show.host.wait();
+        let noticed = show.submit(&mut picture, &scene, 20_000);
         assert!(noticed.was_lost, "{what}: {noticed:?}");
-        show.host.submit(encoder);
         show.finish(&mut picture, &scene, 20_000);
         show.assert_shows(&wanted, what);
     };
     let begin = || {
         let mut picture = show.picture(&scene, &view).unwrap();
-        let mut encoder = show.host.encoder();
-        show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
-        show.host.submit(encoder);
+        show.submit(&mut picture, &scene, 20_000);
         picture
     };
     let recorded = |picture: &mut LitPicture| {
@@ -254,19 +248,15 @@ fn lost(headless: &'static Headless) {
     let mut picture = begin();
     let late = recorded(&mut picture);
     show.host.queue.submit([recorded(&mut picture)]);
-    settle();
-    let mut encoder = show.host.encoder();
-    assert!(show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap().was_lost);
-    show.host.submit(encoder);
+    show.host.wait();
+    assert!(show.submit(&mut picture, &scene, 20_000).was_lost);
     show.host.queue.submit([late]);
     finish(picture, "a recording that comes late");
 }
 
 fn together(headless: &'static Headless) {
     let view = named("path_lobes_and_metals", 6);
-    let show = Show::of(&view);
-    let scene = show.scene(&view.scene);
-    let mut picture = show.picture(&scene, &view).unwrap();
+    let (show, scene, mut picture) = Show::ready(&view);
     loop {
         let mut states = Vec::new();
         let commands = [(); 2].map(|()| {
@@ -282,7 +272,7 @@ fn together(headless: &'static Headless) {
             break;
         }
     }
-    show.assert_shows(&headless_picture(headless, &view), "two recordings in each submission");
+    show.assert_shows(&view.picture(headless, LAYERS), "two recordings in each submission");
 }
 
 fn other_scene(headless: &'static Headless) {
@@ -309,7 +299,7 @@ fn other_scene(headless: &'static Headless) {
     queue.submit([encoder.finish()]);
     assert!(show.set(&mut picture, &scene, &view).unwrap());
     show.finish(&mut picture, &scene, u64::MAX);
-    show.assert_shows(&headless_picture(headless, &view), "other colours");
+    show.assert_shows(&view.picture(headless, LAYERS), "other colours");
 
     let moved = show.scene(&view.scene);
     scene.replace(moved);
@@ -320,9 +310,7 @@ fn other_scene(headless: &'static Headless) {
 
 fn refused(_: &'static Headless) {
     let view = named("studio_ambient_occlusion", 3);
-    let show = Show::of(&view);
-    let scene = show.scene(&view.scene);
-    let mut picture = show.picture(&scene, &view).unwrap();
+    let (show, scene, mut picture) = Show::ready(&view);
     let mut encoder = show.host.encoder();
     let few = show.record(&mut picture, &mut encoder, &scene, 63).unwrap_err();
     assert_eq!(few, GpuError::Budget { needed: 64, given: 63 });

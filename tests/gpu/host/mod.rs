@@ -7,15 +7,22 @@ mod limit;
 mod lit;
 mod live;
 mod overlay;
-mod same_picture;
 mod stage;
 mod triangle;
 
 use libtest_mimic::Trial;
+use pinhole::camera::{Camera, HostCamera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::glam::{DMat4, DQuat, DVec3, DVec4};
+use pinhole::gpu::Headless;
+use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading};
+
+use crate::support::hosts::{Convention, view};
+use crate::support::{shaded, spheres};
+use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     [
-        same_picture::trials(),
+        same_pictures(),
         depth::trials(),
         overlay::trials(),
         triangle::trials(),
@@ -27,4 +34,93 @@ pub(crate) fn trials() -> Vec<Trial> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+fn same_pictures() -> Vec<Trial> {
+    vec![
+        trial("host::same_picture::as_our_own_cameras", as_our_own),
+        trial("host::same_picture::legal_where_there_is_no_camera_of_our_own", legal),
+    ]
+}
+
+fn scene() -> Scene {
+    Scene::from_f32(spheres::random(600, 8, |_| 0.05), LinearRgb::WHITE).unwrap()
+}
+
+fn random_pose(random: &mut fastrand::Rng) -> Pose {
+    let mut any = || 2.0 * random.f64() - 1.0;
+    let toward = DVec3::new(any(), any(), any());
+    let toward = toward / toward.length();
+    let up = DVec3::new(any(), any(), any());
+    Pose::looking_at(DVec3::splat(0.5) - 2.5 * toward, DVec3::splat(0.5), up).unwrap()
+}
+
+/// All layers have the same bits.
+fn as_our_own(headless: &'static Headless) {
+    let (scene, film) = (scene(), Film::new(61, 43).unwrap());
+    let settings = shaded(Shading::Headlight, LinearRgb::BLACK);
+    let mut random = fastrand::Rng::with_seed(6);
+    for case in 0..24 {
+        let pose = random_pose(&mut random);
+        let convention = Convention::ALL[case % 6];
+        let size = if convention.is_orthographic() { 0.8 } else { 0.35 };
+        let half = [size * film.aspect(), size];
+        let edges = [-half[0], half[0], -half[1], half[1]];
+        let own: Box<dyn Camera> = if convention.is_orthographic() {
+            Box::new(OrthographicCamera::new(pose, half).unwrap())
+        } else {
+            Box::new(PinholeCamera::new(pose, 1.0, half).unwrap())
+        };
+        let near = if convention.is_orthographic() { 0.0 } else { 0.1 };
+        let into = if case % 4 < 2 { 1.0 } else { -1.0 };
+        let projection = convention.projection(edges, [near, 9.0], into);
+        let host = HostCamera::new(view(&pose, into), projection, convention.order()).unwrap();
+        let [a, b] = [own.as_ref(), &host].map(|camera| {
+            let seen = pinhole::View::new(camera, film);
+            headless.render(&scene, &seen, &settings, LayerSet::ALL).unwrap()
+        });
+        let hits = a.id().unwrap().iter().filter(|id| **id != u32::MAX).count();
+        assert!(hits > 300, "{hits}");
+        assert!(a == b, "case {case}, {convention:?}");
+    }
+}
+
+/// The checker accepts what the kernels make of vectors that are not at right angles, and the reference agrees.
+fn legal(headless: &'static Headless) {
+    let (scene, film) = (scene(), Film::new(61, 43).unwrap());
+    let settings = shaded(Shading::Headlight, LinearRgb::BLACK);
+    let mut random = fastrand::Rng::with_seed(7);
+    let mirror = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0));
+    let stretch = DMat4::from_cols(
+        DVec4::new(1.5, 0.2, 0.0, 0.0),
+        DVec4::new(0.0, 1.0, -0.3, 0.0),
+        DVec4::new(0.1, 0.0, 0.8, 0.0),
+        DVec4::W,
+    );
+    let model = DMat4::from_scale_rotation_translation(
+        DVec3::splat(0.1),
+        DQuat::from_rotation_y(0.3),
+        DVec3::splat(0.4),
+    );
+    for (case, change) in [DMat4::IDENTITY, mirror, stretch, model].into_iter().enumerate() {
+        for (i, convention) in Convention::ALL.into_iter().enumerate() {
+            let pose = random_pose(&mut random);
+            let size = if convention.is_orthographic() { 0.8 } else { 0.35 };
+            let edges = [-0.6, 1.0, -1.2, 0.8].map(|edge| size * edge);
+            let into = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let projection = convention.projection(edges, [0.1, 9.0], into);
+            let to_view = view(&pose, into) * change;
+            // As most hosts have them, in f32.
+            let (to_view, projection) = (to_view.as_mat4(), projection.as_mat4());
+            let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
+            let seen = pinhole::View::new(&camera, film);
+            let certificate = headless.verify(&scene, &seen, &settings).unwrap();
+            assert!(certificate.is_legal(), "{case}, {convention:?}: {certificate}");
+            let picture = headless.render(&scene, &seen, &settings, LayerSet::ALL).unwrap();
+            let reference = pinhole::cpu::render(&scene, &seen, &settings, LayerSet::ALL).unwrap();
+            let pairs = picture.id().unwrap().iter().zip(reference.id().unwrap());
+            let different = pairs.filter(|(a, b)| a != b).count();
+            assert!(different <= 3, "{case}, {convention:?}: {different} pixels differ");
+        }
+    }
 }
