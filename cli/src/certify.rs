@@ -16,9 +16,7 @@ use super::{progress, threads};
 use pinhole::geometry::ray::Ray;
 use pinhole::load::LoadError;
 use pinhole::load::npy::pixels::{self, Pixels};
-use pinhole::verify::conformance::{
-    Answers, Conformance, ConformanceError, DepthKind, Field, Rays,
-};
+use pinhole::verify::conformance::{self, Answers, Conformance, DepthKind, Field, Rays};
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 
 #[derive(Debug, Args)]
@@ -203,7 +201,7 @@ fn certified(
 }
 
 /// Names the file, or the flag, that an error is about.
-fn explained(args: &CertifyArgs, error: &ConformanceError) -> Failure {
+fn explained(args: &CertifyArgs, error: &conformance::ConformanceError) -> Failure {
     let file = match error.field {
         Some(Field::Ids) => Some(&args.id),
         Some(Field::Depths) => args.depth.as_ref(),
