@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::image::NO_ID;
 use crate::verify::bias::Deviations;
 use crate::verify::hit::LegalHits;
 use crate::verify::recording::UploadError;
@@ -110,6 +111,35 @@ pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
 
 /// The largest number of violations that are kept; all are counted.
 pub(super) const KEPT: usize = 1000;
+
+impl LegalHits {
+    /// An answer in words, and the legal ones.
+    #[must_use]
+    pub fn message(&self, id: u32, t: f32) -> String {
+        match id {
+            NO_ID => format!("a miss; legal is {self}"),
+            id => format!("sphere {id} at {t:?}; legal is {self}"),
+        }
+    }
+}
+
+impl fmt::Display for LegalHits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut answers: Vec<String> = Vec::new();
+        for hit in &self.spheres {
+            let sides = [hit.near, hit.far].into_iter().flatten();
+            answers.extend(sides.map(|side| format!("sphere {} at {side}", hit.id)));
+        }
+        if self.miss {
+            answers.push("a miss".to_owned());
+        }
+        f.write_str(&answers.join(", or "))?;
+        if self.spheres.len() > 1 && self.limit.is_finite() {
+            write!(f, ", but none beyond {:.10e}", self.limit)?;
+        }
+        Ok(())
+    }
+}
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]

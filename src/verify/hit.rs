@@ -5,7 +5,6 @@
 use glam::{DVec3, Vec3};
 
 use crate::geometry::math::wide;
-use crate::image::NO_ID;
 use crate::parallel::{both, try_map};
 use crate::scene::SceneError;
 use crate::verify::rounding::{Interval, U};
@@ -289,15 +288,6 @@ impl LegalHits {
         t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())
     }
 
-    /// An answer in words, and the legal ones.
-    #[must_use]
-    pub fn message(&self, id: u32, t: f32) -> String {
-        match id {
-            NO_ID => format!("a miss; legal is {self}"),
-            id => format!("sphere {id} at {t:?}; legal is {self}"),
-        }
-    }
-
     /// Resets to a miss; keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         self.spheres.clear();
@@ -360,24 +350,6 @@ pub(super) fn legal_hit(
     let hit =
         LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
     roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
-}
-
-impl std::fmt::Display for LegalHits {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut answers: Vec<String> = Vec::new();
-        for hit in &self.spheres {
-            let sides = [hit.near, hit.far].into_iter().flatten();
-            answers.extend(sides.map(|side| format!("sphere {} at {side}", hit.id)));
-        }
-        if self.miss {
-            answers.push("a miss".to_owned());
-        }
-        f.write_str(&answers.join(", or "))?;
-        if self.spheres.len() > 1 && self.limit.is_finite() {
-            write!(f, ", but none beyond {:.10e}", self.limit)?;
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]

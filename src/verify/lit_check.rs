@@ -1,42 +1,35 @@
 //! The check of all stages of all samples of a recording, along paths or in a studio.
 
-use super::camera::CameraModel;
-use super::checker::Checker;
-use super::choices::Choices;
-use super::hit::LegalHits;
-use super::lit::certificate::{LitCertificate, LitStage};
-use super::lit::film::{check_sums, judge_start};
-use super::lit::judge::{
+use crate::scene::material::{Material, SurfaceProperties};
+use crate::verify::camera::CameraModel;
+use crate::verify::checker::Checker;
+use crate::verify::choices::Choices;
+use crate::verify::hit::LegalHits;
+use crate::verify::lit::certificate::{Address, LitCertificate, LitStage};
+use crate::verify::lit::check::{LitCheck, unfinished};
+use crate::verify::lit::film::check_sums;
+use crate::verify::lit::judge::{
     Expected, Judged, Mismatch, StageOutcome, along_choices, judge_pixels, searched, unchanged,
 };
-use super::lit::kernel::{Address, Hit, Kernel};
-use super::lit::recording::{
+use crate::verify::lit::kernel::{Hit, Kernel};
+use crate::verify::lit::recording::{
     BITS, LitInputs, LitRecording, LitSurface, NO_EMITTER, PathRecording, PathState,
     RecordedSample, RectangleRecording, RectangleSample, StudioLight, StudioRecording,
     StudioSample, flag, slot,
 };
-use super::lit::search::{Searched, check_hit, check_open};
-use super::lit::upload;
-use super::number::{Number, Vector};
-use super::paths::kernel::radiance_so_far;
-use super::studio::light::Change;
-use super::studio::search::Hidden;
-use super::studio::surface::Met;
-use crate::scene::material::{Material, SurfaceProperties};
+use crate::verify::lit::search::check_open;
+use crate::verify::lit::upload;
+use crate::verify::number::{Number, Vector};
+use crate::verify::paths::kernel::radiance_so_far;
+use crate::verify::studio::light::Change;
+use crate::verify::studio::search::Hidden;
+use crate::verify::studio::surface::Met;
 
 /// The stage and the name of a number, for reports.
 type Name = (LitStage, &'static str);
 
 const ENDED_PATH: Name = (LitStage::Scatter, "a path that has ended");
 const ENDED_RAY: Name = (LitStage::Surface, "a ray that has ended");
-
-/// The data with which samples are judged.
-struct LitCheck<'a> {
-    checker: &'a Checker<'a>,
-    inputs: &'a LitInputs,
-    model: CameraModel,
-    is_matt: bool,
-}
 
 impl Checker<'_> {
     /// Judges every stage of every sample. The recording must be of the scene of this checker.
@@ -189,38 +182,6 @@ impl LitCheck<'_> {
         part.note(LitStage::Accumulate, address, sums);
     }
 
-    /// Judges the state of a path at the camera, and returns it with its address.
-    fn start<S>(
-        &self,
-        recorded: &RectangleSample<S>,
-        index: usize,
-        part: &mut LitCertificate,
-    ) -> (Address, PathState) {
-        let pixel = self.inputs.pixel(index);
-        let address = Address { pixel, sample: recorded.sample, surface: 0 };
-        let state = recorded.start[index];
-        let started = judge_start(self.inputs, &self.model, address, &state);
-        part.note(LitStage::Start, address, started);
-        (address, state)
-    }
-
-    fn searched(&self) -> Searched<'_> {
-        let Checker { scene, candidates, .. } = self.checker;
-        Searched { model: &self.model, scene, candidates }
-    }
-
-    fn extend(
-        &self,
-        state: &PathState,
-        last: Option<Hit>,
-        hit: Hit,
-        legal: &mut LegalHits,
-    ) -> Result<Judged, Mismatch> {
-        let mut expected = Expected::default();
-        let is_open = check_hit(self.searched(), state, last, hit, &mut expected, legal)?;
-        Ok(searched(is_open, || legal.alternatives()))
-    }
-
     fn scatter(
         &self,
         address: Address,
@@ -265,26 +226,6 @@ impl LitCheck<'_> {
             Ok(kernel.expected)
         });
         (result, met)
-    }
-
-    /// A kernel that reads the state of a ray, and as yet has no hit and changes nothing.
-    fn kernel<'b>(
-        &'b self,
-        address: Address,
-        state: &'b PathState,
-        choices: &'b mut Choices,
-    ) -> Kernel<'b> {
-        Kernel {
-            scene: self.checker.scene,
-            inputs: self.inputs,
-            is_matt: self.is_matt,
-            address,
-            before: state,
-            hit: Hit::new([0; 4]),
-            after: state,
-            expected: Expected::default(),
-            choices,
-        }
     }
 
     /// Judges which of some lights are hidden, and the light of the others.
@@ -483,9 +424,4 @@ impl Light<'_> {
             .zip(state.slots[slot::RADIANCE])
             .try_for_each(|(found, legal)| expected.bits(KEPT, found, legal))
     }
-}
-
-fn unfinished(what: &str) -> Mismatch {
-    let words = format!("the {what} was not followed to its end");
-    Expected::default().fail(LitStage::Extend, "the hit", words)
 }

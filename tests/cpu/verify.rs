@@ -291,8 +291,7 @@ fn upload(spoil: impl Fn(&mut Recording)) -> Option<String> {
 
 #[track_caller]
 fn says(found: Option<String>, words: &str) {
-    let found = found.unwrap();
-    assert!(found.contains(words), "{found} lacks {words}");
+    assert!(found.as_ref().is_some_and(|found| found.contains(words)), "{found:?} lacks {words}");
 }
 
 /// What is found where a picture that was rendered beside the recording has another pixel, and in how many pixels that
@@ -435,10 +434,8 @@ fn a_violation_is_told_with_both_values() {
     assert!(legal.contains(&format!("sphere {id} at [")), "{legal}");
     let text = certificate.to_string();
     let [i, j] = violation.pixel;
-    assert!(
-        text.contains(&format!("pixel ({i}, {j}), hit: sphere {id} at {t:?}; legal is")),
-        "{text}"
-    );
+    let told = format!("pixel ({i}, {j}), hit: sphere {id} at {t:?}; legal is");
+    assert!(text.contains(&told), "{text}");
 }
 
 #[test]

@@ -346,8 +346,7 @@ pub(crate) struct Listed {
 
 impl From<&Violation> for Listed {
     fn from(violation: &Violation) -> Self {
-        let Violation { pixel, stage, ref message, .. } = *violation;
-        Self { pixel, stage, message: message.clone() }
+        Self { pixel: violation.pixel, stage: violation.stage, message: violation.message.clone() }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::verify::camera::{CameraModel, CameraRay};
+use crate::verify::camera::{CameraModel, CameraRay, around};
 use crate::verify::certificate::{AXES, Illegal};
 use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
@@ -262,9 +262,4 @@ impl CameraRay {
             may_miss_box: self.may_be_unseen || enter.high > leave.low,
         }
     }
-}
-
-/// The numbers within errors of a vector, along each axis.
-pub(super) fn around(exact: DVec3, error: DVec3) -> [Interval; 3] {
-    [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
 }

@@ -14,7 +14,6 @@ use crate::camera::CameraKind;
 use crate::camera::film::Film;
 use crate::geometry::math::wide;
 
-use entered::around;
 pub(super) use entered::{AnyRay, BoxCrossing, Crossed, EnteredRay, SMALLEST_COMPONENT};
 
 /// The centre of the lens; all rays of a recording go through it.
@@ -180,4 +179,9 @@ impl Unit {
                 + FLUSH;
         Self { direction: exact / length, direction_error, length, length_error }
     }
+}
+
+/// The numbers within errors of a vector, along each axis.
+fn around(exact: DVec3, error: DVec3) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
 }

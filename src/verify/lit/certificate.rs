@@ -63,6 +63,14 @@ impl LitStage {
     }
 }
 
+/// The address of a surface: pixel, sample, and index on the path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Address {
+    pub(crate) pixel: [u32; 2],
+    pub(crate) sample: u32,
+    pub(crate) surface: u32,
+}
+
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -7,8 +7,9 @@ use crate::verify::bias::deviation;
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
-use crate::verify::lit::certificate::{LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT};
-use crate::verify::lit::kernel::Address;
+use crate::verify::lit::certificate::{
+    Address, LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT,
+};
 use crate::verify::lit::recording::PathState;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;

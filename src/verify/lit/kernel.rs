@@ -7,7 +7,7 @@ use crate::geometry::math::wide;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
-use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Expected, Mismatch};
 use crate::verify::lit::recording::{LitInputs, PathState, UploadedLighting, flag, slot};
 use crate::verify::number::{Number, Vector};
@@ -28,14 +28,6 @@ impl Hit {
     pub(crate) fn new([t, id, shape_index, distance]: [u32; 4]) -> Self {
         Self { t: f32::from_bits(t), id, shape_index, distance: f32::from_bits(distance) }
     }
-}
-
-/// The address of a surface: pixel, sample, and index on the path.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Address {
-    pub(crate) pixel: [u32; 2],
-    pub(crate) sample: u32,
-    pub(crate) surface: u32,
 }
 
 /// One invocation of the kernel, for one combination of its open decisions.

@@ -8,11 +8,11 @@
 //! decisions that the intervals leave open, such as which side of a sphere is hit, or which point of a light is chosen.
 
 pub(crate) mod certificate;
+pub(super) mod check;
 pub(super) mod film;
 pub(super) mod judge;
 pub(super) mod kernel;
-pub(super) mod lamp;
-pub(super) mod material;
 pub(crate) mod recording;
+pub(super) mod sampling;
 pub(super) mod search;
 pub(super) mod upload;

@@ -16,8 +16,8 @@ use crate::render::{
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::hit::Candidates;
-use crate::verify::lit::material::ENERGIES;
 use crate::verify::lit::recording::{LitInputs, UploadedLighting, flag};
+use crate::verify::lit::sampling::ENERGIES;
 use crate::verify::recording::{LEAST_MARGIN, NO_HIT, UploadError, check_view};
 use crate::verify::rounding::{FLUSH, U, are_near, is_near};
 

@@ -1,13 +1,13 @@
 //! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl` and
 //! `scatter_light.wgsl`.
 
-use super::kernel::Surface;
 use crate::verify::lit::kernel::Kernel;
-use crate::verify::lit::lamp::{cosine_direction, pi};
-use crate::verify::lit::material::{
-    ENERGIES, Material, ggx_lambda, mirrors_brdf, reflected_density, visible_mirror,
+use crate::verify::lit::sampling::{
+    ENERGIES, Material, cosine_direction, ggx_lambda, mirrors_brdf, pi, reflected_density,
+    visible_mirror,
 };
 use crate::verify::number::{Number, Vector};
+use crate::verify::paths::kernel::Surface;
 
 /// The BSDF times the cosine, and the density with which the direction is sampled.
 pub(crate) struct Reflection {

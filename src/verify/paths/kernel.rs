@@ -3,13 +3,11 @@
 
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
-use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::Mismatch;
-use crate::verify::lit::kernel::Vertex;
-use crate::verify::lit::kernel::{Address, Kernel, unit};
-use crate::verify::lit::lamp::{Axes, axes_around};
-use crate::verify::lit::material::Material;
+use crate::verify::lit::kernel::{Kernel, Vertex, unit};
 use crate::verify::lit::recording::{PathState, flag, slot};
+use crate::verify::lit::sampling::{Axes, Material, axes_around};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, U};
 

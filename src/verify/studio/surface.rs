@@ -4,10 +4,9 @@
 use crate::image::NO_ID;
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::judge::Mismatch;
-use crate::verify::lit::kernel::Kernel;
-use crate::verify::lit::kernel::Vertex;
-use crate::verify::lit::material::Material;
+use crate::verify::lit::kernel::{Kernel, Vertex};
 use crate::verify::lit::recording::{flag, slot};
+use crate::verify::lit::sampling::Material;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
