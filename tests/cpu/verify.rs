@@ -291,7 +291,8 @@ fn upload(spoil: impl Fn(&mut Recording)) -> Option<String> {
 
 #[track_caller]
 fn says(found: Option<String>, words: &str) {
-    assert!(found.as_ref().is_some_and(|found| found.contains(words)), "{found:?} lacks {words}");
+    let found = found.unwrap();
+    assert!(found.contains(words), "{found} lacks {words}");
 }
 
 /// What is found where a picture that was rendered beside the recording has another pixel, and in how many pixels that

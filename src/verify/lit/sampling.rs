@@ -1,6 +1,6 @@
 //! The check of what kernels sample: directions, points of the lights of the settings, and microfacets of materials. The
 //! WGSL twins are `shaders/math/warp.wgsl`, `math/disk.wgsl`, `scene/lamp.wgsl`, `scene/material.wgsl` and
-//! `scene/microfacet.wgsl`.
+//! `path/microfacet.wgsl`.
 
 use std::f64::consts::PI;
 
