@@ -1,5 +1,5 @@
 // The concentric map from the unit square to the unit disk by Shirley and Chiu. It maps (1/2, 1/2) exactly to the
-// centre. Twin: src/geometry/disk.rs.
+// centre. Twin: src/geometry/math.rs.
 // provides: concentric_disk
 // needs: PI, fence, sin_cos_eighth
 
