@@ -1,4 +1,4 @@
-//! Tests of lit pictures on an adapter: signals and plans.
+//! Tests of lit pictures on an adapter: stop rules, signals and plans.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -13,6 +13,8 @@ use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
+        trial("light::noise_decides_how_many_samples_there_are", noise),
+        trial("light::a_time_gives_at_least_one_sample", time),
         trial_of_signals("light::a_signal_keeps_the_partial_picture_if_asked", signal),
         trial("light::a_plan_includes_the_buffers_of_light", plan),
         trial("light::shadows_follow_the_choice_of_structure", shadows),
@@ -41,6 +43,45 @@ fn samples(folder: &Path) -> u32 {
     let samples: Vec<u32> = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
     assert!(samples.iter().all(|count| *count == samples[0]));
     samples[0]
+}
+
+fn noise(headless: &'static Headless) {
+    let folder = folder();
+    let render = |flags: &str| {
+        let flags = format!("render scene.toml -o out.png --quiet --layer samples=s.npy {flags}");
+        let said = run(folder.path(), headless, &flags);
+        (samples(folder.path()), said)
+    };
+    let path = "--integrator path";
+    let (few, said) = render(&format!("{path} --noise 0.05"));
+    assert!(few >= 16 && said.is_empty(), "{few}: {said}");
+    let (more, _) = render(&format!("{path} --noise 0.02"));
+    assert!(more > few, "{more} after {few}");
+    assert_eq!(render(&format!("{path} --noise 0.05")).0, few);
+    let (most, said) = render(&format!("{path} --noise 1e-9 --samples 20"));
+    assert_eq!(most, 20);
+    assert!(
+        said.starts_with("note: the noise is 0.") && said.contains("after 20 samples"),
+        "{said}"
+    );
+}
+
+fn time(headless: &'static Headless) {
+    let folder = folder();
+    let flags = "render scene.toml -o out.png --layer samples=s.npy --time";
+    for (time, most) in [("0.001s --keep-partial", u32::MAX), ("1h --samples 3", 3)] {
+        run(folder.path(), headless, &format!("{flags} {time}"));
+        assert!((1..=most).contains(&samples(folder.path())), "{time}");
+    }
+    // This time is too short for a sample in every pixel.
+    std::fs::remove_file(folder.path().join("out.png")).unwrap();
+    let flags = "render scene.toml -o out.png --integrator path --size 4000x3000 --time 0.02s";
+    let output = command_on(headless, folder.path(), flags).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let words = "nothing was written; give more time or a smaller --size, or wait for it with --keep-partial\n";
+    assert!(said.starts_with("error: --time: after 0.020 s ") && said.ends_with(words), "{said}");
+    assert!(!folder.path().join("out.png").exists());
 }
 
 fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration) -> Output {

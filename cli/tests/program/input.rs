@@ -72,6 +72,50 @@ fn the_same_spheres_in_every_format() {
     );
     let (_, _, rgb) = decode(&folder.read("none.png"));
     assert!(rgb.chunks(3).all(|rgb| rgb == [0xf3, 0xf4, 0xf6]));
+    for (name, scene) in [
+        ("1.toml", "data = 'a.npy'\n"),
+        ("2.toml", "data = 'xyz.npy'\nradius = 1\n"),
+        ("3.toml", "data = 'xyz.npy'\nradius = 0.5\nradius_scale = 2\ncolor = '#cccccc'\n"),
+        ("4.toml", "data = 'xyz.npy'\nradius = 7\n"),
+        ("5.toml", "data = 'b.npz'\n[[spheres]]\ncenter = [-2, 0, 0]\nradius = 1\n"),
+    ] {
+        std::fs::write(folder.path(name), scene).unwrap();
+    }
+    // A scene file has the light and the view of its own.
+    let expected = picture(&folder, "a.npy --style fast --direction 0,0,-1");
+    let second = npy("<f4", false, "(1, 4)", &ROWS[1].map(f32::to_le_bytes).concat());
+    std::fs::write(folder.path("b.npz"), zip(&[("x.npy", &second)], false)).unwrap();
+    for arguments in ["1.toml", "2.toml", "3.toml", "4.toml --radius 1", "5.toml"] {
+        assert_eq!(picture(&folder, arguments), expected, "{arguments}");
+    }
+}
+
+#[test]
+fn a_camera_on_the_command_line() {
+    let folder = folder();
+    let pinhole = "[camera.pinhole]\neye = [-1, 2, 8]\nlook_at = [0, 0, 0]\nup = [0, 1, 0.5]\n";
+    let scenes = [
+        ("fov", "--eye -1,2,8 --look-at 0,0,0 --up 0,1,0.5 --fov 40", "vertical_fov = 40\n"),
+        (
+            "plane",
+            "--camera pinhole --eye -1,2,8 --look-at 0,0,0 --up 0,1,.5 --distance 2 --half-extent 0.9,0.6",
+            "distance = 2\nhalf_extent = [0.9, 0.6]\n",
+        ),
+    ];
+    for (name, flags, keys) in scenes {
+        let scene = format!("style = 'default'\ndata = 'a.npy'\n{pinhole}{keys}");
+        std::fs::write(folder.path(&format!("{name}.toml")), scene).unwrap();
+        let expected = picture(&folder, &format!("{name}.toml"));
+        assert_eq!(picture(&folder, &format!("a.npy {flags}")), expected, "{flags}");
+        assert_ne!(picture(&folder, "a.npy"), expected);
+        // Flags replace the whole camera of a scene.
+        assert_eq!(picture(&folder, &format!("fov.toml {flags}")), expected, "{flags}");
+    }
+    let scene = "style = 'default'\ndata = 'a.npy'\n[camera.orthographic]\neye = [0, 0, -5]\ndirection = [0, 0, 1]\n\
+                 half_extent = [6, 4]\n";
+    std::fs::write(folder.path("parallel.toml"), scene).unwrap();
+    let flags = "--camera orthographic --eye 0,0,-5 --direction 0,0,1 --half-extent 6,4";
+    assert_eq!(picture(&folder, &format!("a.npy {flags}")), picture(&folder, "parallel.toml"));
 }
 
 #[test]
@@ -342,6 +386,12 @@ fn inputs_are_not_overwritten() {
         folder.refuses(&format!("{arguments} --backend cpu"), 2, words);
         assert_eq!(folder.read("in.npy"), spheres);
     }
+    let sky = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n@@@\x7f";
+    let lit = format!("integrator = 'path'\n[sky]\nkind = 'image'\nimage = 'sky.hdr'\n{SCENE}");
+    let folder = Folder::with(&[("sky.hdr", sky), ("lit.toml", &lit)]);
+    let arguments = "render lit.toml -o out.png --layer id=sky.hdr --samples 1 --backend cpu";
+    folder.refuses(arguments, 2, "sky.hdr: this output is also an input");
+    assert_eq!(folder.read("sky.hdr"), sky.as_bytes());
 }
 
 #[cfg(unix)]

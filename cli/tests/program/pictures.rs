@@ -120,6 +120,8 @@ fn flags_make_a_lit_picture() {
     let mut pictures = vec![render("")];
     for flags in [
         "--samples 1",
+        "--samples 1 --seed 5",
+        "--samples 1 --filter box",
         "--ao --samples 1",
         "--outline 2 --samples 1",
         "--integrator path --samples 1",
@@ -128,6 +130,7 @@ fn flags_make_a_lit_picture() {
         assert!(!pictures.contains(&picture), "{flags}");
         pictures.push(picture);
     }
+    assert!(render("--samples 1") == pictures[1], "two runs differ");
     // A studio does not need the sky, so its file may be missing.
     let sky = scene("[sky]\nkind = 'image'\nimage = 'no.hdr'\n");
     std::fs::write(folder.path("scene.toml"), sky).unwrap();

@@ -158,3 +158,35 @@ fn a_violation_gives_exit_code_3_and_all_files() {
     let data = data_of(&page);
     assert_eq!((&data["report"], &data["pictures"]["verdicts"]), (&json, &().into()));
 }
+
+#[test]
+fn runs_that_are_damaged() {
+    let folder = folder();
+    let whole = folder.read("run");
+    let mut altered = whole.clone();
+    *altered.last_mut().unwrap() ^= 1;
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"5\"").unwrap();
+    // The number of the version is replaced by another of the same length.
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"5\""));
+    let mut other = whole.clone();
+    other[version + 15] = b'7';
+    for (name, contents, words) in [
+        ("cut", &whole[..whole.len() - 1], "cut: the run file is cut off: it has "),
+        ("altered", &altered, "altered: the run file was altered after it was written"),
+        (
+            "other",
+            &other,
+            "other: run file of version 7; this program reads version 5; record it again with `verify --save`",
+        ),
+        (
+            "none",
+            b"PK\x03\x04 something else",
+            "none: this is not a run file; `pinhole verify --save`",
+        ),
+        ("empty", b"", "empty: this is not a run file"),
+    ] {
+        std::fs::write(folder.path(name), contents).unwrap();
+        folder.refuses(&format!("verify --replay {name} --json a.json --report a"), 1, words);
+    }
+    folder.refuses("verify --replay no", 1, "no: cannot be read");
+}
