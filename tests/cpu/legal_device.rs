@@ -190,10 +190,10 @@ impl LegalDevice {
         pixel: [u32; 2],
     ) -> (TracedRay, bool) {
         let location = self.location(film, pixel);
-        let ray = self.camera_ray(kind, view, location);
+        let ray = self.camera_ray(kind, view, location, [0.5; 2]);
         let (entered, is_inside) = self.enter(view, ray.origin, ray.direction);
         let distance = self.add(ray.distance, entered.distance);
-        (TracedRay { distance, ..entered }, is_inside)
+        (TracedRay { distance, ..entered }, ray.is_seen && is_inside)
     }
 
     /// `enter_scene` of shaders/scene/enter.wgsl, and whether the ray meets the box.
@@ -279,51 +279,4 @@ fn image_of(film: &Film, pixels: &[Pixel]) -> Image {
         pixels.iter().map(|pixel| pixel.id).collect(),
     )
     .unwrap()
-}
-
-/// A ray before it is moved to the scene's box.
-pub(crate) struct LegalRay {
-    pub(crate) origin: [f32; 3],
-    pub(crate) direction: [f32; 3],
-    pub(crate) distance: f32,
-}
-
-impl LegalDevice {
-    /// `camera_ray` of two cameras in `shaders/camera`; those of the others are rewritten by `tests/gpu/adversary`.
-    pub(crate) fn camera_ray(
-        &mut self,
-        kind: CameraKind,
-        view: &UploadedView,
-        [x, y]: [f32; 2],
-    ) -> LegalRay {
-        let (right, up, forward) = (view.right, view.up, view.forward);
-        match kind {
-            CameraKind::Orthographic => {
-                let origin = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])])
-                });
-                LegalRay { origin, direction: forward, distance: view.advance }
-            }
-            CameraKind::Pinhole => {
-                let aside = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k])]));
-                let toward = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])])
-                });
-                let (direction, length) = self.unit(toward);
-                let origin =
-                    self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
-                let distance = self.mul(view.advance, length);
-                LegalRay { origin, direction, distance }
-            }
-            other => panic!("{other:?} has no legal device"),
-        }
-    }
-
-    /// A vector divided by its length, and its length.
-    fn unit(&mut self, toward: [f32; 3]) -> ([f32; 3], f32) {
-        let squared = self.dot(&mut toward.map(|x| (x, x)));
-        let length = self.sqrt(squared);
-        let inverse = self.divide(1.0, length);
-        (self.vector(|this, k| this.mul(toward[k], inverse)), length)
-    }
 }

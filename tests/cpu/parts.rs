@@ -1,8 +1,9 @@
 //! Pictures that are put together from parts of a film, of a scene, and of samples are those that are made at once.
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::cpu::{self, RenderError, SearchStructure};
+use pinhole::cpu::{self, RenderError, SampledPicture, SearchStructure};
 use pinhole::geometry::bounds::Bounds;
+use pinhole::glam::DVec3;
 use pinhole::image::Layer;
 use pinhole::render::{Decision, Nearest, Outline, Progress, Sampling};
 use pinhole::scene::Whole;
@@ -215,7 +216,7 @@ fn with_lit(
     }
 }
 
-/// The picture that is rendered pixel by pixel.
+/// The picture with so many samples, which nobody watches.
 fn whole(
     tree: &SearchStructure<'_>,
     view: &View<'_>,
@@ -225,6 +226,24 @@ fn whole(
     let mut settings = settings.clone();
     settings.sampling.samples = count;
     cpu::render(tree, view, &settings, LayerSet::ALL).unwrap()
+}
+
+/// The colours of all pixels, pixel by pixel: the means of their samples, without batches.
+fn means(
+    tree: &SearchStructure<'_>,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    count: u32,
+) -> Vec<[f32; 3]> {
+    let picture = SampledPicture::new(tree, view, settings).unwrap();
+    let [width, height] = [view.film.width(), view.film.height()];
+    (0..width * height)
+        .map(|index| {
+            let pixel = [index % width, index / width];
+            let sum: DVec3 = (0..count).map(|sample| picture.sample(pixel, sample).color).sum();
+            (sum / f64::from(count)).as_vec3().to_array()
+        })
+        .collect()
 }
 
 #[test]
@@ -238,6 +257,10 @@ fn batches_give_the_picture_of_all_samples_at_once() {
                 let found = found.unwrap();
                 assert!(found.image == whole(tree, view, &settings, samples), "{samples}");
                 assert_eq!(found.samples, samples);
+                if !is_denoised {
+                    let wanted = means(tree, view, &settings, samples);
+                    assert!(found.image.color() == wanted, "{samples}");
+                }
             }
         });
     }

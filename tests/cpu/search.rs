@@ -1,22 +1,26 @@
 //! Pictures with a structure against those of testing every sphere: equal to the bit.
 
 use fastrand::Rng;
-use pinhole::camera::{PinholeCamera, Pose};
+use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose};
 use pinhole::cpu::{self, SearchStructure};
 use pinhole::glam::DVec3;
-use pinhole::light::Light;
-use pinhole::render::{Occlusion, Studio};
-use pinhole::{Film, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View};
+use pinhole::image::NO_ID;
+use pinhole::light::{Ground, Light};
+use pinhole::render::{DepthCue, Occlusion, Studio};
+use pinhole::{
+    Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View,
+};
 
 use crate::scene::spheres_of;
 use crate::support::random_light;
 
 /// Compares all layers, of which an image compares every number.
-fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) {
+fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) -> Image {
     let tree = SearchStructure::new(scene).unwrap();
     let wanted = cpu::render(scene, view, settings, LayerSet::ALL).unwrap();
     let found = cpu::render(&tree, view, settings, LayerSet::ALL).unwrap();
     assert!(wanted == found, "{name}");
+    found
 }
 
 fn color(random: &mut Rng) -> LinearRgb {
@@ -50,7 +54,7 @@ fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
     Scene::new(&spheres).unwrap()
 }
 
-/// Paths, studios and primary rays; `src/cpu/search_tests.rs` has rays at any scale, from near, far and within.
+/// Paths, studios and primary rays, with every kind of light.
 #[test]
 fn random_pictures() {
     let mut random = Rng::with_seed(41);
@@ -63,6 +67,91 @@ fn random_pictures() {
             assert_same(&scene, &seen, &view.settings.by_primary_rays(), &name);
         }
     }
+}
+
+fn studio(random: &mut Rng, size: f64) -> RenderSettings {
+    let occlusion =
+        Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
+    let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
+    let studio = Studio {
+        occlusion: random.bool().then_some(occlusion),
+        has_shadows: random.bool(),
+        max_surfaces: random.u32(1..6),
+        depth_cue: random.bool().then_some(cue),
+        ..Studio::default()
+    };
+    let ground = Ground {
+        point: -size * DVec3::Y,
+        normal: DVec3::Y,
+        color: color(random),
+        is_shadow_catcher: random.bool(),
+    };
+    let mut settings = RenderSettings {
+        integrator: Integrator::Studio(studio),
+        lights: Light::key_and_fill().to_vec(),
+        ground: random.bool().then_some(ground),
+        background: color(random),
+        is_transparent: random.bool(),
+        ..RenderSettings::default()
+    };
+    settings.sampling.samples = 2;
+    settings
+}
+
+/// Scenes at any scale, in the world's origin or far from it, with spheres of many sizes, some of them equal, some in
+/// others; seen from near, from far and from within a sphere.
+#[test]
+fn pictures_at_any_scale() {
+    const ROUNDS: usize = 50;
+    let mut random = Rng::with_seed(42);
+    let film = Film::new(20, 15).unwrap();
+    let mut shown = 0;
+    for round in 0..ROUNDS {
+        let size = 10_f64.powi([0, 0, 0, -5, 5][round % 5]);
+        let middle = [0.0, 1e3, 1e9][round % 3] * size * DVec3::new(1.0, -0.7, 0.3);
+        let decades = 5.0 * random.f64();
+        let mut spheres: Vec<Sphere> = (0..random.usize(17..200))
+            .map(|_| {
+                let radius = size * 0.5 * 10_f64.powf(-decades * random.f64());
+                let center = (middle + size * point(&mut random)).to_array();
+                let opacity = if random.u32(0..3) > 0 { 1.0 } else { random.f32() };
+                let sphere = Sphere::new(center, radius, color(&mut random)).with_opacity(opacity);
+                match random.u32(0..6) {
+                    0 => sphere.with_material(Material::Emissive { strength: 1.0 }),
+                    1 => sphere.with_material(Material::Conductor { roughness: 0.3 }),
+                    _ => sphere,
+                }
+            })
+            .collect();
+        for _ in 0..10 {
+            let mut copy = spheres[random.usize(0..spheres.len())];
+            copy.color = color(&mut random);
+            copy.radius *= [1.0, 1.0, 0.5][random.usize(0..3)];
+            spheres.push(copy);
+        }
+        if random.u32(0..4) == 0 {
+            spheres.push(Sphere::new(middle.to_array(), size * 1e4, color(&mut random)));
+        }
+        let within = spheres[random.usize(0..spheres.len())];
+        let eye = match random.u32(0..3) {
+            0 => DVec3::from(within.center) + 0.5 * within.radius * point(&mut random),
+            1 => middle + size * 1e6 * point(&mut random),
+            _ => middle + size * 4.0 * point(&mut random),
+        };
+        let pose = Pose::looking_at(eye, middle, [0.1, 1.0, 0.2]).unwrap();
+        let fov = if eye.distance(middle) > 1e3 * size { 2e-6 } else { 0.8 };
+        let camera: Box<dyn Camera> = match random.u32(0..4) {
+            0 => Box::new(PanoramaCamera::new(pose)),
+            _ => Box::new(PinholeCamera::with_vertical_fov(pose, fov, 4.0 / 3.0).unwrap()),
+        };
+        let scene = Scene::new(&spheres).unwrap();
+        let view = View::new(camera.as_ref(), film);
+        let name = format!("round {round}, {} spheres", spheres.len());
+        let image = assert_same(&scene, &view, &RenderSettings::default(), &name);
+        shown += image.id().unwrap().iter().filter(|id| **id != NO_ID).count();
+        assert_same(&scene, &view, &studio(&mut random, size), &name);
+    }
+    assert!(shown > ROUNDS * 60, "{shown}");
 }
 
 /// Of many equal spheres only some hide light, whichever comes first; and many opaque ones, for which there is a grid.

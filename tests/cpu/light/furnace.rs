@@ -97,6 +97,16 @@ fn spheres_in_glass_lose_nothing() {
     assert_unseen("rough glass in rough glass", &rough, 1024);
 }
 
+#[test]
+fn colors_lose_what_they_say() {
+    let color = rgb([0.8, 0.5, 0.0]);
+    for found in quarters(&[Sphere::new([0.0; 3], 3.0, color)], 4) {
+        for (found, wanted) in found.into_iter().zip([0.8, 0.5, 0.0]) {
+            assert!((found - wanted).abs() < 1e-6, "{found}");
+        }
+    }
+}
+
 /// Between two spheres light is scattered again, and loses more.
 #[test]
 fn light_between_two_spheres_loses_more() {
