@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
@@ -13,12 +13,17 @@ const CHUNK: usize = 1 << 16;
 /// Calls `f` with every index of `0..count`. This is the only loop that is compiled with rayon: another one for each
 /// closure would be a sixth of the library.
 fn each_index(count: usize, f: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().with_max_len(1).for_each(f);
+    (0..count).into_par_iter().for_each(f);
+}
+
+/// The number of threads that loops run on.
+pub(crate) fn threads() -> usize {
+    rayon::current_num_threads()
 }
 
 /// The results of `f` for `0..count`, in order.
 pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
-    let chunk = count.div_ceil(16 * rayon::current_num_threads()).clamp(1, CHUNK / 8);
+    let chunk = count.div_ceil(16 * threads()).clamp(1, CHUNK / 8);
     extended(Vec::with_capacity(count), count, chunk, f)
 }
 
@@ -52,7 +57,8 @@ fn extended<R: Send>(
             slot.write(f(k * chunk + i));
         }
     });
-    // SAFETY: the list was empty, and each of its first `count` slots has been written.
+    // SAFETY: the list was empty, and each of its first `count` slots has been written, because `for_each` passes every part
+    // to its function once and returns after all of them. If that panics, the list stays empty.
     unsafe { list.set_len(count) };
     list
 }
@@ -76,7 +82,7 @@ pub(crate) fn map_parts<T: Send, R: Send>(parts: Vec<T>, f: impl Fn(T) -> R + Sy
 /// Calls `f` with every element of `parts`.
 pub(crate) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync) {
     let parts: Vec<_> = parts.into_iter().map(|part| Mutex::new(Some(part))).collect();
-    let take = |k: usize| parts[k].lock().ok().and_then(|mut part| part.take());
+    let take = |k: usize| parts[k].lock().unwrap_or_else(PoisonError::into_inner).take();
     each_index(parts.len(), &|k| take(k).into_iter().for_each(&f));
 }
 

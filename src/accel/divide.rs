@@ -39,9 +39,14 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
     drop(keys);
     let is_left = |id: &u32| first_right.is_none_or(|first| key(id) < first);
     let chunks = map_chunks(&ids, |_, ids| ids.iter().partition::<Vec<u32>, _>(|id| is_left(id)));
+    let (mut left, mut right) =
+        (Vec::with_capacity(middle), Vec::with_capacity(ids.len() - middle));
     drop(ids);
-    let (left, right): (Vec<_>, Vec<_>) = chunks.into_iter().unzip();
-    let (left, right) = (left.concat(), right.concat());
+    // Chunks go one by one, so that not all of them are there twice.
+    for (more_left, more_right) in chunks {
+        left.extend(more_left);
+        right.extend(more_right);
+    }
     // Spheres with equal centres are parted only if they have the coordinate of the first on the right.
     let is_on_cut = |id: &u32| first_right.is_some_and(|first| key(id).0 == first.0);
     let mut on_the_cut: Vec<u32> = left.iter().copied().filter(is_on_cut).collect();

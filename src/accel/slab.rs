@@ -39,7 +39,7 @@
 //! finds 22 u.
 //!
 //! # Smaller margins
-//! In an 8-wide tree of a scene with outliers (`outliers.rs`), spheres inside the box of the crowd have the margin of that
+//! In an 8-wide tree of a scene with outliers (`statistics.rs`), spheres inside the box of the crowd have the margin of that
 //! box, 2⁻¹⁷ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens all boxes
 //! by w = 2⁻¹⁷ F − 2⁻¹⁷ D', if that is more than 0. For such a sphere, |L| + r ≤ F or r ≤ D'/2, so that 1 and 2 hold with
 //! the larger of F and D' instead of D; what boxes are wider is at least 128 u of it. In 3, a plane is moved by 17 u of

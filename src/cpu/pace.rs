@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use crate::image::ImageTooLarge;
+use crate::parallel;
 use crate::render::SettingsError;
 
 /// Why no picture is rendered.
@@ -34,12 +35,15 @@ const MOST: usize = 512;
 pub(super) struct Pace {
     /// The number of strips of the next band.
     strips: usize,
+    /// The least number of strips of a band but the last: one for each thread, so that none of them waits.
+    least: usize,
 }
 
 impl Pace {
     /// Nothing is known yet, so the first band is as short as possible.
     pub(super) fn new() -> Self {
-        Self { strips: 1 }
+        let least = parallel::threads();
+        Self { strips: least, least }
     }
 
     /// Calls `work` with bands of strips that together are all of `count`, until it returns an error.
@@ -64,7 +68,8 @@ impl Pace {
     fn adapt(&mut self, strips: usize, elapsed: Duration) {
         let fitting = strips as f64 * AIM.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
         // Conversions saturate. A band may have been easier than the next.
-        self.strips = (fitting as usize).clamp(1, MOST).min(4 * self.strips);
+        self.strips =
+            (fitting as usize).clamp(self.least, MOST.max(self.least)).min(4 * self.strips);
     }
 }
 
@@ -79,7 +84,7 @@ mod tests {
 
     #[test]
     fn bands_grow_to_the_time_that_is_aimed_at() {
-        let mut pace = Pace::new();
+        let mut pace = Pace { strips: 1, least: 1 };
         for wanted in [4, 16, 64, 100, 100] {
             // A strip takes a hundredth of the time.
             pace.adapt(pace.strips, AIM * pace.strips as u32 / 100);
@@ -87,6 +92,9 @@ mod tests {
         }
         pace.adapt(100, 1000 * AIM);
         assert_eq!(pace.strips, 1);
+        let mut on_eight = Pace { strips: 8, least: 8 };
+        on_eight.adapt(8, 1000 * AIM);
+        assert_eq!(on_eight.strips, 8);
     }
 
     #[test]
