@@ -164,12 +164,12 @@ impl fmt::Display for Violation {
 
 /// A [`Violation`] at some pixel.
 #[derive(Debug)]
-pub(super) struct Illegal {
+pub(super) struct Mismatch {
     pub(super) stage: &'static str,
     pub(super) message: String,
 }
 
-impl Illegal {
+impl Mismatch {
     pub(super) fn new(stage: &'static str, message: impl Into<String>) -> Self {
         Self { stage, message: message.into() }
     }

@@ -10,7 +10,7 @@ use crate::scene::{Scene, SceneError};
 use crate::verify::bias::{Deviations, deviation};
 use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
 use crate::verify::certificate::{
-    AXES, Certificate, Illegal, KEPT, Verdict, Violation, channel_name, pixel_at,
+    AXES, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, pixel_at,
 };
 use crate::verify::hit::{Candidates, LegalHits};
 use crate::verify::recording::{
@@ -111,7 +111,7 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> C
                 part.worst_normal = part.worst_normal.max(judged.normal);
                 judged.verdict
             }
-            Err(Illegal { stage, message }) => {
+            Err(Mismatch { stage, message }) => {
                 if part.violations.len() < KEPT {
                     part.violations.push(Violation { pixel, stage, message });
                 }
@@ -177,16 +177,16 @@ impl PixelCheck<'_> {
         pixel: [u32; 2],
         legal: &mut LegalHits,
         measured: Option<&mut Deviations>,
-    ) -> Result<Judged, Illegal> {
+    ) -> Result<Judged, Mismatch> {
         let TracedPixel { ray, t, id, shading_ray } = self.recording.pixels[index];
         let layers = Layers::of(&self.recording.image, index);
-        let illegal = |legal: &LegalHits| Illegal::new("hit", legal.message(id, t));
+        let illegal = |legal: &LegalHits| Mismatch::new("hit", legal.message(id, t));
         let camera_ray = self.model.ray(pixel);
         let Some(ray) = ray else {
             let exact = camera_ray.entered(&self.model, camera_ray.line.direction);
             if !exact.may_miss_box {
                 let message = "no ray was traced, although it hits the scene's box";
-                return Err(Illegal::new("cull", message));
+                return Err(Mismatch::new("cull", message));
             }
             legal.clear();
             if id != NO_ID {
@@ -238,20 +238,20 @@ impl PixelCheck<'_> {
         Ok(Judged { verdict, depth, normal })
     }
 
-    fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), Illegal> {
+    fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), Mismatch> {
         if t.to_bits() != NO_HIT.to_bits() {
-            return Err(Illegal::new("hit", format!("a miss at {t:?}; legal is {NO_HIT:?}")));
+            return Err(Mismatch::new("hit", format!("a miss at {t:?}; legal is {NO_HIT:?}")));
         }
         self.check_layers_of_miss(layers)
     }
 
-    pub(super) fn check_layers_of_miss(&self, layers: &Layers) -> Result<(), Illegal> {
+    pub(super) fn check_layers_of_miss(&self, layers: &Layers) -> Result<(), Mismatch> {
         if layers.id != NO_ID {
             return Err(wrong_id(layers.id, NO_ID));
         }
         let infinity = Interval { low: f64::INFINITY, high: f64::INFINITY };
         if layers.depth != f32::INFINITY {
-            return Err(Illegal::value("depth", layers.depth, infinity));
+            return Err(Mismatch::value("depth", layers.depth, infinity));
         }
         if layers.normal.iter().any(|component| component.abs() > 0.0 || component.is_nan()) {
             return Err(wrong_normal(layers.normal, DVec3::ZERO, 0.0));
@@ -267,12 +267,12 @@ impl PixelCheck<'_> {
         depths: Interval,
         id: u32,
         shading: &Shaded,
-    ) -> Result<f64, Illegal> {
+    ) -> Result<f64, Mismatch> {
         if layers.id != id {
             return Err(wrong_id(layers.id, id));
         }
         if !depths.contains(layers.depth.into()) {
-            return Err(Illegal::value("depth", layers.depth, depths));
+            return Err(Mismatch::value("depth", layers.depth, depths));
         }
         self.check_shading(layers, &shading.line, shading.slack, shading.direction)
     }
@@ -285,7 +285,7 @@ impl PixelCheck<'_> {
         line: &Line,
         slack: Slack,
         direction: [Interval; 3],
-    ) -> Result<f64, Illegal> {
+    ) -> Result<f64, Mismatch> {
         let (scene, id) = (self.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
         let normals = LegalNormals::new(line, sphere, slack);
@@ -321,39 +321,39 @@ impl PixelCheck<'_> {
     }
 }
 
-fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Illegal> {
+fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
     for (axis, name) in AXES.iter().enumerate() {
         let (found, legal) = (ray.direction[axis], entered.direction[axis]);
         if !legal.contains(found.into()) {
             let message = format!("the direction's {name} is {found:?}; legal is {legal}");
-            return Err(Illegal::new("camera", message));
+            return Err(Mismatch::new("camera", message));
         }
     }
     entered.check_start(ray)
 }
 
-fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Illegal> {
+fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
     match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
         None => Ok(()),
         Some(channel) => {
             let (found, legal) = (found[channel], legal[channel]);
             let name = channel_name(channel);
-            Err(Illegal::new("color", format!("{name} is {found:?}; legal is {legal}")))
+            Err(Mismatch::new("color", format!("{name} is {found:?}; legal is {legal}")))
         }
     }
 }
 
-fn wrong_id(found: u32, traced: u32) -> Illegal {
+fn wrong_id(found: u32, traced: u32) -> Mismatch {
     let name = |id| if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") };
-    Illegal::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
+    Mismatch::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
 }
 
-fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Illegal {
+fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Mismatch {
     let DVec3 { x, y, z } = exact;
     let message = format!(
         "{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length"
     );
-    Illegal::new("normal", message)
+    Mismatch::new("normal", message)
 }
 
 impl PixelCheck<'_> {
@@ -364,7 +364,7 @@ impl PixelCheck<'_> {
         index: usize,
         pixel: [u32; 2],
         legal: &mut LegalHits,
-    ) -> Option<Result<(), Illegal>> {
+    ) -> Option<Result<(), Mismatch>> {
         let Rendered::Other(image) = &self.recording.rendered else {
             return None;
         };
@@ -374,7 +374,7 @@ impl PixelCheck<'_> {
         }
         let judged = self.judge_any(&layers, pixel, legal);
         Some(judged.map_err(|illegal| {
-            Illegal::new("render", format!("{}: {}", illegal.stage, illegal.message))
+            Mismatch::new("render", format!("{}: {}", illegal.stage, illegal.message))
         }))
     }
 
@@ -383,7 +383,7 @@ impl PixelCheck<'_> {
         layers: &Layers,
         pixel: [u32; 2],
         legal: &mut LegalHits,
-    ) -> Result<(), Illegal> {
+    ) -> Result<(), Mismatch> {
         let ray = self.model.ray(pixel).any(&self.model);
         legal.clear();
         if ray.may_hit_box {
@@ -396,12 +396,12 @@ impl PixelCheck<'_> {
             return self.check_layers_of_miss(layers);
         }
         if id == NO_ID || !legal.allows(id, depth.into()) {
-            return Err(Illegal::new("hit", legal.message(id, depth)));
+            return Err(Mismatch::new("hit", legal.message(id, depth)));
         }
         if let Some(legal) = self.legal_depth(&ray, id)
             && !legal.contains(depth.into())
         {
-            return Err(Illegal::value("depth", depth, legal));
+            return Err(Mismatch::value("depth", depth, legal));
         }
         self.check_shading(layers, &ray.line, ray.slack, ray.direction).map(|_| ())
     }

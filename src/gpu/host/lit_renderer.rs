@@ -23,9 +23,9 @@ use crate::render::RenderSettings;
 #[derive(Debug)]
 pub struct LitRenderer {
     renderer: Renderer,
-    passes: Built<LitKey, LitPasses>,
-    resolve: Built<(), ComputePipeline>,
-    live: Built<LiveKey, LivePasses>,
+    passes: Cache<LitKey, LitPasses>,
+    resolve: Cache<(), ComputePipeline>,
+    live: Cache<LiveKey, LivePasses>,
 }
 
 impl LitRenderer {
@@ -34,9 +34,9 @@ impl LitRenderer {
     pub fn new(renderer: Renderer) -> Self {
         Self {
             renderer,
-            passes: Built::default(),
-            resolve: Built::default(),
-            live: Built::default(),
+            passes: Cache::default(),
+            resolve: Cache::default(),
+            live: Cache::default(),
         }
     }
 
@@ -115,11 +115,11 @@ impl LitRenderer {
     }
 }
 
-/// What has been built so far.
+/// Passes that are built once for each key.
 #[derive(Debug)]
-struct Built<K, T>(Mutex<HashMap<K, Arc<T>>>);
+struct Cache<K, T>(Mutex<HashMap<K, Arc<T>>>);
 
-impl<K: Eq + Hash, T> Built<K, T> {
+impl<K: Eq + Hash, T> Cache<K, T> {
     fn get(&self, key: &K) -> Option<Arc<T>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
@@ -140,7 +140,7 @@ impl<K: Eq + Hash, T> Built<K, T> {
     }
 }
 
-impl<K, T> Default for Built<K, T> {
+impl<K, T> Default for Cache<K, T> {
     fn default() -> Self {
         Self(Mutex::default())
     }

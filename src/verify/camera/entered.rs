@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::verify::camera::{CameraModel, CameraRay, around};
-use crate::verify::certificate::{AXES, Illegal};
+use crate::verify::certificate::{AXES, Mismatch};
 use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
@@ -127,21 +127,21 @@ impl CameraRay {
 impl EnteredRay {
     /// Judges the start of the device's ray. The start and its distance from the camera must agree on where the ray
     /// enters the box.
-    pub(crate) fn check_start(&self, ray: &TracedRay) -> Result<(), Illegal> {
+    pub(crate) fn check_start(&self, ray: &TracedRay) -> Result<(), Mismatch> {
         let mut enter = self.enter;
         for (axis, name) in AXES.iter().enumerate() {
             let found = ray.origin[axis];
             let legal = self.origin(axis, enter);
             if !legal.contains(found.into()) {
                 let message = format!("the origin's {name} is {found:?}; legal is {legal}");
-                return Err(Illegal::new("camera", message));
+                return Err(Mismatch::new("camera", message));
             }
             enter = enter.intersection(self.enter_by(axis, found.into()));
         }
         let (found, legal) = (ray.distance, self.distance(enter));
         if !legal.contains(found.into()) {
             let message = format!("the origin's distance is {found:?}; legal is {legal}");
-            return Err(Illegal::new("camera", message));
+            return Err(Mismatch::new("camera", message));
         }
         Ok(())
     }
