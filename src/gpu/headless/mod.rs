@@ -70,7 +70,7 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
+    /// Opens a device on the first of [`candidates_async`](crate::gpu::adapter::candidates_async) that can open one.
     ///
     /// # Errors
     /// If there is no such adapter, or if none can open a device; the error is then that of the first.
