@@ -387,11 +387,11 @@ fn inputs_are_not_overwritten() {
         assert_eq!(folder.read("in.npy"), spheres);
     }
     let sky = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n@@@\x7f";
-    let lit = format!("integrator = 'path'\n[sky]\nkind = 'image'\nimage = 'sky.hdr'\n{SCENE}");
-    let folder = Folder::with(&[("sky.hdr", sky), ("lit.toml", &lit)]);
-    let arguments = "render lit.toml -o out.png --layer id=sky.hdr --samples 1 --backend cpu";
-    folder.refuses(arguments, 2, "sky.hdr: this output is also an input");
-    assert_eq!(folder.read("sky.hdr"), sky.as_bytes());
+    let lit = format!("integrator = 'path'\n[sky]\nkind = 'image'\nimage = 'sky.npy'\n{SCENE}");
+    let folder = Folder::with(&[("sky.npy", sky), ("lit.toml", &lit)]);
+    let arguments = "render lit.toml -o out.png --layer id=sky.npy --samples 1 --backend cpu";
+    folder.refuses(arguments, 2, "sky.npy: this output is also an input");
+    assert_eq!(folder.read("sky.npy"), sky.as_bytes());
 }
 
 #[cfg(unix)]
