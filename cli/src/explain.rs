@@ -1,4 +1,4 @@
-//! What the program says about arguments that it does not understand: one line, with what was probably meant.
+//! Errors for arguments that the program does not understand: one line, with what was probably meant.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! What the program prints on the terminal: lines, answers, and how far the work is.
+//! The program's words on the terminal: lines, answers, and how far the work is.
 
 use std::borrow::Cow;
 use std::fmt;

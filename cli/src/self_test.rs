@@ -1,4 +1,4 @@
-//! What `pinhole info` does beyond telling what there is: the self-test of a device, and the files of all kernels.
+//! `pinhole info`, beyond telling what there is: the self-test of a device, and the files of all kernels.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

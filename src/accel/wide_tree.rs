@@ -26,7 +26,7 @@ pub struct WideTree {
 }
 
 impl WideTree {
-    /// Which rays use boxes as stored, and the widening for all others.
+    /// The rays that use boxes as stored, and the widening for all others.
     #[cfg(feature = "gpu")]
     pub(crate) fn near_rays(&self) -> NearRays {
         self.margins.near()

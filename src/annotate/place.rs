@@ -1,4 +1,4 @@
-//! Where annotations lie in the picture, and colours that can be read there.
+//! Places of annotations in the picture, and colours that can be read there.
 
 use std::str::FromStr;
 

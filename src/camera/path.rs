@@ -59,7 +59,7 @@ pub struct CameraKey {
 pub struct CameraPathError {
     /// The key that is wrong, counted from 0; `None` if there are not enough keys.
     pub key: Option<usize>,
-    /// What is wrong with it, and what to do.
+    /// The problem, and what to do.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! Where a camera stands, as a scene file gives it.
+//! The place of a camera, as a scene file gives it.
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ pub(super) struct PoseParameters {
 /// The pose that [`PoseParameters`] describe.
 pub(super) struct Placement {
     pub(super) pose: Pose,
-    /// Whether the position follows from what the camera must see; the pose has only the orientation then.
+    /// `true` if the position follows from what the camera must see; the pose has only the orientation then.
     pub(super) is_framed: bool,
     pub(super) direction: Option<List<3>>,
     pub(super) up: Option<List<3>>,

@@ -1,4 +1,4 @@
-//! What colours mean in several frames together, and colours of data that gives none, but says of what kinds its spheres
+//! Colours with one meaning in several frames, and colours of data that gives none, but says of what kinds its spheres
 //! are.
 
 use super::coloring::order;

@@ -86,7 +86,7 @@ pub fn adapters() -> Vec<Adapter> {
 /// Blocks the thread until [`choose_async`] is done.
 ///
 /// # Errors
-/// The same as for [`choose_async`].
+/// As for [`choose_async`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
     block_on(choose_async(name))

@@ -1,4 +1,4 @@
-//! What bounds and suits a device: its limits, and the order and the amounts of work. Pictures do not depend on them.
+//! Bounds and habits of a device: its limits, and the order and the amounts of work. Pictures do not depend on them.
 
 use std::time::Duration;
 

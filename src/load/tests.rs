@@ -1,4 +1,4 @@
-//! What the tests of readers share.
+//! Helpers for the tests of readers.
 
 use super::{ColumnValues, Loaded};
 use crate::scene::sphere_array::SphereArray;

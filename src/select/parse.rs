@@ -41,7 +41,7 @@ pub(super) enum Value {
     Column(String),
 }
 
-/// Which order of its sides a comparison accepts.
+/// An order of its sides that a comparison accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Operator {
     less: bool,
@@ -76,7 +76,7 @@ impl Operator {
         Self::new(self.greater, self.equal, self.less)
     }
 
-    /// Whether it asks only whether the sides are equal or not.
+    /// `true` for a comparison that asks only whether the sides are equal or not.
     pub(super) fn is_equality(self) -> bool {
         self.less == self.greater
     }

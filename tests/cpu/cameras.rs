@@ -113,7 +113,7 @@ fn the_plane_of_focus_goes_through_a_point() {
     assert!(behind.to_string().contains("`focus_on` along the view is -2.0"), "{behind}");
 }
 
-/// Which length is refused.
+/// The lengths that are refused.
 fn length(error: &CameraError) -> &'static str {
     match error {
         CameraError::Length { parameter, .. } => parameter,

@@ -36,7 +36,7 @@ pub(crate) fn plain(size: [u32; 2], colors: Vec<[f32; 3]>) -> Image {
     Image::from_layers(size, colors, zeros, vectors, vec![0; count]).unwrap()
 }
 
-/// What a file says of itself, and the samples.
+/// The certificate in a file, and the samples.
 pub(crate) fn read_png(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
     let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
     assert!(reader.info().srgb.is_some(), "it says that it is sRGB");

@@ -20,7 +20,7 @@ use crate::scene::colored;
 use crate::support::spheres::{self, Spheres};
 use crate::written::assert_is_not_accused;
 
-/// What a device is given of a camera, whose origin is moved up by `advance`, and of the corners of a scene's box.
+/// The upload of a camera, whose origin is moved up by `advance`, and of the corners of a scene's box.
 pub(crate) fn uploaded(
     vectors: &CameraVectors,
     origin: DVec3,

@@ -1,4 +1,4 @@
-//! What a device makes of a view: pictures in which every byte is known, their agreement with the CPU reference, and parts
+//! Pictures of a device: those in which every byte is known, their agreement with the CPU reference, and parts
 //! of a film, which have the pixels of the whole, to the bit.
 
 use glam::DVec3;

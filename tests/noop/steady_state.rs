@@ -1,4 +1,4 @@
-//! What recording a frame costs a host: nothing is created, submitted, awaited or read back, by what wgpu logs of the calls
+//! The cost of recording a frame: nothing is created, submitted, awaited or read back, by what wgpu logs of the calls
 //! that a thread makes.
 
 use std::cell::RefCell;

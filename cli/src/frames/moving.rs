@@ -61,7 +61,7 @@ impl WantedPath {
 
 /// What a moving camera sees, and what makes the light of each picture.
 pub(crate) struct Stage {
-    /// What the camera frames, and what light and style are chosen for.
+    /// The spheres that the camera frames, and that light and style are chosen for.
     pub(crate) framed: Scene,
     /// What the legend shows.
     pub(crate) key: Option<ColorKey>,
@@ -75,7 +75,7 @@ pub(crate) struct MovingCamera {
     pub(crate) stage: Stage,
 }
 
-/// Where a camera is.
+/// The course of a camera.
 #[expect(clippy::large_enum_variant, reason = "a job has one of them")]
 pub(crate) enum Course {
     /// Turned about an axis, at the end once around.

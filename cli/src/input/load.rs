@@ -1,4 +1,4 @@
-//! What an input has to say before it is read, such as its frames, its camera path and its name, and the input of one
+//! Facts about an input before it is read, such as its frames, its camera path and its name, and the input of one
 //! picture.
 
 use std::sync::{Arc, Mutex};

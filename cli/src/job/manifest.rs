@@ -1,4 +1,4 @@
-//! What describes a job, the file `job.json`, and its units: which tile of which picture an index means.
+//! The description of a job, the file `job.json`, and its units: which tile of which picture an index means.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What `pinhole verify` checks, keeps and writes: all of its files, or none.
+//! The checks of `pinhole verify`, and its files: all of them, or none.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

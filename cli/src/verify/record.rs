@@ -1,4 +1,4 @@
-//! What `pinhole verify` records on a device: the picture by one ray, samples of light, and what the denoiser makes.
+//! Recordings of `pinhole verify` on a device: the picture by one ray, samples of light, and what the denoiser makes.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

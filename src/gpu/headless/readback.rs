@@ -1,4 +1,4 @@
-//! What the host reads of a tile: textures, rays and hits, and the layers that it computes from them.
+//! The host's copy of a tile: textures, rays and hits, and the layers that it computes from them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Which bricks are traced in which part of a picture, and in which order.
+//! The bricks that are traced in each part of a picture, and in which order.
 
 use glam::{DVec2, DVec3, Vec3};
 

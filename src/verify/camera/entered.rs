@@ -13,7 +13,7 @@ use crate::verify::sphere::{Line, Slack};
 pub(crate) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl CameraModel {
-    /// Where a ray enters and leaves the scene's box, for all origins within their error bounds and all directions within
+    /// A ray's entry and exit at the scene's box, for all origins within their error bounds and all directions within
     /// `turned`, each axis by itself.
     fn slabs(&self, ray: &CameraRay, direction: DVec3, turned: DVec3) -> BoxCrossing {
         let mut crossing = BoxCrossing::default();

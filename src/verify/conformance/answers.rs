@@ -1,4 +1,4 @@
-//! What a renderer answered, for which rays, whether that can be judged, and what was found about it.
+//! The answers of a renderer, their rays, whether they can be judged, and findings about them.
 
 use std::fmt;
 
@@ -37,14 +37,14 @@ pub struct Answers<'a> {
     pub ids: &'a [u32],
     /// The depth of each pixel, in scene units. Depths of misses are not looked at.
     pub depths: Option<&'a [f64]>,
-    /// What depths are.
+    /// The kind of depths.
     pub depth_kind: DepthKind,
     /// The unit normal of each pixel in world space, which points away from the sphere's centre. Normals of misses are
     /// not looked at.
     pub normals: Option<&'a [[f64; 3]]>,
 }
 
-/// What depths are.
+/// The kind of depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum DepthKind {
     /// Distances from the ray's start, along the ray.
@@ -69,7 +69,7 @@ pub enum Rays<'a> {
 #[error("{message}")]
 #[non_exhaustive]
 pub struct ConformanceError {
-    /// What is not valid, if it is one field.
+    /// The field that is not valid, if it is one.
     pub field: Option<Field>,
     message: String,
 }
@@ -86,7 +86,7 @@ pub enum Field {
     Normals,
     /// The rays.
     Rays,
-    /// What depths are.
+    /// The kind of depths.
     DepthKind,
 }
 

@@ -149,7 +149,7 @@ pub struct StageCounts {
 pub struct LitCertificate {
     /// The number of samples of pixels; each is a path, or a ray of a studio with all surfaces that it passes.
     pub paths: u64,
-    /// What was judged of each stage, by its place in [`LitStage`].
+    /// The counts of each stage, by its place in [`LitStage`].
     pub(crate) counts: [StageCounts; LitStage::COUNT],
     /// The number of stages with an illegal result.
     pub violation_count: u64,

@@ -1,4 +1,4 @@
-//! What the checks of light paths and of studios share: the camera ray of a sample, and the hits of rays.
+//! Shared by the checks of light paths and of studios: the camera ray of a sample, and the hits of rays.
 
 use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;

@@ -1,4 +1,4 @@
-//! What the checks of light paths and of studios share: what is recorded of both, the verdicts, and the checks of the
+//! Shared by the checks of light paths and of studios: what is recorded of both, the verdicts, and the checks of the
 //! kernels' common parts.
 //!
 //! A recording contains the state of every path between two dispatches; a ray of a studio is a path that passes through

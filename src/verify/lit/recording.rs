@@ -137,14 +137,14 @@ pub struct StudioLight {
 /// The number of lights, or of directions of ambient light, of a [`StudioLight`].
 pub(crate) const BITS: u32 = 32;
 
-/// What is recorded of a surface, along paths or in a studio.
+/// The recording of a surface, along paths or in a studio.
 pub(crate) trait LitSurface: Sync {
     fn hits(&self) -> &[[u32; 4]];
 
     /// The states after shading.
     fn states(&self) -> &[PathState];
 
-    /// Whether there is all light of so many pixels.
+    /// `true` if there is all light of so many pixels.
     fn has_light(&self, lighting: &UploadedLighting, pixels: usize) -> bool;
 }
 

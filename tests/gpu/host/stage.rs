@@ -232,7 +232,7 @@ impl Stage {
         pixels().filter(|pixel| !self.is_near_a_silhouette(*pixel))
     }
 
-    /// Whether the ray passes a sphere at less than a thousandth of its radius from its silhouette.
+    /// `true` if the ray passes a sphere at less than a thousandth of its radius from its silhouette.
     pub(super) fn is_near_a_silhouette(&self, pixel: [u32; 2]) -> bool {
         let ray = self.camera.ray_in_world(Self::location(pixel));
         self.spheres.iter().any(|sphere| {
