@@ -11,7 +11,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Headless, HeadlessOptions};
+use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 use pinhole::{Film, LinearRgb, Scene, View};
 
 const CHOICES: [AccelChoice; 2] = [AccelChoice::Grid, AccelChoice::Tree];
@@ -20,7 +20,7 @@ const CHOICES: [AccelChoice; 2] = [AccelChoice::Grid, AccelChoice::Tree];
 const BINDING_BYTES: u64 = 1 << 27;
 
 fn accel(criterion: &mut Criterion) {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     for standard in [Standard::R1M, Standard::C200k] {
         let grey = LinearRgb::from_srgb8([128, 128, 128]);
         let scene = Scene::from_f32(standard.spheres().unwrap(), grey).unwrap();
@@ -56,9 +56,9 @@ fn on_adapter(
     group.throughput(Throughput::Elements(film.pixel_count()));
     for choice in CHOICES {
         let accel = headless.plan_accel(scene, choice).build(scene.spheres());
-        let buffers = headless.upload(scene, &accel.into()).unwrap();
+        let buffers = headless.upload(scene, &accel.into()).wait().unwrap();
         group.bench_function(format!("{}, {choice}", headless.adapter_info().name), |b| {
-            b.iter(|| headless.measure(&buffers, &View::new(camera, film)).unwrap());
+            b.iter(|| headless.measure(&buffers, &View::new(camera, film)).wait().unwrap());
         });
     }
 }

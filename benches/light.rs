@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use pinhole::accel::AccelChoice;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, SceneBuffers};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, SceneBuffers, Wait};
 use pinhole::light::{Light, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
@@ -21,7 +21,7 @@ use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, 
 const TURNS: usize = 5;
 
 fn main() {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     let info = headless.adapter_info();
     println!("{} ({:?}), {} {}\n", info.name, info.backend, info.driver, info.driver_info);
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
@@ -47,6 +47,7 @@ impl Subject<'_> {
         let picture = self
             .headless
             .render_uploaded(&self.scene, &self.view, settings, LayerSet::COLOR, go_on)
+            .wait()
             .unwrap();
         (started.elapsed().as_secs_f64(), picture)
     }
@@ -77,7 +78,7 @@ fn measure(headless: &Headless, standard: Standard) {
     let scene = Scene::from_f32(standard.spheres().unwrap(), grey).unwrap();
     let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
     let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
-    let buffers = headless.upload(&scene, &accel.into()).unwrap();
+    let buffers = headless.upload(&scene, &accel.into()).wait().unwrap();
     let view = View::new(&camera, film);
     let subject = Subject { headless, scene: buffers, view };
     const RAYS: u32 = 4;
@@ -101,7 +102,7 @@ fn measure(headless: &Headless, standard: Standard) {
     let mut bare = f64::INFINITY;
     let (mut plain, mut traced) = ([f64::INFINITY; 2], 0);
     for _ in 0..TURNS {
-        let time = headless.measure(&subject.scene, &view).unwrap();
+        let time = headless.measure(&subject.scene, &view).wait().unwrap();
         traced = time.pixels;
         bare = bare.min(time.wall.as_secs_f64());
         for (best, shading) in plain.iter_mut().zip([Shading::Flat, Shading::Headlight]) {

@@ -27,7 +27,7 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, Structures};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, LitPart, Structures, Wait};
 use pinhole::internals::ShaderEdit;
 use pinhole::verify::{
     Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict,
@@ -51,7 +51,7 @@ use random_light::RandomView;
 type ViewOf = fn(u64) -> RandomView;
 
 fn main() {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     let info = headless.adapter_info();
     println!("{} ({:?}), {} {}\n", info.name, info.backend, info.driver, info.driver_info);
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
@@ -91,7 +91,7 @@ fn adversaries(count: u64) {
     for (seed, rounding) in (1..).zip(Rounding::ALL) {
         let rewrite = Some(Adversary::new(rounding, seed).rewrite());
         let options = HeadlessOptions { rewrite, ..HeadlessOptions::default() };
-        let headless = Headless::open(&options).unwrap();
+        let headless = Headless::open(&options).wait().unwrap();
         println!("{rounding:?}");
         campaign(&headless, 128, 0);
         for view in [random_light::view as ViewOf, random_light::studio] {
@@ -107,9 +107,9 @@ fn grey(spheres: Vec<[f32; 4]>) -> Scene {
 fn record(headless: &Headless, scene: &Scene, camera: &dyn Camera, film: &Film) -> Recording {
     let (view, settings) = (View::new(camera, *film), RenderSettings::default());
     let plan = headless.plan(scene, &view, &settings, LayerSet::DATA, AccelChoice::Auto, 0);
-    let buffers = headless.upload(scene, &plan.build(scene)).unwrap();
+    let buffers = headless.upload(scene, &plan.build(scene)).wait().unwrap();
     let go_on = |_: &_| Decision::GoOn;
-    headless.record(&buffers, &view, &settings, &mut { go_on }).unwrap()
+    headless.record(&buffers, &view, &settings, &mut { go_on }).wait().unwrap()
 }
 
 /// Prints one row of a table.
@@ -214,7 +214,8 @@ fn fences(fenced: &Headless) {
         let [file, find, replace] = [file, find, replace].map(str::to_owned);
         ShaderEdit { file, find, replace }
     };
-    let open = |edits| Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() });
+    let open =
+        |edits| Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() }).wait();
     let bare = open(vec![
         edit("math/fence.wgsl", "bitcast<f32>(bitcast<u32>(v) ^ runtime_zero())", "v"),
         edit("math/fence.wgsl", "bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(runtime_zero()))", "v"),
@@ -230,12 +231,15 @@ fn fences(fenced: &Headless) {
             let structures: Structures =
                 fenced.plan_accel(&scene, choice).build(scene.spheres()).into();
             let devices = [fenced, &bare, &known];
-            let buffers = devices.map(|headless| headless.upload(&scene, &structures).unwrap());
+            let buffers =
+                devices.map(|headless| headless.upload(&scene, &structures).wait().unwrap());
             let mut best = [Duration::MAX; 3];
             for round in 0..=ROUNDS {
                 for (which, headless) in devices.into_iter().enumerate() {
-                    let time =
-                        headless.measure(&buffers[which], &View::new(&camera, film)).unwrap();
+                    let time = headless
+                        .measure(&buffers[which], &View::new(&camera, film))
+                        .wait()
+                        .unwrap();
                     // A software device's own clock counts only what it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
@@ -263,7 +267,7 @@ fn margins() {
     // Of 0, only roundings of coordinates are left; less than 0 cuts spheres.
     const PARTS: [f32; 8] = [1.0, 0.25, 0.0625, 0.0, -0.015_625, -0.0625, -0.25, -1.0];
     let options = HeadlessOptions { ray_query: true, ..HeadlessOptions::default() };
-    let headless = Headless::open(&options).unwrap();
+    let headless = Headless::open(&options).wait().unwrap();
     print!("{:<26}{:>9}", "margin, of that of trees", "rays");
     PARTS.iter().for_each(|part| print!("{part:>9.5}"));
     println!();
@@ -279,10 +283,10 @@ fn margins() {
             let hits = |choice, part| {
                 let plan = headless.plan_accel(&scene, choice).with_box_margin(part);
                 let structures: Structures = plan.build(scene.spheres()).into();
-                let buffers = headless.upload(&scene, &structures).unwrap();
+                let buffers = headless.upload(&scene, &structures).wait().unwrap();
                 let (settings, go_on) = (RenderSettings::default(), |_: &_| Decision::GoOn);
                 let recording =
-                    headless.record(&buffers, &view, &settings, &mut { go_on }).unwrap();
+                    headless.record(&buffers, &view, &settings, &mut { go_on }).wait().unwrap();
                 let hit = |pixel: &pinhole::verify::TracedPixel| (pixel.t.to_bits(), pixel.id);
                 recording.pixels.iter().map(hit).collect::<Vec<_>>()
             };
@@ -395,12 +399,15 @@ fn lit_campaign(headless: &Headless, seeds: Range<u64>, view: ViewOf) {
         let view = View::new(camera.as_ref(), film);
         let layers = LayerSet::COLOR;
         let plan = headless.plan(&scene, &view, &settings, layers, AccelChoice::Auto, 0);
-        let buffers = headless.upload(&scene, &plan.build(&scene)).unwrap();
+        let buffers = headless.upload(&scene, &plan.build(&scene)).wait().unwrap();
         let checker = Checker::new(&scene).unwrap();
         let mut certificate = LitCertificate::default();
         let each =
             &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
-        headless.record_lit(&buffers, &view, &settings, &[0, 1], (each, go_on)).unwrap();
+        headless
+            .record_lit(&buffers, &view, &settings, (LitPart::Middle, &[0, 1]), (each, go_on))
+            .wait()
+            .unwrap();
         assert_ne!(certificate.outcome(), Outcome::Violated, "seed {seed}: {name}: {certificate}");
         let stages = certificate.stages();
         let share = stages.undecided as f64 / stages.checked as f64;

@@ -11,7 +11,7 @@
 use std::error::Error;
 
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, adapter, wgpu};
+use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, Wait, adapter, wgpu};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
 
 const WIDTH: u32 = 640;
@@ -21,14 +21,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "embed.png".to_owned());
 
     // A host already has an adapter, a device, a queue and a texture. WebGPU's default limits are enough.
-    let adapter = adapter::choose(None)?;
+    let adapter = adapter::choose(None).wait()?;
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let texture = host_texture(&device);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
 
     // The renderer is made once per device.
-    let renderer = Renderer::new(&device, &RendererOptions::default())?;
+    let renderer = Renderer::new(&device, &RendererOptions::default()).wait()?;
 
     // The buffers of a scene are made once per scene.
     let spheres: Vec<Sphere> = (0..60_u8)
@@ -39,10 +39,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             Sphere::new([2.0 * angle.cos(), height, 2.0 * angle.sin()], 0.4, color)
         })
         .collect();
-    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?)?;
+    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?).wait()?;
 
     // A frame is made once per set of targets. Its view may change from one picture to the next.
-    let mut frame = Frame::new(&renderer, &device, &Targets { color: &view, data: None })?;
+    let mut frame = Frame::new(&renderer, &device, &Targets { color: &view, data: None }).wait()?;
     let film = Film::new(WIDTH, HEIGHT)?;
     let pose = Pose::looking_at([7.0, 5.0, 10.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     let camera = PinholeCamera::with_vertical_fov(pose, 40_f64.to_radians(), film.aspect())?;

@@ -13,7 +13,7 @@ use std::error::Error;
 use pinhole::camera::{DepthOrder, HostCamera};
 use pinhole::gpu::{
     Composite, CompositeDepth, CompositeOptions, CompositePicture, Frame, Picker, Renderer,
-    RendererOptions, SceneBuffers, TargetTextures, adapter, wgpu,
+    RendererOptions, SceneBuffers, TargetTextures, Wait, adapter, wgpu,
 };
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
 use wgpu::{TextureFormat, TextureUsages};
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "embed_depth.png".to_owned());
 
     // The host has a device, matrices and attachments.
-    let adapter = adapter::choose(None)?;
+    let adapter = adapter::choose(None).wait()?;
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let (to_view, projection) = host_matrices();
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Pictures of spheres have data layers, because the host's depth is computed from theirs.
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let renderer = Renderer::new(&device, &options)?;
+    let renderer = Renderer::new(&device, &options).wait()?;
     let spheres: Vec<Sphere> = (0..60_u8)
         .map(|i| {
             let angle = f64::from(i) * 0.4;
@@ -46,16 +46,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             Sphere::new([2.0 * angle.cos(), height, 2.0 * angle.sin()], 0.4, color)
         })
         .collect();
-    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?)?;
-    let textures = TargetTextures::new(&renderer, &device, [WIDTH, HEIGHT])?;
+    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?).wait()?;
+    let textures = TargetTextures::new(&renderer, &device, [WIDTH, HEIGHT]).wait()?;
     let targets = textures.targets();
-    let mut frame = Frame::new(&renderer, &device, &targets)?;
+    let mut frame = Frame::new(&renderer, &device, &targets).wait()?;
 
     // Once for a kind of render pass, and once for each set of targets.
     let compared = CompositeDepth::new(depth.format(), DepthOrder::NearIsOne);
-    let composite = Composite::new(&device, &CompositeOptions::new(color.format(), compared))?;
-    let mut picture = CompositePicture::new(&composite, &device, &targets)?;
-    let mut picker = Picker::new(&device, 3)?;
+    let composite =
+        Composite::new(&device, &CompositeOptions::new(color.format(), compared)).wait()?;
+    let mut picture = CompositePicture::new(&composite, &device, &targets).wait()?;
+    let mut picker = Picker::new(&device, 3).wait()?;
 
     // For every picture: the host's camera, the spheres, and the host's render pass.
     let camera = HostCamera::new(to_view, projection, DepthOrder::NearIsOne)?;

@@ -15,7 +15,7 @@ use pinhole::camera::PinholeCamera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
     DataTargets, LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions,
-    SceneBuffers, Targets, adapter, wgpu,
+    SceneBuffers, Targets, Wait, adapter, wgpu,
 };
 use pinhole::load::pdb;
 use pinhole::render::{Integrator, Occlusion, Studio};
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = pdb::read(&std::fs::read(&file)?, 0)?.scene(LinearRgb::WHITE)?;
 
     // The program's device and textures.
-    let adapter = adapter::choose(None)?;
+    let adapter = adapter::choose(None).wait()?;
     let descriptor = wgpu::DeviceDescriptor::default();
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
     let textures = [
@@ -52,8 +52,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The renderer, the scene and the two pictures of it.
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let lit = LitRenderer::new(Renderer::new(&device, &options)?);
-    let buffers = SceneBuffers::for_studio(lit.renderer(), &device, &queue, &scene)?;
+    let lit = LitRenderer::new(Renderer::new(&device, &options).wait()?);
+    let buffers = SceneBuffers::for_studio(lit.renderer(), &device, &queue, &scene).wait()?;
     let settings = settings();
     let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
     let around = |degrees: f64| {
@@ -62,15 +62,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         PinholeCamera::framing(scene.subject(), pose, 0.6, film.aspect(), 0.07)
     };
     let view = View::new(&camera, film);
-    let mut live = LivePicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets)?;
-    let mut still = LitPicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets)?;
+    let mut live =
+        LivePicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
+    let mut still =
+        LitPicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
 
     let mut times = Vec::new();
     for frame in 0..FRAMES {
         let camera = around(STEP * f64::from(frame))?;
         let start = Instant::now();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        live.set(&lit, &device, &queue, &buffers, &View::new(&camera, film), &settings)?;
+        live.set(&lit, &device, &queue, &buffers, &View::new(&camera, film), &settings).wait()?;
         live.record(&lit, &queue, &mut encoder, &buffers)?;
         queue.submit([encoder.finish()]);
         // A program with a window would go on while the device works.
@@ -84,7 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let camera = around(STEP * f64::from(FRAMES - 1))?;
     let start = Instant::now();
-    still.set(&lit, &device, &queue, &buffers, &View::new(&camera, film), &settings)?;
+    still.set(&lit, &device, &queue, &buffers, &View::new(&camera, film), &settings).wait()?;
     loop {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let progress = still.record(&lit, &queue, &mut encoder, &buffers, 4_000_000)?;

@@ -6,8 +6,6 @@ pub use crate::accel::wide_tree::{WideNode, WideTree};
 pub use crate::cpu::light::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-pub use crate::gpu::edited_composite;
 pub use crate::verify::NO_HIT;
 pub use crate::verify::lit::recording::{
     PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,

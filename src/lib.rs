@@ -20,16 +20,16 @@
 //! ```no_run
 //! # #[cfg(all(feature = "gpu", feature = "png"))] {
 //! use pinhole::camera::PinholeCamera;
-//! use pinhole::gpu::{Headless, HeadlessOptions};
+//! use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 //! use pinhole::{Encoding, Film, LayerSet, LinearRgb, RenderSettings, View, load, write};
 //!
 //! let loaded = load::open("4hhb.pdb", &load::Options::default())?;
 //! let scene = loaded.scene(LinearRgb::WHITE)?; // white where the file gives no colours
 //! let film = Film::new(800, 600)?;
 //! let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
-//! let headless = Headless::open(&HeadlessOptions::default())?;
+//! let headless = Headless::open(&HeadlessOptions::default()).wait()?;
 //! let view = View::new(&camera, film);
-//! let image = headless.render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
+//! let image = headless.render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR).wait()?;
 //! std::fs::write("4hhb.png", write::png::encode(&image, &Encoding::default())?)?;
 //! # }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -83,11 +83,11 @@
 //! #     encoder: &mut pinhole::gpu::wgpu::CommandEncoder, scene: &pinhole::Scene, view: &pinhole::View<'_>,
 //! # ) -> Result<(), Box<dyn std::error::Error>> {
 //! use pinhole::RenderSettings;
-//! use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets};
+//! use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, Wait};
 //!
-//! let renderer = Renderer::new(device, &RendererOptions::default())?; // once for each device
-//! let buffers = SceneBuffers::new(&renderer, device, queue, scene)?; // once for each scene
-//! let mut frame = Frame::new(&renderer, device, &Targets { color: target, data: None })?;
+//! let renderer = Renderer::new(device, &RendererOptions::default()).wait()?; // once for each device
+//! let buffers = SceneBuffers::new(&renderer, device, queue, scene).wait()?; // once for each scene
+//! let mut frame = Frame::new(&renderer, device, &Targets { color: target, data: None }).wait()?;
 //! frame.set_view(queue, &buffers, view, &RenderSettings::default())?; // when the camera moves
 //! renderer.record(encoder, &buffers, &frame)?; // in every frame
 //! # Ok(())
@@ -99,10 +99,10 @@
 //! # #[cfg(feature = "gpu")]
 //! # fn verify(scene: &pinhole::Scene, view: &pinhole::View<'_>) -> Result<(), Box<dyn std::error::Error>> {
 //! use pinhole::RenderSettings;
-//! use pinhole::gpu::{Headless, HeadlessOptions};
+//! use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 //!
-//! let headless = Headless::open(&HeadlessOptions::default())?;
-//! let certificate = headless.verify(scene, view, &RenderSettings::default())?;
+//! let headless = Headless::open(&HeadlessOptions::default()).wait()?;
+//! let certificate = headless.verify(scene, view, &RenderSettings::default()).wait()?;
 //! assert!(certificate.is_legal(), "{certificate}");
 //! # Ok(())
 //! # }

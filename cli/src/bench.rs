@@ -22,7 +22,7 @@ use pinhole::camera::film::Film;
 use pinhole::generate::{BYTES_PER_SPHERE, Standard};
 use pinhole::gpu::{
     GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
-    UploadStep,
+    UploadStep, Wait,
 };
 use pinhole::image::LayerSet;
 use pinhole::image::color::LinearRgb;
@@ -127,10 +127,12 @@ fn measure(
     let mut times =
         UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
     let uploaded = interrupt::on_device(|| {
-        headless.upload_planned(spheres, &plan.structures(), &mut |progress| {
-            times.begin(Some(progress.step));
-            watch_upload(plan.accel.structure.name(), progress)
-        })
+        headless
+            .upload_planned(spheres, &plan.structures(), &mut |progress| {
+                times.begin(Some(progress.step));
+                watch_upload(plan.accel.structure.name(), progress)
+            })
+            .wait()
     })?;
     times.begin(None);
     let buffers = uploaded.map_err(failed)?;
@@ -140,7 +142,7 @@ fn measure(
     let started = Instant::now();
     let first = interrupt::on_device(|| {
         let watch = &mut |_: &_| interrupt::decide();
-        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch)
+        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch).wait()
     })?;
     first.map(drop).map_err(failed)?;
     let first_render = started.elapsed();
@@ -210,7 +212,7 @@ fn repeat(
     (0..reps)
         .map(|rep| {
             progress::stage(format!("{name}: tracing, {} of {reps}", rep + 1));
-            let time = interrupt::on_device(|| headless.measure(buffers, view))?;
+            let time = interrupt::on_device(|| headless.measure(buffers, view).wait())?;
             time.map_err(|error| explained(headless, &error))
         })
         .collect()

@@ -15,7 +15,7 @@ pub(super) use crate::with_scene::{explained, explained_alone};
 use crate::{interrupt, profile};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, Wait};
 use pinhole::verify::run_file::Provenance;
 
 /// What renders, as the flags ask for it.
@@ -177,7 +177,7 @@ impl WantedAdapter {
             ..HeadlessOptions::default()
         };
         let phase = profile::phase("open device");
-        let opened = interrupt::on_device(|| Headless::open(&options))?;
+        let opened = interrupt::on_device(|| Headless::open(&options).wait())?;
         drop(phase);
         match opened {
             Ok(headless) => Ok(Ok(headless)),

@@ -143,9 +143,9 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[cfg(feature = "gpu")]
 fn info() -> Info {
-    use pinhole::gpu::{GpuError, adapter};
+    use pinhole::gpu::{GpuError, Wait, adapter};
 
-    let adapters = adapter::adapters();
+    let adapters = adapter::adapters().wait();
     // This is the choice that `render` makes, also if WGPU_ADAPTER_NAME asks for another adapter.
     let choice = adapter::index_of_choice(&adapters, None);
     let is_chosen = |index| choice == Ok(index);

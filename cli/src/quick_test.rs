@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::with_scene::explained_alone;
-use pinhole::gpu::{GpuError, Headless, SelfTestExtent, SelfTestReport};
+use pinhole::gpu::{GpuError, Headless, SelfTestExtent, SelfTestReport, Wait};
 
 /// Returns a message about the first property that failed.
 pub(super) fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
@@ -15,7 +15,7 @@ pub(super) fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> 
 /// # Errors
 /// If the device was lost or does not answer, so that it cannot render either.
 pub(super) fn quick_warning(headless: &Headless) -> Result<Option<String>, Failure> {
-    match headless.self_test(SelfTestExtent::Quick) {
+    match headless.self_test(SelfTestExtent::Quick).wait() {
         Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => {
             Err(explained_alone(headless, &error))
         }

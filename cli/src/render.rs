@@ -31,7 +31,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
+use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch, Wait};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 #[cfg(feature = "gpu")]
@@ -130,7 +130,7 @@ pub(super) fn finish_views(
     match opened {
         #[cfg(feature = "gpu")]
         Opened::Device { headless, .. } => images.try_each(|image| {
-            let finished = headless.finish(image.clone(), settings, layers);
+            let finished = headless.finish(image.clone(), settings, layers).wait();
             finished.map_err(|error| explained(headless, &error))
         }),
         _ => Ok(images.map(|image| cpu::finish(image, settings, layers))),
@@ -298,7 +298,7 @@ fn on_gpu(
                         watching.decide(progress)
                     });
                 let picture =
-                    headless.render_planned(scene, plan, view, settings, layers, watches)?;
+                    headless.render_planned(scene, plan, view, settings, layers, watches).wait()?;
                 return Ok(Views::One((picture, watching)));
             }
             let buffers = upload(headless, scene, plan)?;
@@ -306,7 +306,8 @@ fn on_gpu(
             views.try_each(|view| {
                 let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
+                let picture =
+                    headless.render_uploaded(&buffers, view, settings, layers, watch).wait();
                 too_short = watching.too_short();
                 Ok((picture?, watching))
             })

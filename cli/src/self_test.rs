@@ -13,7 +13,8 @@ use crate::output::{NewFolder, name_all, unnamed};
 use crate::progress::{self, answer};
 use crate::quick_test::failure;
 use pinhole::gpu::{
-    Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty, composed_kernels,
+    Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty, Wait,
+    composed_kernels,
 };
 
 /// The results of the self-test of an adapter.
@@ -72,7 +73,7 @@ pub(crate) fn check(headless: &Headless) -> Result<(), Failure> {
 
 fn test(headless: &Headless) -> Result<SelfTestReport, Failure> {
     progress::stage("testing the adapter");
-    let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?;
+    let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full).wait())?;
     tested.map_err(|error| explained_alone(headless, &error))
 }
 

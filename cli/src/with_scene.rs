@@ -6,7 +6,7 @@ use crate::{interrupt, memory, profile};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::gpu::{
     Decision, GpuError, Headless, RenderPlan, Retry, SceneBuffers, UploadProgress, UploadStep,
-    with_retries,
+    Wait, with_retries,
 };
 use pinhole::scene::Scene;
 
@@ -31,12 +31,13 @@ pub(crate) fn with_structures<T>(
             failed.name()
         ));
     };
-    with_retries(choice, plan, retrying, |plan| {
+    with_retries(choice, plan, retrying, async |plan: &RenderPlan| {
         if let Err(error) = plan.check(&headless.device().limits(), memory::available()) {
             return Ok(Err(error));
         }
         Ok(work(plan)?.map(|done| (done, plan.accel.structure)))
     })
+    .wait()
 }
 
 /// Builds the planned structures of a scene brick by brick, and copies each brick to the device.
@@ -46,7 +47,9 @@ pub(crate) fn upload(
     plan: &RenderPlan,
 ) -> Result<SceneBuffers, GpuError> {
     let name = plan.accel.structure.name();
-    headless.upload_planned(scene, &plan.structures(), &mut |progress| watch_upload(name, progress))
+    headless
+        .upload_planned(scene, &plan.structures(), &mut |progress| watch_upload(name, progress))
+        .wait()
 }
 
 /// Shows a step of the upload of a structure. While a brick is built, a signal ends the program at once.

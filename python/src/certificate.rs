@@ -9,7 +9,7 @@ use crate::look::Look;
 use crate::worker::Stop;
 use pinhole::Scene;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
+use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, Wait, with_retries};
 use pinhole::verify::{Certificate, Checker, Verdict};
 
 /// The result of the checker.
@@ -75,12 +75,13 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judge
     let record = |plan: &RenderPlan| {
         plan.check(&headless.device().limits(), device::available())?;
         let watch = &mut |_: &UploadProgress| stop.decision();
-        let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
-        headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision())
+        let buffers = headless.upload_planned(scene, &plan.structures(), watch).wait()?;
+        headless
+            .record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision())
+            .wait()
     };
-    let tried =
-        with_retries(AccelChoice::Auto, plan, |_| {}, |plan| Ok::<_, GpuError>(record(plan)));
-    let recording = tried.and_then(|done| done)?;
+    let record = async |plan: &RenderPlan| Ok::<_, GpuError>(record(plan));
+    let recording = with_retries(AccelChoice::Auto, plan, |_| {}, record).wait()??;
     let checker = Checker::new(scene).map_err(Fault::input)?;
     let certificate = checker.certify(&recording);
     Ok(Judged { certificate, adapter: headless.adapter_info().name.clone() })

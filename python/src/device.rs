@@ -9,7 +9,7 @@ use crate::look::Look;
 use crate::worker;
 use pinhole::LayerSet;
 use pinhole::cpu::{SampledPicture, SearchPlan};
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, SelfTestExtent, adapter};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, SelfTestExtent, Wait, adapter};
 
 /// What renders.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -84,14 +84,14 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
 
 fn open() -> Outcome<Option<Opened>> {
     let adapter = WANTED.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let headless = match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() })
-    {
-        Ok(headless) => headless,
-        Err(GpuError::NoAdapter) => return Ok(None),
-        Err(error) => return Err(error.into()),
-    };
+    let headless =
+        match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() }).wait() {
+            Ok(headless) => headless,
+            Err(GpuError::NoAdapter) => return Ok(None),
+            Err(error) => return Err(error.into()),
+        };
     let name = headless.adapter_info().name.clone();
-    let failed = match headless.self_test(SelfTestExtent::Quick) {
+    let failed = match headless.self_test(SelfTestExtent::Quick).wait() {
         Ok(report) => report.first_failure().map(|first| format!("fails the self-test ({first})")),
         Err(error) => Some(format!("cannot run the self-test ({error})")),
     };
@@ -103,7 +103,7 @@ fn open() -> Outcome<Option<Opened>> {
 /// The names of all adapters of this machine, the best first.
 #[pyfunction]
 pub(crate) fn adapters(py: Python<'_>) -> Vec<String> {
-    py.detach(|| adapter::adapters().iter().map(|found| found.get_info().name).collect())
+    py.detach(|| adapter::adapters().wait().iter().map(|found| found.get_info().name).collect())
 }
 
 /// Renders from now on with the adapter whose name contains a text, or with the best one if it is None.

@@ -10,7 +10,7 @@ use crate::look::Look;
 use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
-use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
+use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries};
 use pinhole::render::{Integrator, Progress};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
@@ -123,7 +123,7 @@ impl OnDevice {
                     stop.decision()
                 };
                 let picture =
-                    headless.render_uploaded(buffers, view, &look.settings, layers, watch);
+                    headless.render_uploaded(buffers, view, &look.settings, layers, watch).wait();
                 Ok(picture?.image)
             });
             pictures.collect::<Result<Vec<Image>, GpuError>>()
@@ -140,17 +140,14 @@ impl OnDevice {
                 let copy_and_work = |plan: &RenderPlan| {
                     plan.check(&headless.device().limits(), device::available())?;
                     let watch = &mut |_: &UploadProgress| stop.decision();
-                    let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
+                    let buffers =
+                        headless.upload_planned(scene, &plan.structures(), watch).wait()?;
                     let images = work(&buffers)?;
                     *copied.lock().unwrap_or_else(PoisonError::into_inner) = Some(buffers);
                     Ok(images)
                 };
-                let tried = with_retries(
-                    AccelChoice::Auto,
-                    plan,
-                    |_| {},
-                    |plan| Ok::<_, GpuError>(copy_and_work(plan)),
-                );
+                let attempt = async |plan: &RenderPlan| Ok::<_, GpuError>(copy_and_work(plan));
+                let tried = with_retries(AccelChoice::Auto, plan, |_| {}, attempt).wait();
                 let done = tried.and_then(|done| done);
                 let copied = copied.into_inner().unwrap_or_else(PoisonError::into_inner);
                 kept = copied.map(|buffers| Uploaded {
@@ -177,7 +174,7 @@ impl OnDevice {
             // Of two updates at the same time, the later may come first.
             let is_next = uploaded.version + 1 == version;
             let Uploaded { opened, buffers, .. } = uploaded;
-            if is_next && opened.headless.update(buffers, scene, update).is_ok() {
+            if is_next && opened.headless.update(buffers, scene, update).wait().is_ok() {
                 uploaded.version = version;
             } else {
                 *slot = None;

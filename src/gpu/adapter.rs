@@ -3,8 +3,6 @@
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPreference};
 
 use crate::gpu::error::GpuError;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::headless::waiting::block_on;
 
 /// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than
 /// once.
@@ -24,7 +22,7 @@ const PLATFORM_BACKEND: Backends = if cfg!(target_arch = "wasm32") {
 /// Only the backend of the platform is used: Metal, DX12, or Vulkan on all other systems. The environment variable
 /// `WGPU_BACKEND` names other backends, such as `vulkan` on Windows. Validation layers are loaded only if
 /// `WGPU_VALIDATION=1`. A browser offers one adapter or none.
-pub async fn adapters_async() -> Vec<Adapter> {
+pub async fn adapters() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
         // The default would load validation layers in debug builds: they cost start-up time, and would have to be
         // installed on every machine.
@@ -59,8 +57,8 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
-pub async fn candidates_async(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
-    let mut adapters = adapters_async().await;
+pub async fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
+    let mut adapters = adapters().await;
     let index = index_of_choice(&adapters, name)?;
     if name.is_some() || name_in_environment().is_some() {
         return Ok(vec![adapters.swap_remove(index)]);
@@ -68,28 +66,12 @@ pub async fn candidates_async(name: Option<&str>) -> Result<Vec<Adapter>, GpuErr
     Ok(adapters)
 }
 
-/// Returns the first of the [`candidates_async`].
+/// Returns the first of the [`candidates`].
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
-pub async fn choose_async(name: Option<&str>) -> Result<Adapter, GpuError> {
-    candidates_async(name).await?.into_iter().next().ok_or(GpuError::NoAdapter)
-}
-
-/// Blocks the thread until [`adapters_async`] is done.
-#[cfg(not(target_arch = "wasm32"))]
-#[must_use]
-pub fn adapters() -> Vec<Adapter> {
-    block_on(adapters_async())
-}
-
-/// Blocks the thread until [`choose_async`] is done.
-///
-/// # Errors
-/// As for [`choose_async`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
-    block_on(choose_async(name))
+pub async fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
+    candidates(name).await?.into_iter().next().ok_or(GpuError::NoAdapter)
 }
 
 /// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment

@@ -13,8 +13,6 @@ pub use wgpu;
 pub const WGPU_VERSION: &str = "30.0";
 
 pub mod adapter;
-#[cfg(not(target_arch = "wasm32"))]
-mod blocking;
 mod checks;
 mod device_shape;
 pub(crate) mod edit;
@@ -30,11 +28,6 @@ mod scene;
 mod self_test;
 mod shader;
 
-#[cfg(not(target_arch = "wasm32"))]
-#[doc(hidden)]
-pub use blocking::edited_composite;
-#[cfg(not(target_arch = "wasm32"))]
-pub use blocking::with_retries;
 pub use device_shape::DeviceLimits;
 pub use error::GpuError;
 pub use headless::Headless;
@@ -45,7 +38,7 @@ pub use headless::progress::{
     Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
 };
 #[cfg(not(target_arch = "wasm32"))]
-pub use headless::waiting::catches_panics;
+pub use headless::waiting::{Wait, catches_panics};
 pub use host::composite::{
     Composite, CompositeDepth, CompositeOptions, CompositePicture, Coverage, TargetEncoding,
 };
@@ -63,6 +56,6 @@ pub use passes::targets::{DataTargets, TargetTextures, Targets};
 pub use profile::{Profile, ProfilePhase, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
-pub use scene::structures::{Retry, Structures, with_retries_async};
+pub use scene::structures::{Retry, Structures, with_retries};
 pub use self_test::{PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
 pub use shader::formats::ColorTarget;

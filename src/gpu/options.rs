@@ -10,7 +10,7 @@ use crate::gpu::profile::Profile;
 /// Options for opening a headless device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
-    /// Selects the adapter whose name contains this text, as [`candidates_async`](crate::gpu::adapter::candidates_async) does.
+    /// Selects the adapter whose name contains this text, as [`candidates`](crate::gpu::adapter::candidates) does.
     /// `None` selects the best adapter.
     pub adapter: Option<String>,
     /// The limits that the device is opened with.

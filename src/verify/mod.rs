@@ -26,10 +26,10 @@
 //! and that products of sums are not expanded.
 //!
 //! ```no_run
-//! # use pinhole::{RenderSettings, Scene, View, gpu::{Headless, HeadlessOptions}};
+//! # use pinhole::{RenderSettings, Scene, View, gpu::{Headless, HeadlessOptions, Wait}};
 //! # fn f(scene: &Scene, view: &View<'_>) -> Result<(), Box<dyn std::error::Error>> {
-//! let headless = Headless::open(&HeadlessOptions::default())?;
-//! let certificate = headless.verify(scene, view, &RenderSettings::default())?;
+//! let headless = Headless::open(&HeadlessOptions::default()).wait()?;
+//! let certificate = headless.verify(scene, view, &RenderSettings::default()).wait()?;
 //! assert!(certificate.is_legal(), "{certificate}");
 //! # Ok(())
 //! # }

@@ -7,7 +7,7 @@ use pinhole::camera::{
 };
 use pinhole::gpu::{
     ColorTarget, Decision, GpuError, Headless, PictureRequest, RenderPlan, RendererOptions,
-    SceneBuffers, StructurePlans, UploadProgress, UploadStep, wgpu,
+    SceneBuffers, StructurePlans, UploadProgress, UploadStep, Wait, wgpu,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene};
 
@@ -82,9 +82,10 @@ fn every_camera(headless: &'static Headless) {
         assert!(one == several, "{kind:?}");
         seen += usize::from(one.id().unwrap().iter().any(|id| *id != u32::MAX));
         // The recording has all rays, and they are legal.
-        let buffers = headless.upload(&scene, &accels[1].clone().into()).unwrap();
+        let buffers = headless.upload(&scene, &accels[1].clone().into()).wait().unwrap();
         let (seen, settings) = (view.seen(), &view.settings);
-        let recording = headless.record_and_render(&buffers, &seen, settings, &mut go_on).unwrap();
+        let recording =
+            headless.record_and_render(&buffers, &seen, settings, &mut go_on).wait().unwrap();
         let checker = pinhole::verify::Checker::new(&scene).unwrap();
         assert!(checker.certify(&recording).is_legal(), "{kind:?}");
     }
@@ -116,7 +117,7 @@ fn bands(_: &'static Headless) {
     let mut drawing = Drawing::new(&host, &options, [150, 100]);
     let uploaded = accels.each_ref().map(|accel| {
         let Host { device, queue } = &host;
-        SceneBuffers::with_accel(&drawing.renderer, device, queue, &scene, accel).unwrap()
+        SceneBuffers::with_accel(&drawing.renderer, device, queue, &scene, accel).wait().unwrap()
     });
     for view in views(&scene, [150, 100]) {
         let pictures = uploaded.each_ref().map(|scene| {
@@ -155,7 +156,7 @@ fn dropped(headless: &Headless, view: &View, plan: &RenderPlan) -> (Image, usize
     };
     let (scene, settings, seen) = (&view.scene, &view.settings, view.seen());
     let picture =
-        headless.render_planned(scene, plan, &seen, settings, LayerSet::ALL, (count, watch));
+        headless.render_planned(scene, plan, &seen, settings, LayerSet::ALL, (count, watch)).wait();
     let picture = picture.unwrap();
     assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
     (picture.image, built)
@@ -227,7 +228,7 @@ fn stopped(headless: &'static Headless) {
                 Decision::GoOn
             }
         };
-        let uploaded = headless.upload_planned(&scene, &plans, watch);
+        let uploaded = headless.upload_planned(&scene, &plans, watch).wait();
         assert_eq!(uploaded.err(), Some(GpuError::Stopped));
         assert_eq!(told.len(), if step == UploadStep::Building { 5 } else { 6 });
         assert!(told.iter().all(|progress| progress.bricks == plans.accel.brick_count));

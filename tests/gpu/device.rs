@@ -11,7 +11,7 @@ use pinhole::generate::Kind;
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{
     Decision, GpuError, Headless, HeadlessOptions, Picture, Profile, ProfileTrack, Progress,
-    SelfTestExtent, TestedProperty, wgpu,
+    SelfTestExtent, TestedProperty, Wait, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
@@ -45,6 +45,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn open(adapter: &str) -> Result<Headless, GpuError> {
     Headless::open(&HeadlessOptions { adapter: Some(adapter.to_owned()), ..Default::default() })
+        .wait()
 }
 
 fn part_of_a_name(headless: &'static Headless) {
@@ -65,16 +66,16 @@ fn unknown_name(headless: &'static Headless) {
 }
 
 fn destroyed(_: &'static Headless) {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     headless.device().destroy();
     let view = View::three_spheres();
-    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR);
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait();
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
 /// An error that a caller causes on the device does not affect the next render.
 fn callers_fault(_: &'static Headless) {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     // A buffer without any usage is invalid.
     let _ = headless.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("the caller's"),
@@ -92,12 +93,12 @@ fn render_watched(
     mut watch: impl FnMut(&Progress) -> Decision,
 ) -> Result<Picture, GpuError> {
     let view = View { film: Film::new(2400, 1800).unwrap(), ..View::three_spheres() };
-    let scene = headless.upload(&view.scene, &view.planned(headless, AccelChoice::Auto))?;
+    let scene = headless.upload(&view.scene, &view.planned(headless, AccelChoice::Auto)).wait()?;
     view.watched(headless, &scene, LayerSet::COLOR, &mut watch)
 }
 
 fn lost_midway(_: &'static Headless) {
-    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
     let mut told = 0;
     let result = render_watched(&headless, |_| {
         told += 1;
@@ -114,7 +115,7 @@ fn lost_midway(_: &'static Headless) {
 fn too_slow(_: &'static Headless) {
     let timeout = Duration::ZERO;
     let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
-    let headless = Headless::open(&options).unwrap();
+    let headless = Headless::open(&options).wait().unwrap();
     // The work of an upload may finish at once, but that of a picture does not.
     let result = render_watched(&headless, |_: &_| Decision::GoOn);
     assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
@@ -137,14 +138,14 @@ fn stopped(headless: &'static Headless) {
 fn no_memory(headless: &'static Headless) {
     let film = Film::new(Film::MAX_SIDE, Film::MAX_SIDE).unwrap();
     let view = View { film, ..View::three_spheres() };
-    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR);
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait();
     assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
 }
 
 /// A device that is treated as one of this type.
 fn treated_as(device_type: DeviceType) -> Headless {
     let options = HeadlessOptions { device_type: Some(device_type), ..HeadlessOptions::default() };
-    let headless = Headless::open(&options).unwrap();
+    let headless = Headless::open(&options).wait().unwrap();
     assert_eq!(headless.adapter_info().device_type, device_type);
     headless
 }
@@ -154,7 +155,7 @@ fn opened_otherwise(headless: &'static Headless) {
     let types = [DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::DiscreteGpu];
     let mut others = Vec::from(types.map(|kind| (format!("{kind:?}"), treated_as(kind))));
     let direct = HeadlessOptions { indirect: false, ..HeadlessOptions::default() };
-    others.push(("no indirect dispatch".to_owned(), Headless::open(&direct).unwrap()));
+    others.push(("no indirect dispatch".to_owned(), Headless::open(&direct).wait().unwrap()));
     others.push(("a profile".to_owned(), profiled().0));
     let lit = lit_scenes::all().map(|(name, mut view)| {
         view.settings.sampling.samples = 6;
@@ -197,7 +198,7 @@ fn large_and_lit(_: &'static Headless) {
 const QUICK: &[&str] = &["fence", "add_multiply", "divide", "sqrt", "inverse_sqrt", "dot"];
 
 fn full(headless: &'static Headless) {
-    let report = headless.self_test(SelfTestExtent::Full).unwrap();
+    let report = headless.self_test(SelfTestExtent::Full).wait().unwrap();
     let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
     let rest = ["subnormals", "comparison_and_conversion", "loops", "fence_in_trace"];
     assert_eq!(names, [QUICK, &rest].concat());
@@ -205,14 +206,14 @@ fn full(headless: &'static Headless) {
 }
 
 fn quick(headless: &'static Headless) {
-    let report = headless.self_test(SelfTestExtent::Quick).unwrap();
+    let report = headless.self_test(SelfTestExtent::Quick).wait().unwrap();
     let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
     assert_eq!(names, QUICK);
     assert!(report.passed(), "{:?}", report.first_failure());
 }
 
 fn fences_in_trace(headless: &Headless) -> TestedProperty {
-    let report = headless.self_test(SelfTestExtent::Full).unwrap();
+    let report = headless.self_test(SelfTestExtent::Full).wait().unwrap();
     report.properties().iter().find(|property| property.name == "fence_in_trace").unwrap().clone()
 }
 
@@ -228,7 +229,7 @@ fn seen_through(headless: &'static Headless) {
         replace: "0u".to_owned(),
     };
     let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-    let known = fences_in_trace(&Headless::open(&options).unwrap());
+    let known = fences_in_trace(&Headless::open(&options).wait().unwrap());
     println!("{known}");
     // Some drivers rewrite nothing.
     assert_eq!(known.passed(), *rewritten < 1.0, "{known}");
@@ -246,7 +247,7 @@ fn bounds(headless: &'static Headless) {
             let settings = RenderSettings::default();
             let plan = headless.plan(&scene, &view, &settings, LayerSet::DATA, choice, 0);
             let structures = plan.build(&scene);
-            let buffers = headless.upload(&scene, &structures).unwrap();
+            let buffers = headless.upload(&scene, &structures).wait().unwrap();
             // The plan does not count the record of a brick, and the single appearance word.
             let small = 200 * structures.accel.bricks().len() as u64;
             let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
@@ -260,7 +261,7 @@ fn bounds(headless: &'static Headless) {
 fn profiled() -> (Headless, Profile) {
     let profile = Profile::default();
     let options = HeadlessOptions { profile: Some(profile.clone()), ..HeadlessOptions::default() };
-    (Headless::open(&options).unwrap(), profile)
+    (Headless::open(&options).wait().unwrap(), profile)
 }
 
 /// How often each pass ran, or each phase, by its name.
@@ -306,10 +307,10 @@ fn recolored(_: &'static Headless) {
     let mut scene = scene_of_rgba();
     let plan = device.plan_accel(&scene, pinhole::accel::AccelChoice::Auto);
     let structures = plan.build(scene.spheres()).into();
-    let mut buffers = device.upload(&scene, &structures).unwrap();
+    let mut buffers = device.upload(&scene, &structures).wait().unwrap();
     let colors = Some(NewColors::Rgba8(&[[9, 99, 199, 255]]));
     let update = SceneUpdate { colors, ..SceneUpdate::default() };
     scene.apply(&update).unwrap();
-    device.update(&mut buffers, &scene, &update).unwrap();
+    device.update(&mut buffers, &scene, &update).wait().unwrap();
     assert_eq!(calls(&profile, ProfileTrack::Device).get("recolor"), Some(&1));
 }

@@ -10,7 +10,7 @@ use pinhole::accel::{AccelChoice, BrickKind, Primitive, Structure};
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::gpu::{
-    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets,
+    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets, Wait,
     adapter, wgpu,
 };
 use pinhole::image::NO_ID;
@@ -45,7 +45,7 @@ impl Host {
     }
 
     pub(crate) fn with_limits(required_limits: wgpu::Limits) -> Self {
-        let adapter = adapter::choose(None).unwrap();
+        let adapter = adapter::choose(None).wait().unwrap();
         let descriptor =
             wgpu::DeviceDescriptor { required_limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
@@ -93,7 +93,8 @@ fn foreign_frame(_: &'static Headless) {
     let size = size_of_film(&view.film);
     let Drawing { renderer, layers, mut frame } =
         Drawing::new(&host, &RendererOptions::default(), size);
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let scene =
+        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
 
     // The application records its own commands for the same texture in the same encoder: a clear before, a copy after.
@@ -124,14 +125,16 @@ fn several_bands(_: &'static Headless) {
 
 fn several_views(_: &'static Headless) {
     let host = Host::new();
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).wait().unwrap();
     let views = [View::three_spheres(), View::three_spheres_orthographic()];
     // Two frames of the same scene are recorded in one submission.
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).unwrap();
+    let scene =
+        SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).wait().unwrap();
     let mut encoder = host.encoder();
     let textures = views.each_ref().map(|view| {
         let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
-        let frame = layers.with(false, |targets| Frame::new(&renderer, &host.device, targets));
+        let frame =
+            layers.with(false, |targets| Frame::new(&renderer, &host.device, targets).wait());
         let mut frame = frame.unwrap();
         frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
         renderer.record(&mut encoder, &scene, &frame).unwrap();
@@ -166,20 +169,20 @@ fn given_up(_: &'static Headless) {
 
 fn unfit_targets(_: &'static Headless) {
     let host = Host::new();
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).wait().unwrap();
     let refusal = |texture: &wgpu::Texture| {
         let targets = Targets { color: &view_of(texture), data: None };
-        Frame::new(&renderer, &host.device, &targets).map(|_| ()).unwrap_err().to_string()
+        Frame::new(&renderer, &host.device, &targets).wait().map(|_| ()).unwrap_err().to_string()
     };
     let wrong_format = host.texture([8, 8], wgpu::TextureFormat::Rgba16Float);
     let message = refusal(&wrong_format);
     assert!(message.contains("Rgba16Float") && message.contains("Rgba8Unorm"), "{message}");
 
     let with_data = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let with_data = Renderer::new(&host.device, &with_data).unwrap();
+    let with_data = Renderer::new(&host.device, &with_data).wait().unwrap();
     let good = host.texture([8, 8], ColorTarget::Srgb8.texture_format());
     let targets = Targets { color: &view_of(&good), data: None };
-    let error = Frame::new(&with_data, &host.device, &targets).map(|_| ()).unwrap_err();
+    let error = Frame::new(&with_data, &host.device, &targets).wait().map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Target { layer: "data", .. }), "{error}");
 
     // No error reached the error handler of the application's device, which would have panicked.
@@ -219,7 +222,7 @@ fn hosts_handler(_: &'static Headless) {
     host.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
         handler.lock().unwrap().push(error.to_string());
     }));
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).wait().unwrap();
     let target = host.texture([8, 8], ColorTarget::Srgb8.texture_format());
     // Only wgpu can detect that this view has layers.
     let layered = target.create_view(&wgpu::TextureViewDescriptor {
@@ -227,7 +230,7 @@ fn hosts_handler(_: &'static Headless) {
         ..wgpu::TextureViewDescriptor::default()
     });
     let targets = Targets { color: &layered, data: None };
-    let error = Frame::new(&renderer, &host.device, &targets).map(|_| ()).unwrap_err();
+    let error = Frame::new(&renderer, &host.device, &targets).wait().map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Device { .. }), "{error}");
     assert_eq!(*reached.lock().unwrap(), Vec::<String>::new());
 }
@@ -239,7 +242,8 @@ fn lit_frame(_: &'static Headless) {
     let size = size_of_film(&view.film);
     let Drawing { renderer, mut frame, .. } =
         Drawing::new(&host, &RendererOptions::default(), size);
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let scene =
+        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
         let refused = frame.set_view(&host.queue, &scene, &view.seen(), &settings);
         let integrator = settings.integrator.name();
@@ -255,10 +259,12 @@ fn not_ready(_: &'static Headless) {
         RendererOptions { cameras: vec![CameraKind::Orthographic], ..RendererOptions::default() };
     let Drawing { renderer, mut frame, .. } = Drawing::new(&host, &options, [8, 8]);
     let view = View::three_spheres();
-    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let scene =
+        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     let mut encoder = host.encoder();
     assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
-    let again = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let again =
+        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
 
     let mut set_view = |film: &Film| {
         let view_of_film = pinhole::View::new(view.camera.as_ref(), *film);
@@ -275,7 +281,7 @@ fn not_ready(_: &'static Headless) {
     );
     assert_eq!(renderer.record(&mut encoder, &again, &frame), Err(GpuError::OtherScene));
     let linear = RendererOptions { color: ColorTarget::Linear16, ..options };
-    let linear = Renderer::new(&host.device, &linear).unwrap();
+    let linear = Renderer::new(&host.device, &linear).wait().unwrap();
     assert_eq!(linear.record(&mut encoder, &scene, &frame), Err(GpuError::OtherRenderer));
     // The encoder can still be used.
     host.queue.submit([encoder.finish()]);
@@ -315,10 +321,10 @@ fn same_pictures(headless: &'static Headless) {
     let view = View::three_spheres();
     for settings in all_settings() {
         let expected =
-            headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).unwrap();
+            headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
         let seen = view.seen();
         // How often it returned unfinished depends on how fast the device is.
-        let (_, found) = run(headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL));
+        let (_, found) = run(headless.render(&view.scene, &seen, &settings, LayerSet::ALL));
         assert!(found.unwrap() == expected, "{}", settings.integrator.name());
     }
 }
@@ -327,11 +333,12 @@ fn turns(headless: &'static Headless) {
     let view = View::three_spheres();
     let seen = view.seen();
     let [first, second, _] = all_settings();
-    let expected = [&first, &second]
-        .map(|settings| headless.render(&view.scene, &seen, settings, LayerSet::COLOR).unwrap());
+    let expected = [&first, &second].map(|settings| {
+        headless.render(&view.scene, &seen, settings, LayerSet::COLOR).wait().unwrap()
+    });
     type Render<'a> = Pin<Box<dyn Future<Output = Result<pinhole::Image, GpuError>> + 'a>>;
     let mut renders: [Option<Render<'_>>; 2] = [&first, &second].map(|settings| {
-        let render = headless.render_async(&view.scene, &seen, settings, LayerSet::COLOR);
+        let render = headless.render(&view.scene, &seen, settings, LayerSet::COLOR);
         Some(Box::pin(render) as Render<'_>)
     });
     let mut found = [None, None];
@@ -354,7 +361,7 @@ fn dropped(headless: &'static Headless) {
     let seen = view.seen();
     let [primary, studio, _] = all_settings();
     for settings in [primary, studio] {
-        let render = || headless.render_async(&view.scene, &seen, &settings, LayerSet::ALL);
+        let render = || headless.render(&view.scene, &seen, &settings, LayerSet::ALL);
         let (submissions, expected) = run(render());
         let expected = expected.unwrap();
         for waited in 1..=submissions {
@@ -369,7 +376,7 @@ fn dropped(headless: &'static Headless) {
                 if unfinished == waited { Poll::Ready(()) } else { Poll::Pending }
             }));
             drop(begun);
-            let again = headless.render(&view.scene, &seen, &settings, LayerSet::ALL);
+            let again = headless.render(&view.scene, &seen, &settings, LayerSet::ALL).wait();
             assert!(again.unwrap() == expected, "given up at wait {waited}");
         }
     }
@@ -380,9 +387,9 @@ fn pieces(_: &'static Headless) {
     let view = View::three_spheres();
     let (device, queue) = (&host.device, &host.queue);
     let mut renderer = Renderer::begin(device, &RendererOptions::default());
-    let scene = SceneBuffers::new(&renderer, device, queue, &view.scene).unwrap();
+    let scene = SceneBuffers::new(&renderer, device, queue, &view.scene).wait().unwrap();
     let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
-    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets));
+    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets).wait());
     let mut frame = frame.unwrap();
     frame.set_view(queue, &scene, &view.seen(), &view.settings).unwrap();
     let mut encoder = host.encoder();

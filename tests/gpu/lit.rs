@@ -6,7 +6,7 @@ use std::io::Cursor;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{Decision, GpuError, Headless, Structures};
+use pinhole::gpu::{Decision, GpuError, Headless, LitPart, Structures, Wait};
 use pinhole::image::NO_ID;
 use pinhole::light::{Ground, LightKind};
 use pinhole::render::{Integrator, PrimarySettings, Studio};
@@ -102,7 +102,7 @@ fn chosen(device: &Headless, view: &View) -> Structures {
 
 /// Records some samples: of studios the first, one in between, and the last of a picture of many.
 fn record(device: &Headless, view: &View, structures: &Structures) -> Result<Samples, GpuError> {
-    let buffers = device.upload(&view.scene, structures)?;
+    let buffers = device.upload(&view.scene, structures).wait()?;
     let samples = match view.settings.integrator {
         Integrator::Studio(_) => &[0, 37, 63][..],
         _ => &[0, 1],
@@ -120,7 +120,15 @@ fn record(device: &Headless, view: &View, structures: &Structures) -> Result<Sam
         _ => panic!("paths and studios"),
     };
     let go_on = &mut |_: &_| Decision::GoOn;
-    device.record_lit(&buffers, &view.seen(), &view.settings, samples, (each, go_on))?;
+    device
+        .record_lit(
+            &buffers,
+            &view.seen(),
+            &view.settings,
+            (LitPart::Middle, samples),
+            (each, go_on),
+        )
+        .wait()?;
     Ok(all.unwrap())
 }
 
@@ -256,10 +264,12 @@ fn part_of_a_large_film() -> Result<(), Failed> {
 
 fn stops_when_told(headless: &'static Headless) {
     let view = lit_scenes::view("paths", "matt");
-    let buffers = headless.upload(&view.scene, &chosen(headless, &view)).unwrap();
+    let buffers = headless.upload(&view.scene, &chosen(headless, &view)).wait().unwrap();
     let stop = &mut |_: &_| Decision::Stop;
     let each = &mut |_: LitRecording<'_>| {};
-    let stopped = headless.record_lit(&buffers, &view.seen(), &view.settings, &[0], (each, stop));
+    let stopped = headless
+        .record_lit(&buffers, &view.seen(), &view.settings, (LitPart::Middle, &[0]), (each, stop))
+        .wait();
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }
 

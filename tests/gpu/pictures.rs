@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{self, Decision, GpuError, Headless, Progress, SceneBuffers, Structures};
+use pinhole::gpu::{self, Decision, GpuError, Headless, Progress, SceneBuffers, Structures, Wait};
 use pinhole::image::{Layer, NO_ID};
 use pinhole::render::{Integrator, Outline, Sampling};
 use pinhole::verify::Recording;
@@ -106,6 +106,7 @@ fn on_the_wall(headless: &'static Headless) {
         let settings = RenderSettings::default();
         let image = headless
             .render(&scene, &pinhole::View::new(&camera, film), &settings, LayerSet::ALL)
+            .wait()
             .unwrap();
         for depth in image.depth().unwrap().iter().filter(|depth| depth.is_finite()) {
             assert!(*depth <= 1e-3, "eye {outward}: {depth}");
@@ -130,19 +131,19 @@ pub(crate) fn go_on(_: &Progress) -> Decision {
 
 impl View {
     pub(crate) fn picture(&self, device: &Headless, layers: LayerSet) -> Image {
-        device.render(&self.scene, &self.seen(), &self.settings, layers).unwrap()
+        device.render(&self.scene, &self.seen(), &self.settings, layers).wait().unwrap()
     }
 
     /// All layers of a picture of the scene in a structure.
     pub(crate) fn traced(&self, device: &Headless, accel: &Accel) -> Result<Image, GpuError> {
-        let scene = device.upload(&self.scene, &accel.clone().into())?;
+        let scene = device.upload(&self.scene, &accel.clone().into()).wait()?;
         Ok(self.watched(device, &scene, LayerSet::ALL, &mut go_on)?.image)
     }
 
     /// The scene in a structure, without one for occluders.
     pub(crate) fn uploaded(&self, device: &Headless, choice: AccelChoice) -> SceneBuffers {
         let accel = device.plan_accel(&self.scene, choice).build(self.scene.spheres());
-        device.upload(&self.scene, &accel.into()).unwrap()
+        device.upload(&self.scene, &accel.into()).wait().unwrap()
     }
 
     /// The structures that a device plans, with one for occluders if that is needed.
@@ -158,7 +159,7 @@ impl View {
         layers: LayerSet,
         watch: &mut dyn FnMut(&Progress) -> Decision,
     ) -> Result<gpu::Picture, GpuError> {
-        device.render_uploaded(scene, &self.seen(), &self.settings, layers, watch)
+        device.render_uploaded(scene, &self.seen(), &self.settings, layers, watch).wait()
     }
 
     pub(crate) fn record(
@@ -166,8 +167,8 @@ impl View {
         device: &Headless,
         structures: &Structures,
     ) -> Result<Recording, GpuError> {
-        let scene = device.upload(&self.scene, structures)?;
-        device.record(&scene, &self.seen(), &self.settings, &mut go_on)
+        let scene = device.upload(&self.scene, structures).wait()?;
+        device.record(&scene, &self.seen(), &self.settings, &mut go_on).wait()
     }
 }
 
@@ -223,7 +224,7 @@ fn parts_of_films() -> Vec<Trial> {
 fn check_parts(device: &Headless, view: &View, settings: &RenderSettings) {
     let (scene, view) = (&view.scene, view.seen());
     let wanted = LayerSet::ALL;
-    let whole = device.render(scene, &view, settings, wanted).unwrap();
+    let whole = device.render(scene, &view, settings, wanted).wait().unwrap();
     let (unfinished, layers) = (settings.unfinished(), settings.layers_for(wanted));
     let [width, height] = [whole.width(), whole.height()];
     let mut joined = Image::new(width, height, layers).unwrap();
@@ -232,11 +233,11 @@ fn check_parts(device: &Headless, view: &View, settings: &RenderSettings) {
         for (y, h) in [(0, top), (top, height - top)] {
             let film = view.film.part([x, y], [w, h]).unwrap();
             let part = pinhole::View::new(view.camera, film);
-            let part = device.render(scene, &part, &unfinished, layers).unwrap();
+            let part = device.render(scene, &part, &unfinished, layers).wait().unwrap();
             joined.put(&part, [x, y]).unwrap();
         }
     }
-    let joined = device.finish(joined, settings, wanted).unwrap();
+    let joined = device.finish(joined, settings, wanted).wait().unwrap();
     assert!(joined.to_le_bytes() == whole.to_le_bytes());
 }
 
@@ -255,6 +256,6 @@ fn refused(device: &'static Headless) {
     let film = Film::new(40, 30).unwrap();
     let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect()).unwrap();
     let view = pinhole::View::new(&camera, film.part([8, 0], [16, 16]).unwrap());
-    let refused = device.verify(&scene, &view, &RenderSettings::default());
+    let refused = device.verify(&scene, &view, &RenderSettings::default()).wait();
     assert_eq!(refused.unwrap_err(), GpuError::PartOfFilm);
 }

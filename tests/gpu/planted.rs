@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::gpu::{Headless, HeadlessOptions};
+use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 use pinhole::internals::ShaderEdit;
 
 /// The suites that have faults.
@@ -79,7 +79,8 @@ pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, 
         return Err(format!("{file} has no `{find}`").into());
     }
     let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-    Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() })?)
+    Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() })
+        .wait()?)
 }
 
 fn parse(text: &'static str) -> Result<Vec<Fault>, String> {

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, SceneBuffers};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, SceneBuffers, Wait};
 use pinhole::{LinearRgb, Scene};
 
 use crate::adversary::{certify_lit_on, certify_on, hits, lit_views, not_accused, seen};
@@ -14,7 +14,7 @@ use crate::support::spheres;
 use crate::{headless, scenes};
 
 static DEVICE: LazyLock<Result<Headless, GpuError>> = LazyLock::new(|| {
-    Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() })
+    Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() }).wait()
 });
 
 /// The margins of boxes that must not suffice, as multiples of the one that is used: they cut spheres.
@@ -95,9 +95,9 @@ fn cut_spheres_are_found() -> Result<(), Failed> {
 fn refused() -> Result<(), Failed> {
     let webgpu = HeadlessOptions { limits: LimitChoice::WebGpu, ..HeadlessOptions::default() };
     let scene = Scene::from_f32(spheres::random(300, 6, |_| 0.03), LinearRgb::WHITE)?;
-    for headless in [headless()?, &Headless::open(&webgpu)?] {
+    for headless in [headless()?, &Headless::open(&webgpu).wait()?] {
         let structures = headless.plan_accel(&scene, AccelChoice::RayQuery).build(scene.spheres());
-        let refusal = headless.upload(&scene, &structures.into()).map(|_: SceneBuffers| ());
+        let refusal = headless.upload(&scene, &structures.into()).wait().map(|_: SceneBuffers| ());
         if refusal != Err(GpuError::NoRayQuery) {
             return Err(format!("{refusal:?}").into());
         }

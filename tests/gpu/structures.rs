@@ -13,7 +13,7 @@ use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, RendererOptions,
-    SceneBuffers, wgpu,
+    SceneBuffers, Wait, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::internals::{NO_HIT, ShaderEdit};
@@ -36,7 +36,7 @@ const TINY_FOR_BALLS: u64 = (1 << 20) + 68 * 600;
 /// Opens a device with the limits of WebGPU.
 static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
     let options = HeadlessOptions { limits: LimitChoice::WebGpu, ..HeadlessOptions::default() };
-    Headless::open(&options).unwrap()
+    Headless::open(&options).wait().unwrap()
 });
 
 type Named = (&'static str, fn() -> Spheres);
@@ -299,7 +299,8 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
     };
     let mut drawing = Drawing::new(host, &options, size_of_film(film));
     let Host { device, queue } = host;
-    let scene = SceneBuffers::with_accel(&drawing.renderer, device, queue, scene, accel).unwrap();
+    let scene =
+        SceneBuffers::with_accel(&drawing.renderer, device, queue, scene, accel).wait().unwrap();
     let encoder = drawing.record(host, &scene, &view.seen(), settings);
     let depths: Vec<f32> = host.submit_and_read(encoder, &drawing.layers.depth);
     let is_hit = |depth: &f32| match depth.to_bits() {

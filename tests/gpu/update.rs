@@ -6,7 +6,7 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers,
+    ColorTarget, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Colors, Film, Image, LayerSet, RenderSettings, Scene, View};
@@ -58,7 +58,7 @@ fn shown(
 ) -> Result<Image, GpuError> {
     let (camera, film) = (camera(), Film::new(40, 40).unwrap());
     let (view, layers) = (View::new(&camera, film), LayerSet::ALL);
-    Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut go_on)?.image)
+    Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut go_on).wait()?.image)
 }
 
 fn uploaded(headless: &Headless, scene: &Scene) -> Result<SceneBuffers, GpuError> {
@@ -66,7 +66,7 @@ fn uploaded(headless: &Headless, scene: &Scene) -> Result<SceneBuffers, GpuError
     let view = View::new(&camera, Film::new(40, 40).unwrap());
     let settings = RenderSettings::studio();
     let plan = headless.plan(scene, &view, &settings, LayerSet::ALL, AccelChoice::Auto, 0);
-    headless.upload(scene, &plan.build(scene))
+    headless.upload(scene, &plan.build(scene)).wait()
 }
 
 fn updated(mut scene: Scene) -> Result<(), Failed> {
@@ -90,7 +90,7 @@ fn updated(mut scene: Scene) -> Result<(), Failed> {
             colors,
         };
         scene.apply(&update)?;
-        headless.update(&mut buffers, &scene, &update)?;
+        headless.update(&mut buffers, &scene, &update).wait()?;
         let fresh = uploaded(headless, &scene)?;
         for settings in settings() {
             if shown(headless, &buffers, &settings)? != shown(headless, &fresh, &settings)? {
@@ -110,7 +110,7 @@ fn in_bricks(headless: &'static Headless) {
         let plan = AccelPlan::new(scene.spheres(), choice, 16 * 40);
         let built = plan.build(scene.spheres());
         assert!(built.bricks().len() > 1);
-        let mut buffers = headless.upload(&scene, &built.into()).unwrap();
+        let mut buffers = headless.upload(&scene, &built.into()).wait().unwrap();
         let bytes = buffers.bytes();
         for (first, count) in [(0, 60), (17, 1), (59, 1), (20, 30), (3, 0)] {
             let mut rgba = Numbers::of(&mut random, count).rgba;
@@ -119,12 +119,12 @@ fn in_bricks(headless: &'static Headless) {
             let update = SceneUpdate { first, colors, ..SceneUpdate::default() };
             scene.apply(&update).unwrap();
             assert!(buffers.takes_in_place(&scene, &update));
-            headless.update(&mut buffers, &scene, &update).unwrap();
+            headless.update(&mut buffers, &scene, &update).wait().unwrap();
             assert_eq!(buffers.bytes(), bytes);
             let settings = RenderSettings::default();
             let camera = camera();
             let view = View::new(&camera, Film::new(40, 40).unwrap());
-            let fresh = headless.render(&scene, &view, &settings, LayerSet::ALL).unwrap();
+            let fresh = headless.render(&scene, &view, &settings, LayerSet::ALL).wait().unwrap();
             assert!(shown(headless, &buffers, &settings).unwrap() == fresh, "{choice}");
         }
     }
@@ -135,12 +135,12 @@ fn survives(headless: &'static Headless) {
     let (device, queue) = (headless.device(), headless.queue());
     let mut scene = kinds().swap_remove(8).scene;
     let options = RendererOptions { color: ColorTarget::Linear32, ..RendererOptions::default() };
-    let renderer = Renderer::new(device, &options).unwrap();
-    let recolor = Recolor::new(device).unwrap();
-    let mut buffers = SceneBuffers::new(&renderer, device, queue, &scene).unwrap();
+    let renderer = Renderer::new(device, &options).wait().unwrap();
+    let recolor = Recolor::new(device).wait().unwrap();
+    let mut buffers = SceneBuffers::new(&renderer, device, queue, &scene).wait().unwrap();
     let host = Host { device: device.clone(), queue: queue.clone() };
     let layers = host.layers([40, 40], options.color.texture_format());
-    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets));
+    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets).wait());
     let mut frame = frame.unwrap();
     let camera = camera();
     let view = View::new(&camera, Film::new(40, 40).unwrap());
@@ -154,14 +154,14 @@ fn survives(headless: &'static Headless) {
     };
     scene.apply(&colors).unwrap();
     let mut encoder = host.encoder();
-    recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &colors).unwrap();
+    recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &colors).wait().unwrap();
     renderer.record(&mut encoder, &buffers, &frame).unwrap();
 
     let radii = SceneUpdate { first: 3, radii: Some(&[0.5]), ..SceneUpdate::default() };
     scene.apply(&radii).unwrap();
-    let refused = recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &radii);
+    let refused = recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &radii).wait();
     assert_eq!(refused, Err(GpuError::NotInPlace));
-    buffers.replace(SceneBuffers::new(&renderer, device, queue, &scene).unwrap());
+    buffers.replace(SceneBuffers::new(&renderer, device, queue, &scene).wait().unwrap());
     let stale = renderer.record(&mut encoder, &buffers, &frame);
     assert_eq!(stale, Err(GpuError::OtherScene));
     frame.set_view(queue, &buffers, &view, &settings).unwrap();
@@ -190,10 +190,10 @@ fn camera() -> PinholeCamera {
 fn pictures(scene: &Scene) -> Result<[Image; 3], Failed> {
     let (headless, camera) = (headless()?, camera());
     let view = View::new(&camera, Film::new(64, 64)?);
-    if !headless.verify(scene, &view, &RenderSettings::default())?.is_legal() {
+    if !headless.verify(scene, &view, &RenderSettings::default()).wait()?.is_legal() {
         return Err("the picture is not legal".into());
     }
-    let render = |settings| headless.render(scene, &view, &settings, LayerSet::ALL);
+    let render = |settings| headless.render(scene, &view, &settings, LayerSet::ALL).wait();
     let [primary, studio, path] = settings();
     Ok([render(primary)?, render(studio)?, render(path)?])
 }

@@ -11,7 +11,7 @@ use pinhole::camera::film::YAxis;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, Wait};
 use pinhole::image::NO_ID;
 use pinhole::verify::conformance::{Answers, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
@@ -72,7 +72,7 @@ const UNDECIDED: [&str; 4] =
     ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
 
 fn legal(name: &str, view: &View) -> Result<(), Failed> {
-    let certificate = headless()?.verify(&view.scene, &view.seen(), &view.settings)?;
+    let certificate = headless()?.verify(&view.scene, &view.seen(), &view.settings).wait()?;
     if certificate.rendered_otherwise.is_none() {
         return Err("what is rendered was not compared".into());
     }
@@ -164,7 +164,7 @@ fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
     if !alone.is_legal() || alone.rendered_otherwise.is_some() {
         return Err(format!("the recording has the fault as well:\n{alone}").into());
     }
-    let certificate = faulty.verify(&view.scene, &view.seen(), &view.settings)?;
+    let certificate = faulty.verify(&view.scene, &view.seen(), &view.settings).wait()?;
     println!("{certificate}");
     found(&certificate)?;
     match certificate.violations.iter().find(|violation| violation.stage != "render") {

@@ -1,7 +1,7 @@
 //! Pictures as they stand in files: those of this device are never accused, and faults of what renders them are found.
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
 use pinhole::verify::means::{Estimates, Means};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
@@ -77,7 +77,7 @@ fn certified(view: &View, image: &Image) -> Result<[WrittenCertificate; 2], Fail
 }
 
 fn render(device: &Headless, view: &View) -> Result<Image, Failed> {
-    Ok(device.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR)?)
+    Ok(device.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait()?)
 }
 
 fn legal(view: &View) -> Result<(), Failed> {
@@ -101,7 +101,7 @@ fn means(device: &Headless, view: &View) -> Result<Means, Failed> {
     let View { scene, settings, .. } = view;
     let mut settings = settings.clone();
     settings.sampling.samples = settings.sampling.samples.min(64);
-    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
+    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
     settings.sampling.seed += 1;
     let expected = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
     let wide = |image: &Image| -> Vec<[f64; 3]> {

@@ -8,7 +8,7 @@ use std::thread;
 use pinhole::camera::{CameraKind, DepthOrder, HostCamera};
 use pinhole::gpu::{
     DepthTest, Frame, GpuError, Headless, HeadlessOptions, HostDepth, LitPicture, LitRenderer,
-    LivePicture, Recolor, Renderer, RendererOptions, SceneBuffers, adapter, wgpu,
+    LivePicture, Recolor, Renderer, RendererOptions, SceneBuffers, Wait, adapter, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 
@@ -35,7 +35,7 @@ fn a_renderer_is_built_on_another_thread() {
     let host = Host::new();
     let options = RendererOptions::default();
     let (device, of_thread) = (host.device.clone(), options.clone());
-    let thread = thread::spawn(move || Renderer::new(&device, &of_thread));
+    let thread = thread::spawn(move || Renderer::new(&device, &of_thread).wait());
     let renderer = thread.join().unwrap().unwrap();
     let (scene, frame) = ready(&host, &renderer, &options);
     renderer.record(&mut host.encoder(), &scene, &frame).unwrap();
@@ -97,8 +97,8 @@ fn the_pipelines_of_a_frame_are_built_first() {
 /// The depth of a host whose targets have the size of the frame.
 fn host_depth(host: &Host, renderer: &Renderer, frame: &Frame) -> (DepthTest, HostDepth) {
     let view = view_of(&host.texture(SIZE, wgpu::TextureFormat::Depth32Float));
-    let test = DepthTest::new(renderer, &host.device).unwrap();
-    let mut depth = HostDepth::new(&test, &host.device, &view).unwrap();
+    let test = DepthTest::new(renderer, &host.device).wait().unwrap();
+    let mut depth = HostDepth::new(&test, &host.device, &view).wait().unwrap();
     let identity = [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.], [0., 0., 0., 1.]];
     let projection = [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 0., -1.], [0., 0., 0.1, 0.]];
     let camera = HostCamera::new(identity, projection, DepthOrder::NearIsOne).unwrap();
@@ -141,14 +141,14 @@ fn at_once<T>(future: impl Future<Output = T> + Send) -> T {
 fn everything_is_made_without_waiting() {
     let host = Host::new();
     let options = RendererOptions::default();
-    let renderer = at_once(Renderer::new_async(&host.device, &options)).unwrap();
+    let renderer = at_once(Renderer::new(&host.device, &options)).unwrap();
     let scene = scene();
-    let buffers = SceneBuffers::new_async(&renderer, &host.device, &host.queue, &scene);
+    let buffers = SceneBuffers::new(&renderer, &host.device, &host.queue, &scene);
     at_once(buffers).unwrap();
     host.with_targets(&options, SIZE, |targets| {
-        at_once(Frame::new_async(&renderer, &host.device, targets)).unwrap();
+        at_once(Frame::new(&renderer, &host.device, targets)).unwrap();
     });
-    at_once(Recolor::new_async(&host.device)).unwrap();
+    at_once(Recolor::new(&host.device)).unwrap();
 }
 
 /// What wgpu refuses is a value, in the async form as in the blocking one, and names file and line.
@@ -156,10 +156,10 @@ fn everything_is_made_without_waiting() {
 fn what_wgpu_refuses_is_a_value() {
     let host = Host::new();
     let options = RendererOptions { edits: vec![broken()], ..RendererOptions::default() };
-    let refused = at_once(Renderer::new_async(&host.device, &options)).unwrap_err();
+    let refused = at_once(Renderer::new(&host.device, &options)).unwrap_err();
     let GpuError::Device { message } = &refused else { panic!("{refused}") };
     assert!(message.contains("primary/trace.wgsl:"), "{message}");
-    assert_eq!(Renderer::new(&host.device, &options).unwrap_err(), refused);
+    assert_eq!(Renderer::new(&host.device, &options).wait().unwrap_err(), refused);
 }
 
 /// An edit after which a kernel does not compile.
@@ -175,7 +175,7 @@ fn broken() -> ShaderEdit {
 #[test]
 fn adapters_are_found_by_futures_that_can_be_sent() {
     fn can_be_sent<T: Send>(_: &T) {}
-    can_be_sent(&adapter::choose_async(None));
-    can_be_sent(&adapter::candidates_async(None));
-    can_be_sent(&Headless::open_async(&HeadlessOptions::default()));
+    can_be_sent(&adapter::choose(None));
+    can_be_sent(&adapter::candidates(None));
+    can_be_sent(&Headless::open(&HeadlessOptions::default()));
 }

@@ -13,7 +13,9 @@ use pinhole::accel::AccelChoice;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, WGPU_VERSION, wgpu};
+use pinhole::gpu::{
+    Frame, Renderer, RendererOptions, SceneBuffers, Targets, WGPU_VERSION, Wait, wgpu,
+};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use host_program::Host;
@@ -37,7 +39,8 @@ impl Host {
     }
 
     fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
-        let frame = |targets: &Targets<'_>| Frame::new(renderer, &self.device, targets).unwrap();
+        let frame =
+            |targets: &Targets<'_>| Frame::new(renderer, &self.device, targets).wait().unwrap();
         self.with_targets(options, size, frame)
     }
 

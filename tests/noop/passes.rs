@@ -1,7 +1,9 @@
 //! Every kind of pass, recorded and submitted on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::gpu::{ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions};
+use pinhole::gpu::{
+    ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions, Wait,
+};
 use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};
@@ -25,7 +27,7 @@ fn primary_rays_of_every_camera_structure_and_target() {
             structures: Structure::ALL.to_vec(),
             ..RendererOptions::default()
         };
-        let renderer = Renderer::new(&host.device, &options).unwrap();
+        let renderer = Renderer::new(&host.device, &options).wait().unwrap();
         let mut frame = host.frame(&renderer, &options, SIZE);
         use AccelChoice::{Grid, List, Tree};
         // Bindings of 2048 bytes divide the scene into bricks.
@@ -53,7 +55,7 @@ fn primary_rays_of_every_camera_structure_and_target() {
 fn several_bands() {
     let host = Host::new();
     let options = RendererOptions::default();
-    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let renderer = Renderer::new(&host.device, &options).wait().unwrap();
     let buffers = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
     let mut frame = host.frame(&renderer, &options, [4096, 4096]);
     let camera = pinhole_camera();
@@ -72,15 +74,15 @@ fn new_colors() {
     let host = Host::new();
     let colors = Appearance::new(Colors::Rgba8(vec![[9, 9, 9, 255]; 300]));
     let mut scene = Scene::from_parts(SphereArray::F32(spheres()), colors).unwrap();
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).wait().unwrap();
     let mut buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
-    let recolor = Recolor::new(&host.device).unwrap();
+    let recolor = Recolor::new(&host.device).wait().unwrap();
     let colors = Some(NewColors::Rgba8(&[[1, 2, 3, 255]; 5]));
     let update = SceneUpdate { first: 7, colors, ..SceneUpdate::default() };
     scene.apply(&update).unwrap();
     let refused = host.refused(|| {
         let (device, queue, mut encoder) = (&host.device, &host.queue, host.encoder());
-        recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &update).unwrap();
+        recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &update).wait().unwrap();
         host.submit(encoder);
     });
     assert_eq!(refused, None);
@@ -97,7 +99,7 @@ fn studios_and_paths() {
     ] {
         let options =
             RendererOptions { color, data_layers, indirect, ..RendererOptions::default() };
-        let renderer = Renderer::new(&host.device, &options).unwrap();
+        let renderer = Renderer::new(&host.device, &options).wait().unwrap();
         let buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
         let lit = LitRenderer::new(renderer);
         for settings in [RenderSettings::studio(), RenderSettings::path()] {
@@ -108,6 +110,7 @@ fn studios_and_paths() {
                 let (device, queue) = (&host.device, &host.queue);
                 let mut picture = host.with_targets(&options, SIZE, |targets| {
                     LitPicture::new(&lit, device, queue, &buffers, &view, &settings, targets)
+                        .wait()
                         .unwrap()
                 });
                 let refused = host.refused(|| {

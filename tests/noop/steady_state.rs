@@ -7,7 +7,8 @@ use std::sync::Once;
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
-    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, wgpu,
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, Wait,
+    wgpu,
 };
 use pinhole::{RenderSettings, View};
 
@@ -111,7 +112,7 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
     let host = Host::new();
     for data_layers in [false, true] {
         let options = RendererOptions { data_layers, ..RendererOptions::default() };
-        let (built, renderer) = calls_of(|| Renderer::new(&host.device, &options).unwrap());
+        let (built, renderer) = calls_of(|| Renderer::new(&host.device, &options).wait().unwrap());
         assert!(built.created > 10, "{built:?}");
         let (scene, mut frame) = ready(&host, &renderer, &options);
         for _ in 0..3 {
@@ -133,7 +134,7 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
 
 fn lit_renderer(host: &Host) -> (RendererOptions, SceneBuffers, LitRenderer) {
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let renderer = Renderer::new(&host.device, &options).wait().unwrap();
     let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
     (options, scene, LitRenderer::new(renderer))
 }
@@ -151,13 +152,13 @@ fn lit_pictures_create_submit_and_await_nothing() {
         let moved_camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
         let view = View::new(&camera, film());
         let mut picture = host.with_targets(&options, SIZE, |targets| {
-            LitPicture::new(&lit, device, queue, &scene, &view, &settings, targets).unwrap()
+            LitPicture::new(&lit, device, queue, &scene, &view, &settings, targets).wait().unwrap()
         });
         let mut record = |moves: bool| {
             let moved = if moves { moved_camera } else { camera };
             let view = View::new(&moved, film());
             let (set, begins_again) =
-                calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+                calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
             assert_eq!(begins_again.unwrap(), moves);
             assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
             assert!(set.writes <= if moves { 4 } else { 0 }, "{set:?}");
@@ -191,14 +192,15 @@ fn live_pictures_create_submit_and_await_nothing() {
     let camera = pinhole_camera();
     let view = View::new(&camera, film());
     let mut picture = host.with_targets(&options, SIZE, |targets| {
-        LivePicture::new(&lit, device, queue, &scene, &view, &settings, targets).unwrap()
+        LivePicture::new(&lit, device, queue, &scene, &view, &settings, targets).wait().unwrap()
     });
     for frame in 0..4 {
         let eye = [0.2 * f64::from(frame), 1.0, 12.0];
         let pose = Pose::looking_at(eye, [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
         let view = View::new(&camera, film());
-        let (set, done) = calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+        let (set, done) =
+            calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
         done.unwrap();
         assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
         assert!((1..=3).contains(&set.writes), "{set:?}");

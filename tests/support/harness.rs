@@ -3,11 +3,11 @@
 use std::sync::LazyLock;
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
-use pinhole::gpu::{Headless, HeadlessOptions};
+use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 
 /// One device for all tests, so that it is opened, and printed, once.
 static HEADLESS: LazyLock<Result<Headless, String>> = LazyLock::new(|| {
-    Headless::open(&HeadlessOptions::default()).map_err(|error| error.to_string())
+    Headless::open(&HeadlessOptions::default()).wait().map_err(|error| error.to_string())
 });
 
 pub(crate) fn headless() -> Result<&'static Headless, Failed> {

@@ -1,7 +1,9 @@
 //! A program with a device of its own that draws with this library.
 
 use pinhole::accel::{AccelChoice, AccelPlan};
-use pinhole::gpu::{DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, wgpu};
+use pinhole::gpu::{
+    DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, Wait, wgpu,
+};
 use pinhole::{RenderSettings, Scene, View};
 use wgpu::TextureFormat::{R32Float, R32Uint, Rgba32Float};
 
@@ -134,7 +136,7 @@ impl Host {
         binding: u64,
     ) -> SceneBuffers {
         let accel = AccelPlan::new(scene.spheres(), choice, binding).build(scene.spheres());
-        SceneBuffers::with_accel(renderer, &self.device, &self.queue, scene, &accel).unwrap()
+        SceneBuffers::with_accel(renderer, &self.device, &self.queue, scene, &accel).wait().unwrap()
     }
 }
 
@@ -168,7 +170,7 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     pub(crate) fn new(host: &Host, options: &RendererOptions, size: [u32; 2]) -> Self {
-        Self::of(host, Renderer::new(&host.device, options).unwrap(), options, size)
+        Self::of(host, Renderer::new(&host.device, options).wait().unwrap(), options, size)
     }
 
     pub(crate) fn of(
@@ -179,13 +181,13 @@ impl Drawing {
     ) -> Self {
         let layers = host.layers(size, options.color.texture_format());
         let frame = layers.with(options.data_layers, |targets| {
-            Frame::new(&renderer, &host.device, targets).unwrap()
+            Frame::new(&renderer, &host.device, targets).wait().unwrap()
         });
         Self { renderer, layers, frame }
     }
 
     pub(crate) fn scene(&self, host: &Host, scene: &Scene) -> SceneBuffers {
-        SceneBuffers::new(&self.renderer, &host.device, &host.queue, scene).unwrap()
+        SceneBuffers::new(&self.renderer, &host.device, &host.queue, scene).wait().unwrap()
     }
 
     /// Records a view of a scene into an encoder.

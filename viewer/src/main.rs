@@ -13,7 +13,7 @@ use pinhole_cli::viewing::{self, RenderFlags, ViewError};
 use crate::app::{App, Ending};
 use crate::state::State;
 use crate::worker::{Message, Worker};
-use pinhole::gpu::GpuError;
+use pinhole::gpu::{GpuError, Wait};
 
 mod app;
 mod blit;
@@ -83,7 +83,7 @@ fn explained(error: &eframe::Error, adapter: Option<&str>) -> ViewError {
              `pinhole render` needs none",
         );
     }
-    match pinhole::gpu::adapter::choose(adapter) {
+    match pinhole::gpu::adapter::choose(adapter).wait() {
         Err(error @ GpuError::UnknownAdapter { .. }) => ViewError::usage(error.to_string()),
         Err(error) => ViewError::new(format!("no window can be opened: {error}")),
         Ok(_) => ViewError::new(format!("no window can be opened: {error}")),

@@ -12,7 +12,7 @@ use crate::blit::{Blit, Layers};
 use crate::worker::QuickScene;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
-use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker};
+use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker, Wait};
 use pinhole::render::{Integrator, RenderSettings};
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -107,7 +107,7 @@ pub(crate) struct Sight {
 
 impl Quick {
     pub(crate) fn new(render: RenderState) -> Self {
-        let (picker, error) = match Picker::new(&render.device, 3) {
+        let (picker, error) = match Picker::new(&render.device, 3).wait() {
             Ok(picker) => (Some(picker), None),
             Err(error) => (None, Some(error.to_string())),
         };
@@ -277,11 +277,12 @@ impl State {
                 true => {
                     let live = LivePicture::new(
                         renderer, device, queue, buffers, &view, &settings, &targets,
-                    );
+                    )
+                    .wait();
                     Source::Live(Box::new(live?))
                 }
                 false => {
-                    let frame = Frame::new(renderer.renderer(), device, &targets)?;
+                    let frame = Frame::new(renderer.renderer(), device, &targets).wait()?;
                     Source::Primary(Box::new(frame))
                 }
             };
@@ -290,7 +291,7 @@ impl State {
         }
         match self.targets.as_mut().map(|targets| &mut targets.source) {
             Some(Source::Live(live)) => {
-                live.set(renderer, device, queue, buffers, &view, &settings)?;
+                live.set(renderer, device, queue, buffers, &view, &settings).wait()?;
             }
             Some(Source::Primary(frame)) => frame.set_view(queue, buffers, &view, &settings)?,
             None => {}

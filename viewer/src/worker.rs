@@ -13,7 +13,7 @@ use crate::blit::Layers;
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, CameraParameters, View};
 use pinhole::gpu::{
-    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, wgpu,
+    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::load::Column;
 use pinhole::render::{Integrator, RenderSettings};
@@ -275,13 +275,15 @@ impl Work {
                 let cameras = vec![camera];
                 let options =
                     RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
-                Arc::new(LitRenderer::new(Renderer::new(device, &options)?))
+                Arc::new(LitRenderer::new(Renderer::new(device, &options).wait()?))
             }
         };
         self.renderer = Some((camera, Arc::clone(&renderer)));
         let buffers = match self.buffers.take() {
             Some(buffers) => buffers,
-            None => Arc::new(SceneBuffers::new(renderer.renderer(), device, queue, shown.scene())?),
+            None => Arc::new(
+                SceneBuffers::new(renderer.renderer(), device, queue, shown.scene()).wait()?,
+            ),
         };
         self.buffers = Some(Arc::clone(&buffers));
         let is_live = is_live(window, &renderer, &buffers, shown);
@@ -303,7 +305,9 @@ fn is_live(
     let view = View::new(shown.camera(), film);
     let settings = RenderSettings { is_transparent: false, ..shown.settings().clone() };
     let layers = Layers::new(device, [16, 16]);
-    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets()).is_ok()
+    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets())
+        .wait()
+        .is_ok()
 }
 
 fn error_of(error: &GpuError) -> ViewError {

@@ -19,7 +19,7 @@ use pinhole::camera::View;
 use pinhole::cpu::{self, SearchPlan};
 use pinhole::glam::DVec2;
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, UploadWatch};
+use pinhole::gpu::{Headless, UploadWatch, Wait};
 use pinhole::image::{Image, LayerSet};
 #[cfg(feature = "gpu")]
 use pinhole::render::{Decision, Watch};
@@ -165,7 +165,7 @@ fn on_gpu(
                 (&mut |progress| watch_upload(name, progress), &mut |_| {
                     if interrupt::is_requested() { Decision::Stop } else { Decision::GoOn }
                 });
-            headless.render_nearest(scene, plan, view, settings, layers, watches)
+            headless.render_nearest(scene, plan, view, settings, layers, watches).wait()
         });
         if is_stopped { Err(Failure::Stopped) } else { Ok(done) }
     })?;

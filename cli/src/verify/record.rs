@@ -19,7 +19,7 @@ use crate::{interrupt, memory, render, self_test, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::camera::film::{Film, FilmError};
-use pinhole::gpu::{Decision, EachSample, Headless, LitPart, Progress, Watch};
+use pinhole::gpu::{Decision, EachSample, Headless, LitPart, Progress, Wait, Watch};
 use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
@@ -76,7 +76,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
                 progress::tracing(progress.part);
                 interrupt::decide()
             };
-            headless.record_and_render(&buffers, view, settings, watch)
+            headless.record_and_render(&buffers, view, settings, watch).wait()
         })
     })?;
     let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
@@ -165,7 +165,7 @@ pub(crate) fn certify_light(
             [LitPart::Middle, LitPart::Random(tile_seed)].into_iter().try_for_each(|part| {
                 let samples = (part, &samples[..]);
                 let callbacks = (&mut *each as &mut EachSample<'_>, &mut *watch as &mut Watch<'_>);
-                headless.record_lit_part(&buffers, &view, settings, samples, callbacks)
+                headless.record_lit(&buffers, &view, settings, samples, callbacks).wait()
             })
         })?;
         if let Some(error) = failed.take() {
@@ -230,8 +230,9 @@ pub(crate) fn render_denoised(
             let buffers = upload(headless, &input.scene, plan)?;
             progress::stage("checking the denoiser");
             let watch = &mut |_: &_| interrupt::decide();
-            let noisy = headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch)?.image;
-            let quiet = headless.denoise(&noisy)?;
+            let noisy =
+                headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch).wait()?.image;
+            let quiet = headless.denoise(&noisy).wait()?;
             Ok([noisy, quiet])
         })
     })?;
@@ -272,7 +273,7 @@ pub(crate) fn render_lit(
             let buffers = upload(headless, &input.scene, plan)?;
             progress::stage("rendering with light");
             let watch = &mut |_: &_| interrupt::decide();
-            headless.render_uploaded(&buffers, &view, &settings, layers, watch)
+            headless.render_uploaded(&buffers, &view, &settings, layers, watch).wait()
         })
     })?;
     let (picture, _) = done.map_err(|error| explained_alone(headless, &error))?;

@@ -12,7 +12,7 @@ use crate::views::Views;
 use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
-use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
+use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers, Wait};
 use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
@@ -108,7 +108,7 @@ impl StillRenderer {
         let watch = || if is_wanted() { Decision::GoOn } else { Decision::Stop };
         let render = |buffers: &SceneBuffers| {
             let view = shown.input.view();
-            headless.render_uploaded(buffers, &view, settings, layers, &mut |_| watch())
+            headless.render_uploaded(buffers, &view, settings, layers, &mut |_| watch()).wait()
         };
         let (scene, integrator) =
             (&shown.input.scene, std::mem::discriminant(&settings.integrator));

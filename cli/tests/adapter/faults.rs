@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use libtest_mimic::Trial;
 use pinhole::gpu::wgpu::Backend;
-use pinhole::gpu::{Headless, HeadlessOptions, SelfTestExtent};
+use pinhole::gpu::{Headless, HeadlessOptions, SelfTestExtent, Wait};
 use tempfile::TempDir;
 
 use crate::harness::trial_unless;
@@ -250,10 +250,11 @@ pub(crate) fn is_child() -> bool {
         return false;
     };
     let timeout = Duration::from_secs(1);
-    let headless = Headless::open(&HeadlessOptions { timeout, ..Default::default() }).unwrap();
+    let headless =
+        Headless::open(&HeadlessOptions { timeout, ..Default::default() }).wait().unwrap();
     let tested = match form.as_str() {
-        "blocking" => headless.self_test(SelfTestExtent::Quick),
-        _ => to_its_end(headless.self_test_async(SelfTestExtent::Quick)),
+        "blocking" => headless.self_test(SelfTestExtent::Quick).wait(),
+        _ => to_its_end(headless.self_test(SelfTestExtent::Quick)),
     };
     drop(headless);
     println!("{:?}", tested.unwrap_err());

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use libtest_mimic::Trial;
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, Wait};
 use pinhole::image::color;
 use pinhole::scene_file::SceneFile;
 use pinhole::write::exr::Remarks;
@@ -33,7 +33,7 @@ fn demo(headless: &'static Headless) {
     let kind = file.integrator().unwrap();
     let settings = file.settings(kind, &scene, camera.as_ref(), None).unwrap();
     let view = pinhole::View::new(camera.as_ref(), file.film);
-    let expected = headless.render(&scene, &view, &settings, LayerSet::COLOR).unwrap();
+    let expected = headless.render(&scene, &view, &settings, LayerSet::COLOR).wait().unwrap();
     let expected: Vec<u8> = expected.color().iter().flat_map(|c| color::to_srgb8(*c)).collect();
     let picture = image::open(folder.path().join("demo.png")).unwrap().to_rgb8();
     assert!(picture.into_raw() == expected, "the demo's picture is not the library's");
@@ -50,7 +50,8 @@ fn layers(headless: &'static Headless) {
     succeed(&mut command_on(headless, &folder, arguments));
 
     let view = View::three_spheres_orthographic();
-    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).unwrap();
+    let image =
+        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).wait().unwrap();
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     let depth = read("depth.npy");
     let depth: Vec<f32> = npyz::NpyFile::new(&depth[..]).unwrap().into_vec().unwrap();
@@ -72,7 +73,8 @@ fn exr(headless: &'static Headless) {
     succeed(&mut command);
 
     let view = View::three_spheres();
-    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
+    let image =
+        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).wait().unwrap();
     let mut expected = Cursor::new(Vec::new());
     let encoding = Encoding::default();
     let remarks = Remarks { adapter: Some(adapter), ..Remarks::default() };

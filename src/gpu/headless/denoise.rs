@@ -36,7 +36,7 @@ impl Headless {
     ///
     /// # Errors
     /// If the picture lacks one of the layers in [`crate::image::denoise::GUIDES`], or if the device fails.
-    pub async fn denoise_async(&self, image: &Image) -> Result<Image, GpuError> {
+    pub async fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
         let guided = Guided::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);
         let max_pixels = MAX_STRIP_PIXELS.min(binding_limit(&self.device().limits()) / 16);

@@ -41,7 +41,7 @@ impl Headless {
                 (done, _) => break done?,
             }
         };
-        let image = self.finish_async(image, settings, layers).await?;
+        let image = self.finish(image, settings, layers).await?;
         let noise = totals.noise(samples);
         Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
     }
@@ -52,7 +52,7 @@ impl Headless {
     ///
     /// # Errors
     /// If noise is to be removed and the picture lacks a layer that guides it, or the device fails.
-    pub async fn finish_async(
+    pub async fn finish(
         &self,
         mut image: Image,
         settings: &RenderSettings,
@@ -60,7 +60,7 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         if settings.is_denoised {
             let _phase = self.phase("denoise");
-            image = self.denoise_async(&image).await?;
+            image = self.denoise(&image).await?;
         }
         if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
             let _phase = self.phase("outline");

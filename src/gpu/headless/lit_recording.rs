@@ -35,7 +35,7 @@ impl Headless {
     /// # Errors
     /// [`GpuError::NotLit`] if the integrator is `primary`; the same errors as for [`Headless::render_uploaded`];
     /// [`GpuError::Stopped`] if `watch` finishes or stops the recording.
-    pub async fn record_lit_part_async(
+    pub async fn record_lit(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,

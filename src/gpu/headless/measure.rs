@@ -97,8 +97,8 @@ impl Headless {
     /// Traces a ray through the centre of every pixel and discards the hits, to measure the time that this takes.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_async`].
-    pub async fn measure_async(
+    /// The same as for [`Headless::render`].
+    pub async fn measure(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -119,7 +119,7 @@ impl Headless {
         let (device, queue) = (&self.device, &self.queue);
         let tile_size = tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
         let textures = scoped(device, || TileTextures::new(device, tile_size, false)).await?;
-        let mut frame = Frame::new_async(renderer, device, &textures.targets()).await?;
+        let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
         let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let period = f64::from(queue.get_timestamp_period());
         let stamps = scoped(device, || has_clock.then(|| Stamps::new(device, period))).await?;

@@ -43,7 +43,7 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::profile::Profile;
 use crate::gpu::scene::query_structure;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::scene::structures::with_retries_async;
+use crate::gpu::scene::structures::with_retries;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use crate::image::{Image, LayerSet};
 use crate::render::RenderSettings;
@@ -70,15 +70,15 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Opens a device on the first of [`candidates_async`](crate::gpu::adapter::candidates_async) that can open one.
+    /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
     ///
     /// # Errors
     /// If there is no such adapter, or if none can open a device; the error is then that of the first.
-    pub async fn open_async(options: &HeadlessOptions) -> Result<Self, GpuError> {
+    pub async fn open(options: &HeadlessOptions) -> Result<Self, GpuError> {
         // The error of the best adapter, which is returned if all fail.
         let mut refusal = GpuError::NoAdapter;
-        for adapter in &adapter::candidates_async(options.adapter.as_deref()).await? {
-            match Self::from_adapter_async(adapter, options).await {
+        for adapter in &adapter::candidates(options.adapter.as_deref()).await? {
+            match Self::from_adapter(adapter, options).await {
                 Ok(headless) => return Ok(headless),
                 Err(error) if refusal == GpuError::NoAdapter => refusal = error,
                 Err(_) => {}
@@ -87,11 +87,11 @@ impl Headless {
         Err(refusal)
     }
 
-    /// Opens a device on the given adapter like [`Headless::open_async`]. The adapter's name in the options is ignored.
+    /// Opens a device on the given adapter like [`Headless::open`]. The adapter's name in the options is ignored.
     ///
     /// # Errors
     /// If the adapter cannot open a device.
-    pub async fn from_adapter_async(
+    pub async fn from_adapter(
         adapter: &Adapter,
         options: &HeadlessOptions,
     ) -> Result<Self, GpuError> {
@@ -180,10 +180,7 @@ impl Headless {
     ///
     /// # Errors
     /// If the device fails. A property that the device lacks is not an error; the report contains it.
-    pub async fn self_test_async(
-        &self,
-        extent: SelfTestExtent,
-    ) -> Result<SelfTestReport, GpuError> {
+    pub async fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
         let report = self
             .alone(async |_: &mut Renderers| {
                 let run = SelfTestRun::new(&self.device, extent).await?;
@@ -208,7 +205,7 @@ impl Headless {
     /// # Errors
     /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
     /// device or of the host, or if the device fails.
-    pub async fn render_async(
+    pub async fn render(
         &self,
         scene: &Scene,
         view: &View<'_>,
@@ -219,7 +216,7 @@ impl Headless {
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
         let picture = retried(plan, async |plan: &RenderPlan| {
             let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
-            self.render_planned_async(scene, plan, view, settings, layers, watches).await
+            self.render_planned(scene, plan, view, settings, layers, watches).await
         });
         Ok(picture.await?.image)
     }
@@ -231,7 +228,7 @@ impl Headless {
     /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
     /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
     /// uploaded without the structure of the spheres that cast shadows.
-    pub async fn render_uploaded_async(
+    pub async fn render_uploaded(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -365,7 +362,7 @@ async fn retried<T>(
     work: impl AsyncFn(&RenderPlan) -> Result<T, GpuError>,
 ) -> Result<T, GpuError> {
     let work = async |plan: &RenderPlan| Ok::<_, Infallible>(work(plan).await);
-    match with_retries_async(AccelChoice::Auto, plan, |_| {}, work).await {
+    match with_retries(AccelChoice::Auto, plan, |_| {}, work).await {
         Ok(done) => done,
         Err(never) => match never {},
     }

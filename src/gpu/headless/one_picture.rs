@@ -40,7 +40,7 @@ impl Headless {
     ///
     /// # Errors
     /// The same as for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
-    pub async fn render_planned_async(
+    pub async fn render_planned(
         &self,
         scene: &Scene,
         plan: &RenderPlan,
@@ -61,7 +61,7 @@ impl Headless {
             if settings.integrator.is_primary() { Some(&key_of) } else { None };
         let plans = plan.structures();
         let buffers = self.upload_ahead_of(scene, &plans, upload_watch, key_of).await?;
-        self.render_uploaded_async(&buffers, view, settings, layers, watch).await
+        self.render_uploaded(&buffers, view, settings, layers, watch).await
     }
 
     /// Whether the hits of the whole picture are in one buffer, so that no brick is needed twice, and there is a choice
@@ -122,7 +122,7 @@ impl Headless {
             };
             let keys = kinds.map(key);
             let first = renderers.of(device, device_type, keys[0].clone()).await?;
-            let mut frame = Frame::new_async(first, device, &textures.targets()).await?;
+            let mut frame = Frame::new(first, device, &textures.targets()).await?;
             let seen_buffer = scoped(device, || {
                 ReadableBuffer::new(device, "pinhole hits read-back", frame.traced().0.size())
             })
@@ -215,7 +215,7 @@ impl Headless {
     ///
     /// # Errors
     /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
-    pub async fn render_nearest_async(
+    pub async fn render_nearest(
         &self,
         scene: &Scene,
         plan: &RenderPlan,

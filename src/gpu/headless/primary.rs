@@ -61,7 +61,7 @@ impl Headless {
         let tile_size = tile_size(&device.limits(), self.shape(), film, renderer.keeps_rays);
         let textures =
             scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
-        let mut frame = Frame::new_async(renderer, device, &textures.targets()).await?;
+        let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
         let traced = scoped(device, || ReadableTrace::new(device, &frame)).await?;
         let derived = Derived { view: *view, appearance: scene.appearance() };
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));

@@ -71,7 +71,7 @@ impl Headless {
     /// # Errors
     /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
     /// picture. [`Headless::record_lit`] records such pictures.
-    pub async fn record_async(
+    pub async fn record(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -100,16 +100,16 @@ impl Headless {
     ///
     /// # Errors
     /// The same as for [`Headless::record`].
-    pub async fn record_and_render_async(
+    pub async fn record_and_render(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
         settings: &RenderSettings,
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
-        let mut recording = self.record_async(scene, view, settings, watch).await?;
+        let mut recording = self.record(scene, view, settings, watch).await?;
         let layers = LayerSet::DATA;
-        let picture = self.render_uploaded_async(scene, view, settings, layers, watch).await?;
+        let picture = self.render_uploaded(scene, view, settings, layers, watch).await?;
         recording.compare(picture.image);
         Ok(recording)
     }
@@ -120,7 +120,7 @@ impl Headless {
     /// # Errors
     /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
     /// picture that is not legal is not an error.
-    pub async fn verify_async(
+    pub async fn verify(
         &self,
         scene: &Scene,
         view: &View<'_>,
@@ -131,8 +131,8 @@ impl Headless {
         }
         let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
         let recording = retried(plan, async |plan: &RenderPlan| {
-            let buffers = self.upload_planned_async(scene, &plan.structures(), &mut go_on).await?;
-            self.record_and_render_async(&buffers, view, settings, &mut go_on).await
+            let buffers = self.upload_planned(scene, &plan.structures(), &mut go_on).await?;
+            self.record_and_render(&buffers, view, settings, &mut go_on).await
         });
         Ok(Checker::new(scene)?.certify(&recording.await?))
     }
@@ -164,7 +164,7 @@ impl Headless {
         let view = View::new(&camera, film);
         let limit = self.device().limits().max_storage_buffer_binding_size;
         let plan = AccelPlan::new(scene.spheres(), AccelChoice::Grid, limit);
-        let buffers = self.upload_async(&scene, &plan.build(scene.spheres()).into()).await?;
+        let buffers = self.upload(&scene, &plan.build(scene.spheres()).into()).await?;
         let primary = buffers.primary_settings(&RenderSettings::default())?;
         let key = RendererKey {
             data_layers: true,

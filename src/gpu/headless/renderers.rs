@@ -13,6 +13,8 @@ use crate::accel::BrickKind;
 use crate::camera::{Camera, CameraKind};
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::headless::waiting::Wait;
 use crate::gpu::passes::lit::{AllLitPasses, LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
@@ -116,7 +118,7 @@ impl Renderers {
         let (device, options) = (device.clone(), self.options(device_type, &key));
         let build = move || {
             let _phase = profile.as_ref().map(|profile| profile.phase("create pipelines"));
-            Renderer::new(&device, &options)
+            Renderer::new(&device, &options).wait()
         };
         let thread = std::thread::Builder::new().name("pinhole: pipelines".to_owned());
         if let Ok(thread) = thread.spawn(build) {
@@ -146,7 +148,7 @@ impl Renderers {
         let options = self.options(device_type, &key);
         match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(entry) => Ok(entry.insert(Renderer::new_async(device, &options).await?)),
+            Entry::Vacant(entry) => Ok(entry.insert(Renderer::new(device, &options).await?)),
         }
     }
 
@@ -154,7 +156,7 @@ impl Renderers {
     pub(crate) async fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
         match &mut self.recolor {
             Some(built) => Ok(built),
-            entry @ None => Ok(entry.insert(Recolor::new_async(device).await?)),
+            entry @ None => Ok(entry.insert(Recolor::new(device).await?)),
         }
     }
 

@@ -37,7 +37,7 @@ impl Headless {
     ///
     /// # Errors
     /// If the scene does not fit into the device's memory or limits, or if the device fails.
-    pub async fn upload_async(
+    pub async fn upload(
         &self,
         scene: &Scene,
         structures: &Structures,
@@ -65,7 +65,7 @@ impl Headless {
     /// # Errors
     /// If the scene does not fit into the device's memory or limits, or if the device fails; [`GpuError::Stopped`] if
     /// `watch` stops the copy.
-    pub async fn upload_planned_async(
+    pub async fn upload_planned(
         &self,
         scene: &Scene,
         plans: &StructurePlans,
@@ -74,7 +74,7 @@ impl Headless {
         self.upload_ahead_of(scene, plans, watch, None).await
     }
 
-    /// Like [`Headless::upload_planned_async`]. `key_of` returns what the picture that follows will need for the bricks:
+    /// Like [`Headless::upload_planned`]. `key_of` returns what the picture that follows will need for the bricks:
     /// it is built on a thread while the last brick is copied, which leaves other cores idle.
     pub(crate) async fn upload_ahead_of(
         &self,
@@ -119,7 +119,7 @@ impl Headless {
     ///
     /// # Errors
     /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.
-    pub async fn update_async(
+    pub async fn update(
         &self,
         buffers: &mut SceneBuffers,
         scene: &Scene,
@@ -145,7 +145,7 @@ impl Headless {
             (loses_opacity || buffers.occluders.is_some()).then(|| scene.opaque()).flatten();
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
         let plans = StructurePlans { accel, occluders };
-        let copy = self.upload_planned_async(scene, &plans, &mut go_on).await?;
+        let copy = self.upload_planned(scene, &plans, &mut go_on).await?;
         buffers.replace(copy);
         Ok(())
     }
@@ -159,7 +159,7 @@ impl Headless {
         let device_type = Some(self.info.device_type);
         let options =
             RendererOptions { cameras, structures, device_type, ..RendererOptions::default() };
-        Renderer::new_async(self.device(), &options).await
+        Renderer::new(self.device(), &options).await
     }
 
     async fn upload_all<B: Borrow<Brick>>(

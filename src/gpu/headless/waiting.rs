@@ -19,7 +19,7 @@ pub(crate) use web_time::Instant;
 thread_local! {
     /// Whether this thread polls a device.
     static POLLS: Cell<bool> = const { Cell::new(false) };
-    /// Whether the future that this thread runs was called by a blocking function.
+    /// Whether this thread runs a future by [`Wait::wait`].
     static MAY_BLOCK: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -55,21 +55,26 @@ fn poll(device: &Device, how: wgpu::PollType, timeout: Duration) -> Result<(), G
     }
 }
 
-/// Runs a future to its end and blocks the thread meanwhile. Everything that can wait is an async function; its blocking
-/// form runs it by this function, in which waiting for the device blocks the thread as well. A program for browsers cannot
-/// block.
+/// Blocking until a future is done. Browsers cannot block, so this does not exist for `wasm32`.
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) fn block_on<T>(future: impl Future<Output = T>) -> T {
-    /// Restores the previous value, also if the future panics.
-    struct Before(bool);
-    impl Drop for Before {
-        fn drop(&mut self) {
-            MAY_BLOCK.set(self.0);
+pub trait Wait: Future + Sized {
+    /// Blocks the thread until the future is done, and returns its result. Waiting for a device blocks the thread as
+    /// well then; elsewhere, the future returns to its caller meanwhile.
+    fn wait(self) -> Self::Output {
+        /// Restores the previous value, also if the future panics.
+        struct Before(bool);
+        impl Drop for Before {
+            fn drop(&mut self) {
+                MAY_BLOCK.set(self.0);
+            }
         }
+        let _before = Before(MAY_BLOCK.replace(true));
+        pollster::block_on(self)
     }
-    let _before = Before(MAY_BLOCK.replace(true));
-    pollster::block_on(future)
 }
+
+#[cfg(not(target_arch = "wasm32"))]
+impl<T: Future> Wait for T {}
 
 /// Whether the future that this thread runs may block it.
 #[cfg(not(target_arch = "wasm32"))]
@@ -239,24 +244,24 @@ mod tests {
     #[test]
     fn a_turn_that_was_given_up_blocks_nobody() {
         let turns = Turns::new(1);
-        let first = block_on(turns.turn());
+        let first = turns.turn().wait();
         let mut context = Context::from_waker(Waker::noop());
         let mut given_up = Box::pin(turns.turn());
         assert!(Future::poll(given_up.as_mut(), &mut context).is_pending());
         drop(given_up);
         std::thread::scope(|scope| {
             let second = scope.spawn(|| {
-                let mut turn = block_on(turns.turn());
+                let mut turn = turns.turn().wait();
                 turn.value += 1;
                 turn.value
             });
             drop(first);
             assert_eq!(second.join().unwrap(), 2);
         });
-        assert_eq!(block_on(turns.turn()).value, 2);
+        assert_eq!(turns.turn().wait().value, 2);
     }
 
-    /// Outside of a blocking form, a future returns to its caller while a device or a callback is busy.
+    /// Without [`Wait::wait`], a future returns to its caller while a device or a callback is busy.
     #[test]
     fn an_answer_is_awaited_without_blocking() {
         let (answer, to_answer) = answer();

@@ -7,7 +7,7 @@ use wgpu::{
 
 use crate::camera::{DepthOrder, HostCamera};
 use crate::gpu::checks::scoped;
-use crate::gpu::edit::Edits;
+use crate::gpu::edit::{Edits, ShaderEdit};
 use crate::gpu::error::GpuError;
 use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::targets::{Targets, check_texture};
@@ -85,16 +85,18 @@ impl Composite {
     ///
     /// # Errors
     /// If the device cannot render to these formats, or not with this number of samples.
-    pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
-        Self::edited(device, options, &Edits::default()).await
+    pub async fn new(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
+        Self::edited(device, options, Vec::new()).await
     }
 
-    /// Builds the pipeline of edited shaders.
-    pub(crate) async fn edited(
+    /// Builds the pipeline like [`Composite::new`], but with edited shaders.
+    #[doc(hidden)]
+    pub async fn edited(
         device: &Device,
         options: &CompositeOptions,
-        edits: &Edits,
+        edits: Vec<ShaderEdit>,
     ) -> Result<Self, GpuError> {
+        let edits = &Edits { replacements: edits, ..Edits::default() };
         let CompositeOptions { source, encoding, .. } = *options;
         let has_depth = options.depth.is_some();
         let coverage = options.depth.map(|_| options.coverage);
@@ -207,7 +209,7 @@ impl CompositePicture {
     ///
     /// # Errors
     /// If there are no data layers but the pass has depth, or a texture has another format or usage.
-    pub async fn new_async(
+    pub async fn new(
         composite: &Composite,
         device: &Device,
         targets: &Targets<'_>,

@@ -73,7 +73,7 @@ impl DepthTest {
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
-    pub async fn new_async(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
+    pub async fn new(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
         let depth = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2,
@@ -129,7 +129,7 @@ impl HostDepth {
     ///
     /// # Errors
     /// If the texture cannot be bound, for one of these reasons.
-    pub async fn new_async(
+    pub async fn new(
         test: &DepthTest,
         device: &Device,
         texture: &wgpu::TextureView,

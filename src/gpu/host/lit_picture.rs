@@ -64,7 +64,7 @@ impl LitPicture {
     /// [`GpuError::NotLit`] for the integrator `primary`; the errors of [`RenderSettings::check`];
     /// [`GpuError::NoOccluders`]; [`GpuError::Target`] if a target is not as described; an error if the device has no
     /// memory left.
-    pub async fn new_async(
+    pub async fn new(
         renderer: &LitRenderer,
         device: &Device,
         queue: &Queue,
@@ -74,7 +74,7 @@ impl LitPicture {
         targets: &Targets<'_>,
     ) -> Result<Self, GpuError> {
         let (scenes, lighting, key) = lit_key(device, scene, view, settings)?;
-        let mut data = Frame::new_async(renderer.renderer(), device, targets).await?;
+        let mut data = Frame::new(renderer.renderer(), device, targets).await?;
         let primary = primary_of(settings);
         data.set_primary(queue, scene, view, &primary)?;
         let passes = renderer.passes(device, key).await?;
@@ -109,7 +109,7 @@ impl LitPicture {
     ///
     /// # Errors
     /// The errors of [`LitPicture::new`]; the picture stays as it was.
-    pub async fn set_async(
+    pub async fn set(
         &mut self,
         renderer: &LitRenderer,
         device: &Device,

@@ -62,7 +62,7 @@ impl LitRenderer {
     ///
     /// [`LitPicture::new`]: crate::gpu::LitPicture::new
     /// [`LitPicture::set`]: crate::gpu::LitPicture::set
-    pub async fn build_async(
+    pub async fn build(
         &self,
         device: &Device,
         scene: &SceneBuffers,

@@ -92,7 +92,7 @@ impl LivePicture {
     /// [`GpuError::NotLive`] unless the settings are a studio, all spheres are opaque and the scene is not divided into
     /// bricks; the errors of [`RenderSettings::check`]; [`GpuError::Target`] if a target is not as described;
     /// [`GpuError::Limit`] if the picture is too large; an error if the device has no memory left.
-    pub async fn new_async(
+    pub async fn new(
         renderer: &LitRenderer,
         device: &Device,
         queue: &Queue,
@@ -102,7 +102,7 @@ impl LivePicture {
         targets: &Targets<'_>,
     ) -> Result<Self, GpuError> {
         let (scenes, lighting, key) = live_key(device, scene, view, settings)?;
-        let targets = Frame::new_async(renderer.renderer(), device, targets).await?;
+        let targets = Frame::new(renderer.renderer(), device, targets).await?;
         targets.check_film(view)?;
         let passes = renderer.live_passes(device, key).await?;
         let lit = LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting).await?;
@@ -135,7 +135,7 @@ impl LivePicture {
     ///
     /// # Errors
     /// The errors of [`LivePicture::new`]; the picture stays as it was.
-    pub async fn set_async(
+    pub async fn set(
         &mut self,
         renderer: &LitRenderer,
         device: &Device,

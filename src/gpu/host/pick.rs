@@ -113,7 +113,7 @@ impl Picker {
     ///
     /// # Errors
     /// If the device has no memory left.
-    pub async fn new_async(device: &Device, capacity: usize) -> Result<Self, GpuError> {
+    pub async fn new(device: &Device, capacity: usize) -> Result<Self, GpuError> {
         let slots = scoped(device, || {
             let slot = |_| Slot {
                 buffer: buffer(device, "pinhole pick", 8, BufferUsages::MAP_READ),

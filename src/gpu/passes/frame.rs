@@ -97,7 +97,7 @@ impl Frame {
     /// # Errors
     /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory
     /// left.
-    pub async fn new_async(
+    pub async fn new(
         renderer: &Renderer,
         device: &Device,
         targets: &Targets<'_>,

@@ -54,7 +54,7 @@ impl Renderer {
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
-    pub async fn new_async(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
+    pub async fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
         let needs_queries = options.structures.contains(&Structure::RayQuery);
         if needs_queries && !device.features().contains(query_structure::FEATURES) {
             return Err(GpuError::NoRayQuery);
@@ -231,7 +231,7 @@ impl Renderer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::headless::waiting::block_on;
+    use crate::gpu::headless::waiting::Wait;
 
     /// wgpu checks shaders, layouts, access modes and record sizes without any driver.
     #[test]
@@ -248,7 +248,7 @@ mod tests {
                     keeps_rays,
                     ..RendererOptions::default()
                 };
-                let renderer = Renderer::new(&device, &options).unwrap();
+                let renderer = Renderer::new(&device, &options).wait().unwrap();
                 let of_shading = |(key, _): &&_| matches!(key, PassKey::Shade(..));
                 let shading = renderer.built.iter().filter(of_shading).count();
                 assert_eq!(shading, CameraKind::ALL.len() * Primitive::ALL.len());
@@ -274,7 +274,7 @@ mod tests {
             .with_part("broken.wgsl", broken);
             let checks = Checks::default();
             pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1], &checks);
-            match block_on(checks.passed()) {
+            match checks.passed().wait() {
                 Err(GpuError::Device { message }) => {
                     assert!(message.contains("broken.wgsl:"), "{message}");
                 }

@@ -107,7 +107,7 @@ impl TargetTextures {
     ///
     /// # Errors
     /// If the size is zero or more than the device allows, or if the device has no memory left.
-    pub async fn new_async(
+    pub async fn new(
         renderer: &Renderer,
         device: &Device,
         size: [u32; 2],

@@ -45,7 +45,7 @@ impl Recolor {
     ///
     /// # Errors
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
-    pub async fn new_async(device: &Device) -> Result<Self, GpuError> {
+    pub async fn new(device: &Device) -> Result<Self, GpuError> {
         let [read, written] = [true, false].map(storage::<u32>);
         let kinds = [uniform::<RecolorRange>(), read, read, written];
         let checks = Checks::default();
@@ -64,7 +64,7 @@ impl Recolor {
     /// # Errors
     /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no
     /// memory left.
-    pub async fn record_async(
+    pub async fn record(
         &self,
         device: &Device,
         queue: &Queue,
@@ -77,7 +77,7 @@ impl Recolor {
         self.record_noted(make, (encoder, names), buffers, scene, update).await
     }
 
-    /// Records the new colours like [`Recolor::record_async`], and notes the names of the passes.
+    /// Records the new colours like [`Recolor::record`], and notes the names of the passes.
     pub(crate) async fn record_noted(
         &self,
         make: Make<'_>,

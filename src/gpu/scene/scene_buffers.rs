@@ -77,7 +77,7 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
-    pub async fn new_async(
+    pub async fn new(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
@@ -96,7 +96,7 @@ impl SceneBuffers {
     /// # Errors
     /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
     /// the scene does not fit into its memory.
-    pub async fn with_accel_async(
+    pub async fn with_accel(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
@@ -112,13 +112,13 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
-    pub async fn for_studio_async(
+    pub async fn for_studio(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
         scene: &Scene,
     ) -> Result<Self, GpuError> {
-        let all = Self::new_async(renderer, device, queue, scene).await?;
+        let all = Self::new(renderer, device, queue, scene).await?;
         let Some(opaque) = scene.opaque() else { return Ok(all) };
         let plan = plan_of(device, &opaque);
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));

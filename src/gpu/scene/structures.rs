@@ -62,7 +62,7 @@ pub struct Retry {
 ///
 /// # Errors
 /// The outer error is the caller's own and ends the function at once; the inner error is that of the device.
-pub async fn with_retries_async<T, E>(
+pub async fn with_retries<T, E>(
     choice: AccelChoice,
     plan: impl Fn(AccelChoice) -> RenderPlan,
     mut retrying: impl FnMut(Retry),
@@ -89,7 +89,7 @@ mod tests {
     use crate::camera::{PinholeCamera, Pose, View};
     use crate::gpu::device_shape::DeviceLimits;
     use crate::gpu::headless::plan::{PictureRequest, StructurePlans};
-    use crate::gpu::headless::waiting::block_on;
+    use crate::gpu::headless::waiting::Wait;
     use crate::image::LayerSet;
     use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;
@@ -135,7 +135,7 @@ mod tests {
         let attempts = |choice| {
             let (mut tried, mut told) = (Vec::new(), Vec::new());
             let planned = |choice| plan([choice; 2]);
-            let done: Result<Result<(), GpuError>, ()> = block_on(with_retries_async(
+            let done: Result<Result<(), GpuError>, ()> = with_retries(
                 choice,
                 planned,
                 |retry| told.push(retry.next),
@@ -143,7 +143,8 @@ mod tests {
                     tried.push(plan.accel.structure.name());
                     Ok(Err(GpuError::Steps))
                 },
-            ));
+            )
+            .wait();
             assert_eq!(done, Ok(Err(GpuError::Steps)));
             (tried.len(), told)
         };
@@ -154,12 +155,8 @@ mod tests {
     #[test]
     fn a_callers_own_error_ends_it() {
         let planned = |choice| plan([choice; 2]);
-        let done: Result<Result<(), GpuError>, &str> = block_on(with_retries_async(
-            AccelChoice::Auto,
-            planned,
-            |_| {},
-            async |_: &_| Err("enough"),
-        ));
+        let done: Result<Result<(), GpuError>, &str> =
+            with_retries(AccelChoice::Auto, planned, |_| {}, async |_: &_| Err("enough")).wait();
         assert_eq!(done, Err("enough"));
     }
 }

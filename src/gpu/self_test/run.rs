@@ -195,14 +195,14 @@ fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::headless::waiting::block_on;
+    use crate::gpu::headless::waiting::Wait;
 
     #[test]
     fn every_kernel_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
-        let run = block_on(SelfTestRun::new(&device, SelfTestExtent::Full)).unwrap();
+        let run = SelfTestRun::new(&device, SelfTestExtent::Full).wait().unwrap();
         assert_eq!(run.buffers().len(), 5);
-        let run = block_on(SelfTestRun::new(&device, SelfTestExtent::Quick)).unwrap();
+        let run = SelfTestRun::new(&device, SelfTestExtent::Quick).wait().unwrap();
         assert_eq!(run.buffers().len(), 1);
     }
 }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, LitPart, Wait};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome,
 };
@@ -49,7 +49,7 @@ static FAULTY: Device = LazyLock::new(|| open(Adversary { fault: FAULT, ..PART }
 fn open(adversary: Adversary) -> Result<Headless, String> {
     let rewrite = Some(adversary.rewrite());
     let options = HeadlessOptions { rewrite, ..HeadlessOptions::default() };
-    Headless::open(&options).map_err(|error| error.to_string())
+    Headless::open(&options).wait().map_err(|error| error.to_string())
 }
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -121,7 +121,7 @@ fn certify(
     }
     let support::View { scene, camera, film, settings } = view;
     let film = cut(film, SIDE)?;
-    Ok(headless.verify(scene, &View::new(camera.as_ref(), film), settings)?)
+    Ok(headless.verify(scene, &View::new(camera.as_ref(), film), settings).wait()?)
 }
 
 fn cut(film: &Film, side: u32) -> Result<Film, Failed> {
@@ -139,7 +139,7 @@ pub(crate) fn certify_on(
     let support::View { scene, camera, film, settings } = view;
     let seen = View::new(camera.as_ref(), cut(film, side)?);
     let buffers = upload(headless, scene, &seen, settings, choice)?;
-    let recording = headless.record(&buffers, &seen, settings, &mut go_on())?;
+    let recording = headless.record(&buffers, &seen, settings, &mut go_on()).wait()?;
     Ok(Checker::new(scene)?.certify(&recording))
 }
 
@@ -151,7 +151,7 @@ fn upload(
     choice: AccelChoice,
 ) -> Result<pinhole::gpu::SceneBuffers, Failed> {
     let plan = headless.plan(scene, seen, settings, LayerSet::DATA, choice, 0);
-    Ok(headless.upload(scene, &plan.build(scene))?)
+    Ok(headless.upload(scene, &plan.build(scene)).wait()?)
 }
 
 fn certify_lit(device: &Device, view: &support::View) -> Result<LitCertificate, Failed> {
@@ -169,7 +169,9 @@ pub(crate) fn certify_lit_on(
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
-    headless.record_lit(&buffers, &seen, settings, samples, (each, &mut go_on()))?;
+    headless
+        .record_lit(&buffers, &seen, settings, (LitPart::Middle, samples), (each, &mut go_on()))
+        .wait()?;
     Ok(certificate)
 }
 
@@ -206,8 +208,9 @@ pub(crate) fn hits(
 ) -> Result<Vec<(u32, u32)>, Failed> {
     let plan = AccelPlan::new(scene.spheres(), choice, 1 << 27);
     let plan = plan.with_box_margin(box_margin);
-    let buffers = headless.upload(scene, &plan.build(scene.spheres()).into())?;
-    let recording = headless.record(&buffers, view, &RenderSettings::default(), &mut go_on())?;
+    let buffers = headless.upload(scene, &plan.build(scene.spheres()).into()).wait()?;
+    let recording =
+        headless.record(&buffers, view, &RenderSettings::default(), &mut go_on()).wait()?;
     Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
 }
 

@@ -1,8 +1,7 @@
 //! Pictures that are transparent in parts, among what the host has drawn.
 
 use libtest_mimic::Trial;
-use pinhole::gpu::{Composite, CompositeOptions, Headless, wgpu};
-use pinhole::internals::edited_composite;
+use pinhole::gpu::{Composite, CompositeOptions, Headless, Wait, wgpu};
 use wgpu::TextureFormat;
 
 use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, at, begin_over, pixels};
@@ -101,7 +100,7 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
 /// Number of pixels whose colour or depth is not what it must be.
 fn wrong(stage: &Stage, fault: Fault) -> usize {
     let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
-    wrong_by(stage, &Composite::new(&stage.host.device, &options).unwrap(), fault)
+    wrong_by(stage, &Composite::new(&stage.host.device, &options).wait().unwrap(), fault)
 }
 
 /// Number of pixels that a pipeline draws with a colour or depth that is not what it must be.
@@ -179,7 +178,8 @@ fn faults_in_shaders(_: &'static Headless) {
         let of = |stage: &Stage| {
             let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
             let device = &stage.host.device;
-            let composite = edited_composite(device, &options, vec![fault.edit.clone()]).unwrap();
+            let composite =
+                Composite::edited(device, &options, vec![fault.edit.clone()]).wait().unwrap();
             wrong_by(stage, &composite, Fault::None)
         };
         let found: usize = stages.iter().flatten().map(of).sum();

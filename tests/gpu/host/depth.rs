@@ -4,7 +4,7 @@ use libtest_mimic::Trial;
 use pinhole::camera::{DepthOrder, HostCamera};
 use pinhole::gpu::{
     ColorTarget, Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest,
-    GpuError, Headless, HostDepth, RendererOptions, TargetEncoding, Targets, wgpu,
+    GpuError, Headless, HostDepth, RendererOptions, TargetEncoding, Targets, Wait, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::{Film, LinearRgb, Scene};
@@ -260,15 +260,15 @@ fn refused(_: &'static Headless) {
     for (format, samples) in [(TextureFormat::Depth32Float, 1), (TextureFormat::Rgba8Unorm, 3)] {
         let mut options = CompositeOptions::new(format, depth);
         options.sample_count = samples;
-        let error = Composite::new(device, &options).unwrap_err();
+        let error = Composite::new(device, &options).wait().unwrap_err();
         assert!(matches!(error, GpuError::Device { .. }), "{error}");
     }
     let mut options = CompositeOptions::new(TextureFormat::Rgba8Unorm, depth);
     options.encoding = TargetEncoding::Linear;
     options.source = ColorTarget::Linear16;
-    let composite = Composite::new(device, &options).unwrap();
+    let composite = Composite::new(device, &options).wait().unwrap();
     // The picture is in another format than the one to be drawn.
-    let picture = |targets: &Targets<'_>| CompositePicture::new(&composite, device, targets);
+    let picture = |targets: &Targets<'_>| CompositePicture::new(&composite, device, targets).wait();
     let error = stage.layers.with(true, picture).map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Target { layer: "color", .. }), "{error}");
     // There is no depth layer.
@@ -387,8 +387,8 @@ fn several_bands(_: &'static Headless) {
     let is_near: Vec<bool> = (0..SIZE[0] * SIZE[1]).map(|_| random.bool()).collect();
     let words: Vec<u16> = is_near.iter().map(|near| if *near { 0 } else { u16::MAX }).collect();
     host.write(&depth, &words);
-    let test = DepthTest::new(&renderer, device).unwrap();
-    let mut depth = HostDepth::new(&test, device, &view_of(&depth)).unwrap();
+    let test = DepthTest::new(&renderer, device).wait().unwrap();
+    let mut depth = HostDepth::new(&test, device, &view_of(&depth)).wait().unwrap();
     depth.set_camera(queue, &camera, &frame, [0, 0]).unwrap();
 
     let [without, with] = [false, true].map(|has_depth| {

@@ -5,7 +5,7 @@ use pinhole::accel::AccelChoice;
 use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
-    DepthTest, Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, wgpu,
+    DepthTest, Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 use pinhole::{LinearRgb, Scene};
@@ -35,7 +35,7 @@ fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Renderer {
         edits: edits.to_vec(),
         ..RendererOptions::default()
     };
-    Renderer::new(&stage.host.device, &options).unwrap()
+    Renderer::new(&stage.host.device, &options).wait().unwrap()
 }
 
 /// The host's depth, at the first pixel of a picture.
@@ -79,10 +79,11 @@ fn picture(
 ) -> [Vec<u8>; 4] {
     let Host { device, queue } = &stage.host;
     let layers = stage.host.layers(SIZE, TextureFormat::Rgba8Unorm);
-    let mut frame = layers.with(true, |targets| Frame::new(renderer, device, targets)).unwrap();
+    let mut frame =
+        layers.with(true, |targets| Frame::new(renderer, device, targets).wait()).unwrap();
     frame.set_view(queue, scene, &stage.view(), &settings()).unwrap();
-    let test = DepthTest::new(renderer, device).unwrap();
-    let mut host_depth = HostDepth::new(&test, device, &view_of(&depth.texture)).unwrap();
+    let test = DepthTest::new(renderer, device).wait().unwrap();
+    let mut host_depth = HostDepth::new(&test, device, &view_of(&depth.texture)).wait().unwrap();
     host_depth.set_camera(queue, &stage.camera, &frame, depth.first_pixel).unwrap();
     let mut encoder = stage.host.encoder();
     renderer.record_with_depth(&mut encoder, scene, &frame, &test, &host_depth).unwrap();

@@ -3,7 +3,7 @@
 use libtest_mimic::Trial;
 use pinhole::gpu::{
     ColorTarget, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState, Recolor,
-    Renderer, RendererOptions, SceneBuffers, wgpu,
+    Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::image::Layer;
 use pinhole::internals::ShaderEdit;
@@ -50,7 +50,7 @@ impl Show {
             edits,
             ..RendererOptions::default()
         };
-        let renderer = LitRenderer::new(Renderer::new(&host.device, &options).unwrap());
+        let renderer = LitRenderer::new(Renderer::new(&host.device, &options).wait().unwrap());
         let layers = host.layers(size, wgpu::TextureFormat::Rgba32Float);
         Self { host, renderer, layers }
     }
@@ -69,14 +69,14 @@ impl Show {
 
     pub(super) fn scene(&self, scene: &Scene) -> SceneBuffers {
         let (renderer, Host { device, queue }) = (self.renderer.renderer(), &self.host);
-        SceneBuffers::for_studio(renderer, device, queue, scene).unwrap()
+        SceneBuffers::for_studio(renderer, device, queue, scene).wait().unwrap()
     }
 
     fn picture(&self, scene: &SceneBuffers, view: &View) -> Result<LitPicture, GpuError> {
         let Host { device, queue } = &self.host;
         let (seen, settings) = (view.seen(), &view.settings);
         self.layers.with(true, |targets| {
-            LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, targets)
+            LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, targets).wait()
         })
     }
 
@@ -87,7 +87,7 @@ impl Show {
         view: &View,
     ) -> Result<bool, GpuError> {
         let Host { device, queue } = &self.host;
-        picture.set(&self.renderer, device, queue, scene, &view.seen(), &view.settings)
+        picture.set(&self.renderer, device, queue, scene, &view.seen(), &view.settings).wait()
     }
 
     fn record(
@@ -286,14 +286,14 @@ fn other_scene(headless: &'static Headless) {
     let mut picture = show.picture(&scene, &view).unwrap();
     show.finish(&mut picture, &scene, u64::MAX);
 
-    let recolor = Recolor::new(&show.host.device).unwrap();
+    let recolor = Recolor::new(&show.host.device).wait().unwrap();
     let new = vec![[200, 40, 9, 255]; count];
     let update =
         SceneUpdate { first: 0, colors: Some(NewColors::Rgba8(&new)), ..SceneUpdate::default() };
     view.scene.apply(&update).unwrap();
     let mut encoder = show.host.encoder();
     let Host { device, queue } = &show.host;
-    recolor.record(device, queue, &mut encoder, &mut scene, &view.scene, &update).unwrap();
+    recolor.record(device, queue, &mut encoder, &mut scene, &view.scene, &update).wait().unwrap();
     let refused = show.record(&mut picture, &mut encoder, &scene, u64::MAX).unwrap_err();
     assert_eq!(refused, GpuError::OtherScene);
     queue.submit([encoder.finish()]);
@@ -321,6 +321,7 @@ fn refused(_: &'static Headless) {
     assert!(matches!(refused, GpuError::Target { layer: "color", .. }), "{refused}");
     let clear = named("studio_opacity", 3);
     let Host { device, queue } = &show.host;
-    let without = SceneBuffers::new(show.renderer.renderer(), device, queue, &clear.scene).unwrap();
+    let without =
+        SceneBuffers::new(show.renderer.renderer(), device, queue, &clear.scene).wait().unwrap();
     assert_eq!(show.picture(&without, &clear).unwrap_err(), GpuError::NoOccluders);
 }

@@ -3,7 +3,9 @@
 use libtest_mimic::Trial;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::cpu::Search;
-use pinhole::gpu::{GpuError, Headless, LitState, LivePicture, LiveProgress, SceneBuffers, wgpu};
+use pinhole::gpu::{
+    GpuError, Headless, LitState, LivePicture, LiveProgress, SceneBuffers, Wait, wgpu,
+};
 use pinhole::internals::{LiveReference, ShaderEdit};
 use pinhole::{Film, View};
 
@@ -66,7 +68,7 @@ impl Stage {
         let (seen, settings) = (self.view.seen(), &self.view.settings);
         self.show.layers.with(true, |targets| {
             let renderer = &self.show.renderer;
-            LivePicture::new(renderer, device, queue, &self.scene, &seen, settings, targets)
+            LivePicture::new(renderer, device, queue, &self.scene, &seen, settings, targets).wait()
         })
     }
 
@@ -85,7 +87,10 @@ impl Stage {
         let Host { device, queue } = &self.show.host;
         let view = View::new(camera, self.view.film);
         let settings = &self.view.settings;
-        picture.set(&self.show.renderer, device, queue, &self.scene, &view, settings).unwrap();
+        picture
+            .set(&self.show.renderer, device, queue, &self.scene, &view, settings)
+            .wait()
+            .unwrap();
         let mut encoder = self.show.host.encoder();
         let progress = self.record(picture, &mut encoder);
         assert!(progress.rays > 0 && !progress.was_lost, "{progress:?}");
@@ -145,6 +150,7 @@ fn at_rest(headless: &'static Headless) {
     view.settings.sampling.filter = pinhole::PixelFilter::Box;
     let wanted = headless
         .render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR)
+        .wait()
         .unwrap();
     // Within a pixel of an edge the two are not the same: one is smooth there, and the other not.
     let close = color

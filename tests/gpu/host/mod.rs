@@ -13,7 +13,7 @@ mod triangle;
 use libtest_mimic::Trial;
 use pinhole::camera::{Camera, HostCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::glam::{DMat4, DQuat, DVec3, DVec4};
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, Wait};
 use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading};
 
 use crate::support::hosts::{Convention, view};
@@ -77,7 +77,7 @@ fn as_our_own(headless: &'static Headless) {
         let host = HostCamera::new(view(&pose, into), projection, convention.order()).unwrap();
         let [a, b] = [own.as_ref(), &host].map(|camera| {
             let seen = pinhole::View::new(camera, film);
-            headless.render(&scene, &seen, &settings, LayerSet::ALL).unwrap()
+            headless.render(&scene, &seen, &settings, LayerSet::ALL).wait().unwrap()
         });
         let hits = a.id().unwrap().iter().filter(|id| **id != u32::MAX).count();
         assert!(hits > 300, "{hits}");
@@ -114,9 +114,9 @@ fn legal(headless: &'static Headless) {
             let (to_view, projection) = (to_view.as_mat4(), projection.as_mat4());
             let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
             let seen = pinhole::View::new(&camera, film);
-            let certificate = headless.verify(&scene, &seen, &settings).unwrap();
+            let certificate = headless.verify(&scene, &seen, &settings).wait().unwrap();
             assert!(certificate.is_legal(), "{case}, {convention:?}: {certificate}");
-            let picture = headless.render(&scene, &seen, &settings, LayerSet::ALL).unwrap();
+            let picture = headless.render(&scene, &seen, &settings, LayerSet::ALL).wait().unwrap();
             let reference = pinhole::cpu::render(&scene, &seen, &settings, LayerSet::ALL).unwrap();
             let pairs = picture.id().unwrap().iter().zip(reference.id().unwrap());
             let different = pairs.filter(|(a, b)| a != b).count();

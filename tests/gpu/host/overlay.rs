@@ -4,7 +4,7 @@ use libtest_mimic::Trial;
 use pinhole::camera::PanoramaCamera;
 use pinhole::gpu::{
     Composite, CompositeOptions, CompositePicture, Frame, GpuError, Headless, PickError, Picker,
-    Renderer, RendererOptions, TargetTextures, Targets, wgpu,
+    Renderer, RendererOptions, TargetTextures, Targets, Wait, wgpu,
 };
 use pinhole::{Film, Scene, View};
 use wgpu::{TextureFormat, TextureUsages};
@@ -30,23 +30,26 @@ fn own() -> Vec<Trial> {
 fn every_pixel(headless: &'static Headless) {
     let stage = Stage::new(Convention::Perspective);
     let device = &stage.host.device;
-    let renderer = Renderer::new(device, &RendererOptions::default()).unwrap();
-    let textures = TargetTextures::new(&renderer, device, SIZE).unwrap();
+    let renderer = Renderer::new(device, &RendererOptions::default()).wait().unwrap();
+    let textures = TargetTextures::new(&renderer, device, SIZE).wait().unwrap();
     let targets = textures.targets();
     assert_eq!((textures.size(), targets.data.is_none()), (SIZE, true));
-    let mut frame = Frame::new(&renderer, device, &targets).unwrap();
+    let mut frame = Frame::new(&renderer, device, &targets).wait().unwrap();
     // No host has matrices of this camera.
     let camera = PanoramaCamera::new(pose());
     let view = View::new(&camera, Film::new(SIZE[0], SIZE[1]).unwrap());
     let scene = Scene::new(&stage.spheres).unwrap();
-    let uploaded =
-        pinhole::gpu::SceneBuffers::new(&renderer, device, &stage.host.queue, &scene).unwrap();
+    let uploaded = pinhole::gpu::SceneBuffers::new(&renderer, device, &stage.host.queue, &scene)
+        .wait()
+        .unwrap();
     frame.set_view(&stage.host.queue, &uploaded, &view, &settings()).unwrap();
-    let expected = headless.render(&scene, &view, &settings(), pinhole::LayerSet::COLOR).unwrap();
+    let expected =
+        headless.render(&scene, &view, &settings(), pinhole::LayerSet::COLOR).wait().unwrap();
 
     for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba8UnormSrgb] {
-        let composite = Composite::new(device, &CompositeOptions::without_depth(format)).unwrap();
-        let mut picture = CompositePicture::new(&composite, device, &targets).unwrap();
+        let composite =
+            Composite::new(device, &CompositeOptions::without_depth(format)).wait().unwrap();
+        let mut picture = CompositePicture::new(&composite, device, &targets).wait().unwrap();
         for first in [[0, 0], FIRST] {
             if first == FIRST {
                 picture.set_place(&stage.host.queue, first);
@@ -87,11 +90,11 @@ fn textures(_: &'static Headless) {
     let device = &stage.host.device;
     for data_layers in [false, true] {
         let options = RendererOptions { data_layers, ..RendererOptions::default() };
-        let renderer = Renderer::new(device, &options).unwrap();
-        let textures = TargetTextures::new(&renderer, device, SIZE).unwrap();
+        let renderer = Renderer::new(device, &options).wait().unwrap();
+        let textures = TargetTextures::new(&renderer, device, SIZE).wait().unwrap();
         let targets = textures.targets();
         assert_eq!(targets.data.is_some(), data_layers);
-        Frame::new(&renderer, device, &targets).unwrap();
+        Frame::new(&renderer, device, &targets).wait().unwrap();
         let views = targets.data.iter().flat_map(|data| [data.depth, data.normal, data.id]);
         for view in std::iter::once(targets.color).chain(views) {
             let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
@@ -99,19 +102,21 @@ fn textures(_: &'static Headless) {
         }
         // A pass with depth needs data layers.
         let composite = stage.composite(TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float, 1);
-        let picture = CompositePicture::new(&composite, device, &targets);
+        let picture = CompositePicture::new(&composite, device, &targets).wait();
         assert_eq!(picture.is_ok(), data_layers, "{picture:?}");
         for size in [[0, 5], [u32::MAX, 5]] {
-            let error = TargetTextures::new(&renderer, device, size).unwrap_err();
+            let error = TargetTextures::new(&renderer, device, size).wait().unwrap_err();
             assert!(matches!(error, GpuError::Device { .. }), "{error}");
         }
     }
     // A texture that cannot be drawn is refused without depth, too.
     let composite =
         Composite::new(device, &CompositeOptions::without_depth(TextureFormat::Rgba8Unorm))
+            .wait()
             .unwrap();
     let wrong = view_of(&stage.layers.depth);
-    let error = CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None });
+    let error =
+        CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None }).wait();
     assert!(matches!(error, Err(GpuError::Target { layer: "color", .. })), "{error:?}");
 }
 
@@ -125,7 +130,7 @@ fn picked() -> Vec<Trial> {
 fn picks(_: &'static Headless) {
     for convention in [Convention::Perspective, Convention::OrthographicReversed] {
         let stage = Stage::new(convention);
-        let mut picker = Picker::new(&stage.host.device, 3).unwrap();
+        let mut picker = Picker::new(&stage.host.device, 3).wait().unwrap();
         let mut random = fastrand::Rng::with_seed(5);
         let (mut hits, mut asked) = (0, Vec::new());
         for frame in 0..120 {
@@ -166,7 +171,7 @@ fn picks(_: &'static Headless) {
 
 fn errors(_: &'static Headless) {
     let stage = Stage::new(Convention::Perspective);
-    let mut picker = Picker::new(&stage.host.device, 2).unwrap();
+    let mut picker = Picker::new(&stage.host.device, 2).wait().unwrap();
     let mut encoder = stage.host.encoder();
     stage.trace(&mut encoder);
     let mut record = |view: &pinhole::View<'_>, pixel, has_data| {

@@ -5,7 +5,7 @@ use pinhole::camera::{Camera, HostCamera, Pose};
 use pinhole::glam::{DMat4, DVec2, DVec3};
 use pinhole::gpu::{
     Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth,
-    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    Renderer, RendererOptions, SceneBuffers, Targets, Wait, wgpu,
 };
 use pinhole::{LinearRgb, RenderSettings, Scene, Shading, Sphere};
 use wgpu::TextureFormat;
@@ -131,7 +131,7 @@ impl Stage {
     ) -> Composite {
         let mut options = CompositeOptions::new(format, self.composite_depth(depth));
         options.sample_count = samples;
-        Composite::new(&self.host.device, &options).unwrap()
+        Composite::new(&self.host.device, &options).wait().unwrap()
     }
 
     pub(super) fn composite_depth(&self, format: TextureFormat) -> CompositeDepth {
@@ -140,7 +140,8 @@ impl Stage {
 
     pub(super) fn picture(&self, composite: &Composite) -> CompositePicture {
         let device = &self.host.device;
-        let picture = |targets: &Targets<'_>| CompositePicture::new(composite, device, targets);
+        let picture =
+            |targets: &Targets<'_>| CompositePicture::new(composite, device, targets).wait();
         self.layers.with(true, picture).unwrap()
     }
 
@@ -180,8 +181,8 @@ impl Stage {
         first_pixel: [u32; 2],
     ) {
         let Host { device, queue } = &self.host;
-        let test = DepthTest::new(&self.renderer, device).unwrap();
-        let mut depth = HostDepth::new(&test, device, depth).unwrap();
+        let test = DepthTest::new(&self.renderer, device).wait().unwrap();
+        let mut depth = HostDepth::new(&test, device, depth).wait().unwrap();
         let missing =
             self.renderer.record_with_depth(encoder, &self.scene, &self.frame, &test, &depth);
         assert_eq!(missing, Err(pinhole::gpu::GpuError::NoView));

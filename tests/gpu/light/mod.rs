@@ -7,7 +7,7 @@ use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::cpu::SearchStructure;
 use pinhole::glam::DVec3;
-use pinhole::gpu::{Decision, EachSample, GpuError, Headless, Progress, Watch};
+use pinhole::gpu::{Decision, EachSample, GpuError, Headless, LitPart, Progress, Wait, Watch};
 use pinhole::image::denoise::GUIDES;
 use pinhole::light::{Ground, Sky, SkyLight};
 use pinhole::scene::material::SurfaceProperties;
@@ -49,7 +49,7 @@ fn own() -> Vec<Trial> {
 }
 
 fn render(view: &View) -> Result<Image, Failed> {
-    Ok(headless()?.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?)
+    Ok(headless()?.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).wait()?)
 }
 
 fn agree(view: &View) -> Result<(), Failed> {
@@ -105,7 +105,7 @@ fn batches(device: &'static Headless) {
 fn denoising(device: &'static Headless) {
     let mut view = lit_scenes::sampled("path_lobes_and_metals", 4);
     let noisy = render(&view).unwrap();
-    let quiet = device.denoise(&noisy).unwrap();
+    let quiet = device.denoise(&noisy).wait().unwrap();
     let wanted = cpu::denoise(&noisy).unwrap();
     for (a, b) in quiet.color().iter().zip(wanted.color()) {
         for c in 0..3 {
@@ -155,7 +155,7 @@ fn occluders(device: &'static Headless) {
         assert_eq!(occluders.statistics.count, 200);
         let structures = plan.build(scene);
         assert_eq!(structures.occluders.as_ref().unwrap().structure(), structure);
-        let buffers = device.upload(scene, &structures).unwrap();
+        let buffers = device.upload(scene, &structures).wait().unwrap();
         let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
         // The plan does not count the records of bricks and the single appearance words.
         assert!(buffers.bytes() <= planned + 400, "{} of {planned}", buffers.bytes());
@@ -178,7 +178,7 @@ fn no_occluders(device: &'static Headless) {
     let render = |mut settings: RenderSettings| {
         settings.sampling.samples = 1;
         let (seen, layers) = (view.seen(), LayerSet::COLOR);
-        device.render_uploaded(&buffers, &seen, &settings, layers, &mut go_on)
+        device.render_uploaded(&buffers, &seen, &settings, layers, &mut go_on).wait()
     };
     let error = render(RenderSettings::studio()).unwrap_err();
     assert_eq!(error, GpuError::NoOccluders);
@@ -193,13 +193,15 @@ fn not_recorded(device: &'static Headless) {
     let path = translucent(8, RenderSettings::path());
     let (buffers, view) = (path.uploaded(device, AccelChoice::Auto), path.seen());
     let refused = |integrator| Some(GpuError::NotPrimary { integrator });
-    let recording = device.record(&buffers, &view, &path.settings, &mut go_on);
+    let recording = device.record(&buffers, &view, &path.settings, &mut go_on).wait();
     assert_eq!(recording.err(), refused("path"));
-    let certificate = device.verify(&path.scene, &view, &RenderSettings::studio());
+    let certificate = device.verify(&path.scene, &view, &RenderSettings::studio()).wait();
     assert_eq!(certificate.err(), refused("studio"));
     let each: &mut EachSample<'_> = &mut |_| {};
     let callbacks = (each, &mut go_on as &mut Watch<'_>);
-    let light = device.record_lit(&buffers, &view, &RenderSettings::default(), &[0], callbacks);
+    let light = device
+        .record_lit(&buffers, &view, &RenderSettings::default(), (LitPart::Middle, &[0]), callbacks)
+        .wait();
     assert_eq!(light.err(), Some(GpuError::NotLit));
 }
 
@@ -265,6 +267,6 @@ fn denoised_pictures() -> Vec<Trial> {
 
 fn denoised(device: &Headless, mut view: View) -> Result<DenoiseCertificate, Failed> {
     view.settings.sampling.samples = 4;
-    let noisy = device.render(&view.scene, &view.seen(), &view.settings, GUIDES)?;
-    Ok(certify(&noisy, &device.denoise(&noisy)?)?)
+    let noisy = device.render(&view.scene, &view.seen(), &view.settings, GUIDES).wait()?;
+    Ok(certify(&noisy, &device.denoise(&noisy).wait()?)?)
 }

@@ -2,7 +2,9 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{Decision, EachSample, GpuError, Headless, HeadlessOptions, Progress, Watch};
+use pinhole::gpu::{
+    Decision, EachSample, GpuError, Headless, HeadlessOptions, LitPart, Progress, Wait, Watch,
+};
 use pinhole::image::Layer;
 use pinhole::internals::RecordedFilm;
 use pinhole::render::{Integrator, Occlusion};
@@ -55,7 +57,7 @@ fn large_studio() -> View {
 /// In one pass, every ray is computed as in several passes, and light is added in the same order.
 fn one_pass(headless: &'static Headless) {
     let options = HeadlessOptions { one_pass: false, ..HeadlessOptions::default() };
-    let several = Headless::open(&options).unwrap();
+    let several = Headless::open(&options).wait().unwrap();
     for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = 6;
         let mut sharp = view.settings.clone();
@@ -74,7 +76,7 @@ fn one_pass(headless: &'static Headless) {
         }
         for (index, settings) in [&view.settings, &sharp, &caught].into_iter().enumerate() {
             let [one, several] = [headless, &several].map(|device| {
-                device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).unwrap()
+                device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).wait().unwrap()
             });
             let differ = one.color().iter().zip(several.color()).filter(|(a, b)| !a.iter().eq(*b));
             let first: Vec<_> = differ.clone().take(3).collect();
@@ -110,7 +112,8 @@ fn structures(device: &'static Headless) {
         let view = sampled(name, samples);
         let pictures = [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List]
             .map(|choice| {
-                let buffers = device.upload(&view.scene, &view.planned(device, choice)).unwrap();
+                let buffers =
+                    device.upload(&view.scene, &view.planned(device, choice)).wait().unwrap();
                 view.watched(device, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
             });
         assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{name}");
@@ -127,7 +130,7 @@ fn sums(headless: &'static Headless) {
         view.settings.is_denoised = false;
         let View { scene, settings, .. } = &view;
         let structures = view.planned(headless, AccelChoice::Auto);
-        let buffers = headless.upload(scene, &structures).unwrap();
+        let buffers = headless.upload(scene, &structures).wait().unwrap();
         let mut film = RecordedFilm::default();
         let mut each = |recording: LitRecording<'_>| {
             let one = match recording {
@@ -139,7 +142,10 @@ fn sums(headless: &'static Headless) {
             film = one.clone();
         };
         let callbacks = (&mut each as &mut EachSample<'_>, &mut go_on as &mut Watch<'_>);
-        headless.record_lit(&buffers, &view.seen(), settings, &samples, callbacks).unwrap();
+        headless
+            .record_lit(&buffers, &view.seen(), settings, (LitPart::Middle, &samples), callbacks)
+            .wait()
+            .unwrap();
         let wanted: Vec<[f32; 3]> = film
             .after
             .iter()

@@ -1,7 +1,7 @@
 //! The picture of a host as a device of pinhole's own renders it.
 #![allow(clippy::print_stdout, reason = "a host tells what it wrote")]
 
-use pinhole::gpu::{Headless, HeadlessOptions};
+use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 use pinhole::{Encoding, LayerSet, RenderSettings, Scene, View, write};
 
 use crate::Outcome;
@@ -17,8 +17,8 @@ pub fn save_still(
     view: &View<'_>,
     settings: &RenderSettings,
 ) -> Outcome<()> {
-    let headless = Headless::open(&HeadlessOptions::default())?;
-    let image = headless.render(scene, view, settings, LayerSet::COLOR)?;
+    let headless = Headless::open(&HeadlessOptions::default()).wait()?;
+    let image = headless.render(scene, view, settings, LayerSet::COLOR).wait()?;
     let path = format!("pinhole-host-{name}.png");
     std::fs::write(&path, write::png::encode(&image, &Encoding::default())?)?;
     println!("wrote {path}");

@@ -7,7 +7,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
     Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState,
-    Picked, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    Picked, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
@@ -41,16 +41,17 @@ impl Spheres {
             data_layers: true,
             ..RendererOptions::default()
         };
-        let renderer = LitRenderer::new(Renderer::new(device, &options)?);
+        let renderer = LitRenderer::new(Renderer::new(device, &options).wait()?);
         // The render pass of egui has no depth.
         let options = CompositeOptions::without_depth(egui.target_format);
-        let composite = Composite::new(device, &options)?;
-        let buffers = SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene)?;
+        let composite = Composite::new(device, &options).wait()?;
+        let buffers =
+            SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene).wait()?;
         Ok(Self {
             renderer,
             composite,
             buffers,
-            picker: Picker::new(device, 3)?,
+            picker: Picker::new(device, 3).wait()?,
             panel: None,
             budget: Budget::new(Duration::from_millis(40)),
             progress: None,
@@ -154,22 +155,24 @@ impl Draw {
         let panel = match panel {
             Some(panel) => panel,
             None => {
-                let textures = TargetTextures::new(renderer.renderer(), device, [width, height])?;
+                let textures =
+                    TargetTextures::new(renderer.renderer(), device, [width, height]).wait()?;
                 let (targets, settings) = (textures.targets(), &self.settings);
                 panel.insert(Panel {
                     film,
                     first_pixel: [0, 0],
                     lit: LitPicture::new(
                         renderer, device, queue, buffers, &view, settings, &targets,
-                    )?,
-                    shown: CompositePicture::new(composite, device, &targets)?,
+                    )
+                    .wait()?,
+                    shown: CompositePicture::new(composite, device, &targets).wait()?,
                     textures,
                 })
             }
         };
         panel.first_pixel = [left, top];
         panel.shown.set_place(queue, panel.first_pixel);
-        panel.lit.set(renderer, device, queue, buffers, &view, &self.settings)?;
+        panel.lit.set(renderer, device, queue, buffers, &view, &self.settings).wait()?;
         let next = budget.record(&mut panel.lit, renderer, queue, encoder, buffers)?;
         let is_done = |progress: Option<LitProgress>| {
             progress.is_some_and(|progress| progress.state == LitState::Done)

@@ -17,7 +17,7 @@ use boxes::Boxes;
 use pinhole::camera::{CameraKind, DepthOrder};
 use pinhole::gpu::{
     Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth,
-    Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 use pinhole_host_common::{Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still};
@@ -70,14 +70,14 @@ impl Host for Raster {
             data_layers: true,
             ..RendererOptions::default()
         };
-        let renderer = Renderer::new(&gpu.device, &options)?;
+        let renderer = Renderer::new(&gpu.device, &options).wait()?;
         let depth = CompositeDepth::new(Boxes::DEPTH, DepthOrder::NearIsOne);
         let mut options = CompositeOptions::new(gpu.format, depth);
         options.sample_count = SAMPLES;
-        let composite = Composite::new(&gpu.device, &options)?;
-        let depth_test = DepthTest::new(&renderer, &gpu.device)?;
+        let composite = Composite::new(&gpu.device, &options).wait()?;
+        let depth_test = DepthTest::new(&renderer, &gpu.device).wait()?;
         let scene = molecule()?;
-        let buffers = SceneBuffers::new(&renderer, &gpu.device, &gpu.queue, &scene)?;
+        let buffers = SceneBuffers::new(&renderer, &gpu.device, &gpu.queue, &scene).wait()?;
         let pictures = Pictures::new(gpu, &renderer, &composite, &depth_test, size)?;
         Ok(Self {
             scene,
@@ -183,7 +183,7 @@ impl Pictures {
         depth_test: &DepthTest,
         size: [u32; 2],
     ) -> Outcome<Self> {
-        let textures = TargetTextures::new(renderer, &gpu.device, size)?;
+        let textures = TargetTextures::new(renderer, &gpu.device, size).wait()?;
         let targets = textures.targets();
         let attachment =
             |format, sample_count, usage| attachment(gpu, size, format, sample_count, usage);
@@ -192,9 +192,9 @@ impl Pictures {
             film: Film::new(size[0], size[1])?,
             color: attachment(gpu.format, SAMPLES, TextureUsages::empty()),
             depth: attachment(Boxes::DEPTH, SAMPLES, TextureUsages::empty()),
-            frame: Frame::new(renderer, &gpu.device, &targets)?,
-            picture: CompositePicture::new(composite, &gpu.device, &targets)?,
-            host_depth: HostDepth::new(depth_test, &gpu.device, &early_depth)?,
+            frame: Frame::new(renderer, &gpu.device, &targets).wait()?,
+            picture: CompositePicture::new(composite, &gpu.device, &targets).wait()?,
+            host_depth: HostDepth::new(depth_test, &gpu.device, &early_depth).wait()?,
             early_depth,
         })
     }

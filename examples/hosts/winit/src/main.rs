@@ -13,7 +13,7 @@ use std::time::Duration;
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
     Composite, CompositeOptions, CompositePicture, LitPicture, LitRenderer, LitState, Renderer,
-    RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{
@@ -52,12 +52,14 @@ impl Host for BareWindow {
             data_layers: true,
             ..RendererOptions::default()
         };
-        let renderer = LitRenderer::new(Renderer::new(&gpu.device, &options)?);
+        let renderer = LitRenderer::new(Renderer::new(&gpu.device, &options).wait()?);
         // The pass over the window has no depth.
-        let composite = Composite::new(&gpu.device, &CompositeOptions::without_depth(gpu.format))?;
+        let composite =
+            Composite::new(&gpu.device, &CompositeOptions::without_depth(gpu.format)).wait()?;
         let (scene, settings) = (molecule()?, studio(-0.7, 16));
         let buffers =
-            SceneBuffers::for_studio(renderer.renderer(), &gpu.device, &gpu.queue, &scene)?;
+            SceneBuffers::for_studio(renderer.renderer(), &gpu.device, &gpu.queue, &scene)
+                .wait()?;
         let pictures = Pictures::new(gpu, &renderer, &composite, &buffers, &settings, size, orbit)?;
         let budget = Budget::new(Duration::from_millis(40));
         Ok(Self { scene, settings, renderer, composite, buffers, pictures, budget, is_done: false })
@@ -75,7 +77,7 @@ impl Host for BareWindow {
         let Pictures { film, lit, shown } = &mut self.pictures;
         let camera = orbit.camera(film.aspect())?;
         // The samples so far are kept unless the camera has moved.
-        lit.set(renderer, device, queue, buffers, &View::new(&camera, *film), settings)?;
+        lit.set(renderer, device, queue, buffers, &View::new(&camera, *film), settings).wait()?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let progress = budget.record(lit, renderer, queue, &mut encoder, buffers)?;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -120,15 +122,16 @@ impl Pictures {
         orbit: &Orbit,
     ) -> Outcome<Self> {
         let Gpu { device, queue, .. } = gpu;
-        let textures = TargetTextures::new(renderer.renderer(), device, size)?;
+        let textures = TargetTextures::new(renderer.renderer(), device, size).wait()?;
         let targets = textures.targets();
         let film = Film::new(size[0], size[1])?;
         let camera = orbit.camera(film.aspect())?;
         let view = View::new(&camera, film);
         Ok(Self {
             film,
-            lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets)?,
-            shown: CompositePicture::new(composite, device, &targets)?,
+            lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets)
+                .wait()?,
+            shown: CompositePicture::new(composite, device, &targets).wait()?,
         })
     }
 }

@@ -323,7 +323,7 @@ mod tests {
     use super::super::kernels::{Materials, Sources};
     use super::super::one_pass::one_pass_fits;
     use super::*;
-    use crate::gpu::headless::waiting::block_on;
+    use crate::gpu::headless::waiting::Wait;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
     /// device supports, without any driver.
@@ -355,12 +355,12 @@ mod tests {
                         several_bricks,
                         one_pass: None,
                     };
-                    block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
+                    LitPasses::new(&device, key, &Edits::default()).wait().unwrap();
                     assert!(one_pass_fits(structure, &device.limits()));
                     for pass in OnePass::ALL {
                         let key = LitKey { one_pass: Some(pass), ..key };
                         if mode == Mode::Studio {
-                            block_on(LitPasses::new(&device, key, &Edits::default())).unwrap();
+                            LitPasses::new(&device, key, &Edits::default()).wait().unwrap();
                         }
                     }
                 }
