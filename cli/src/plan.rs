@@ -161,7 +161,7 @@ impl Report {
             device_bytes: plan.device_bytes,
             device_bytes_per_sphere: plan.device_bytes_per_sphere(),
             host_bytes: plan.host_bytes,
-            host_peak: plan.host_peak.what(),
+            host_peak: plan.host_peak,
             host_bytes_available,
             adapter: AdapterReport::of(headless),
             limits: LimitsReport {

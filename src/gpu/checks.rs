@@ -10,7 +10,7 @@ use std::pin::Pin;
 use std::sync::{Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
 
-use wgpu::{Device, ErrorFilter, ErrorScopeGuard, WasmNotSend};
+use wgpu::{Device, ErrorFilter, WasmNotSend};
 
 use crate::gpu::error::GpuError;
 
@@ -30,31 +30,18 @@ impl fmt::Debug for Check {
 impl Check {
     /// Runs `create` in error scopes.
     fn of<T>(device: &Device, create: impl FnOnce() -> T) -> (T, Self) {
-        let scopes = Self::scopes(device);
+        let filters = [ErrorFilter::OutOfMemory, ErrorFilter::Validation, ErrorFilter::Internal];
+        let [memory, validation, internal] = filters.map(|filter| device.push_error_scope(filter));
         let created = create();
-        (created, Self::popped(scopes))
-    }
-
-    /// Opens the scopes for memory, validation and internal errors.
-    fn scopes(device: &Device) -> [ErrorScopeGuard; 3] {
-        [ErrorFilter::OutOfMemory, ErrorFilter::Validation, ErrorFilter::Internal]
-            .map(|filter| device.push_error_scope(filter))
-    }
-
-    fn popped([memory, validation, internal]: [ErrorScopeGuard; 3]) -> Self {
         // Scopes nest, so they are popped in reverse order.
         let (internal, validation, memory) = (internal.pop(), validation.pop(), memory.pop());
-        Self(Box::pin(async move {
+        let error = async move {
             // A resource without memory also causes validation errors wherever it is used, so the scope for memory is
             // reported first.
             let errors = [memory.await, validation.await, internal.await];
             errors.iter().flatten().next().map(GpuError::from_wgpu)
-        }))
-    }
-
-    /// The same check, with errors that `explain` has changed.
-    fn explained(self, explain: impl FnOnce(GpuError) -> GpuError + WasmNotSend + 'static) -> Self {
-        Self(Box::pin(async move { self.0.await.map(explain) }))
+        };
+        (created, Self(Box::pin(error)))
     }
 
     async fn passed(self) -> Result<(), GpuError> {
@@ -79,9 +66,7 @@ pub(super) struct Checks {
 impl Checks {
     /// Runs `create` in error scopes.
     pub(super) fn create<T>(&self, device: &Device, create: impl FnOnce() -> T) -> T {
-        let (created, check) = Check::of(device, create);
-        self.pending.borrow_mut().push(check);
-        created
+        self.create_explained(device, create, |error| error)
     }
 
     /// Runs `create` in error scopes whose errors are changed by `explain`.
@@ -92,7 +77,8 @@ impl Checks {
         explain: impl FnOnce(GpuError) -> GpuError + WasmNotSend + 'static,
     ) -> T {
         let (created, check) = Check::of(device, create);
-        self.pending.borrow_mut().push(check.explained(explain));
+        let explained = Box::pin(async move { check.0.await.map(explain) });
+        self.pending.borrow_mut().push(Check(explained));
         created
     }
 

@@ -13,6 +13,7 @@ pub use wgpu;
 pub const WGPU_VERSION: &str = "30.0";
 
 pub mod adapter;
+mod cache;
 mod checks;
 mod device_shape;
 pub(crate) mod edit;
@@ -33,7 +34,7 @@ pub use error::GpuError;
 pub use headless::Headless;
 pub use headless::lit_recording::{EachSample, LitPart};
 pub use headless::measure::TraceTime;
-pub use headless::plan::{HostPeak, PictureRequest, RenderPlan, StructurePlans};
+pub use headless::plan::{PictureRequest, RenderPlan, StructurePlans};
 pub use headless::progress::{
     Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
 };

@@ -341,7 +341,7 @@ pub(crate) struct Averages {
     pub(crate) variance: f32,
 }
 
-fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {
+pub(crate) fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {
     if let Some(layer) = layer {
         layer[column] = value;
     }

@@ -72,8 +72,8 @@ pub use lit::recording::{
 };
 #[cfg(feature = "gpu")]
 pub(crate) use lit::recording::{
-    PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,
-    StudioSurface, UploadedLighting, UploadedSky,
+    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, StudioSurface,
+    UploadedLighting, UploadedSky,
 };
 pub use recording::{
     NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadError, UploadedView,

@@ -81,7 +81,7 @@ impl<'a> Flow<'a> {
         passes: &'a LitPasses,
         scene: &'a SceneBuffers,
     ) -> Self {
-        let mut recorder = Recorder::new(frame, &passes.advance, headless.is_indirect, 0);
+        let mut recorder = Recorder::new(frame, &passes.advance, headless.options.indirect, 0);
         recorder.replace_names(headless.pass_names());
         Self {
             headless,

@@ -28,7 +28,7 @@ impl Headless {
         let mut image = self.data_layers(scene, view, settings, wanted, watch).await?;
         let lighting = &scenes.lighting();
         let key = scenes.key(lighting, &self.device.limits());
-        let is_one_pass = self.is_one_pass && key.one_pass.is_some();
+        let is_one_pass = self.options.one_pass && key.one_pass.is_some();
         let mut attempt = if is_one_pass { Attempt::OnePass } else { Attempt::Steps };
         let (samples, totals) = loop {
             let gather = async |passes: &LitPasses| {

@@ -8,9 +8,7 @@ use crate::camera::film::Film;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
-use crate::gpu::headless::lit_states::{
-    Keep, LONGEST_SIDE, PathKeeper, Reader, StudioKeeper, longest_side,
-};
+use crate::gpu::headless::lit_states::{Keep, Keeper, LONGEST_SIDE, Reader, longest_side};
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::lit::records::LightingParameters;
@@ -20,7 +18,10 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 use crate::light::SkyLight;
 use crate::render::RenderSettings;
-use crate::verify::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
+use crate::verify::{
+    LitInputs, LitRecording, RecordedFilm, RecordedSurface, StudioSurface, UploadedLighting,
+    UploadedSky,
+};
 
 /// Callback with the recording of each sample.
 pub type EachSample<'a> = dyn FnMut(LitRecording<'_>) + 'a;
@@ -53,10 +54,6 @@ impl Headless {
         let side = if is_studio { longest_side(lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
         let given = inputs(&scenes, lighting, tile);
-        let mut keep: Box<dyn Keep> = match is_studio {
-            true => Box::new(StudioKeeper::new(given)),
-            false => Box::new(PathKeeper::new(given)),
-        };
         // What is recorded lies between the passes.
         let mut attempt = Attempt::Steps;
         let key = attempt.key(scenes.key(lighting, &self.device.limits()));
@@ -68,7 +65,13 @@ impl Headless {
             };
             loop {
                 let work = LitWork { headless: self, passes, scenes, lighting, attempt };
-                let done = work.record(tile, samples, &mut *keep, &mut each, watch).await;
+                let done = if is_studio {
+                    let keeper = Keeper::<StudioSurface>::new(given.clone());
+                    work.record(tile, samples, keeper, &mut each, watch).await
+                } else {
+                    let keeper = Keeper::<RecordedSurface>::new(given.clone());
+                    work.record(tile, samples, keeper, &mut each, watch).await
+                };
                 match (done, attempt.easier(lighting)) {
                     (Err(GpuError::Steps), Some(easier)) if is_first.get() => attempt = easier,
                     (done, _) => return done,
@@ -80,14 +83,17 @@ impl Headless {
 }
 
 impl LitWork<'_> {
-    async fn record(
+    async fn record<S: Default>(
         &self,
         tile: Tile,
         samples: &[u32],
-        keep: &mut dyn Keep,
+        mut keeper: Keeper<S>,
         each: &mut EachSample<'_>,
         watch: &mut Watch<'_>,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), GpuError>
+    where
+        Keeper<S>: Keep,
+    {
         let Self { headless, passes, scenes, lighting, .. } = *self;
         let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
         let frame = &self.frame(sizes, std::iter::once(tile)).await?;
@@ -101,7 +107,7 @@ impl LitWork<'_> {
             let part = f64::from(done) / f64::from(total);
             let progress = Progress { samples: done, total, part, noise: None };
             let mut after = || unless_ended(watch(&progress));
-            keep.begin(sample);
+            keeper.begin(sample);
             flow.begin(0);
             for step in round.steps(sample..sample.saturating_add(1))? {
                 flow.step(&step, &mut after).await?;
@@ -109,20 +115,16 @@ impl LitWork<'_> {
                     Some(Moment::Accumulated) => {
                         let sums = reader.film(&mut flow).await?;
                         let before = std::mem::replace(&mut before, sums.clone());
-                        keep.end(RecordedFilm { before, after: sums });
+                        keeper.end(RecordedFilm { before, after: sums });
                     }
-                    Some(moment) => {
-                        if let Some(wanted) = keep.wants(moment) {
-                            reader
-                                .states(&mut flow, wanted, |states| keep.keep(moment, states))
-                                .await?;
-                            after()?;
-                        }
+                    Some(moment) if keeper.wants(moment) => {
+                        reader.states(&mut flow, |states| keeper.keep(moment, states)).await?;
+                        after()?;
                     }
-                    None => {}
+                    _ => {}
                 }
             }
-            each(keep.recording());
+            each(keeper.recording());
         }
         Ok(())
     }

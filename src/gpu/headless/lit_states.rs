@@ -7,15 +7,15 @@ use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::lit::{LightingData, LitFrame, Mode, Moment};
 use crate::verify::{
-    LitInputs, LitRecording, PathRecording, PathState, PixelSums, RecordedFilm, RecordedSample,
-    RecordedSurface, StudioLight, StudioRecording, StudioSample, StudioSurface,
+    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSurface,
+    RectangleRecording, RectangleSample, StudioLight, StudioSurface,
 };
 
 /// Maximum side in pixels of the rectangle that is recorded. A sample of a path of eight surfaces then takes 130 MB of
 /// host memory.
 pub(super) const LONGEST_SIDE: u32 = 256;
 
-/// The states of all paths between two dispatches, of which only what is asked for is copied.
+/// The states of all paths between two dispatches.
 pub(super) struct States<'a> {
     /// The slots on the device, one after the other.
     vectors: &'a [[u32; 4]],
@@ -24,24 +24,23 @@ pub(super) struct States<'a> {
 }
 
 impl States<'_> {
-    /// The whole states.
-    pub(super) fn all(&self) -> Vec<PathState> {
+    fn all(&self) -> Vec<PathState> {
         let of = |index| PathState { slots: self.slots.map(|source| self.vector(source, index)) };
         (0..self.pixels).map(of).collect()
     }
 
     /// What the rays hit.
-    pub(super) fn hits(&self) -> Vec<[u32; 4]> {
+    fn hits(&self) -> Vec<[u32; 4]> {
         self.from(SlotSource::Device(HIT)).collect()
     }
 
     /// One slot of each state.
-    pub(super) fn slot(&self, slot: usize) -> Vec<[u32; 4]> {
+    fn slot(&self, slot: usize) -> Vec<[u32; 4]> {
         self.from(self.slots[slot]).collect()
     }
 
     /// The last word of a slot of each state.
-    pub(super) fn last_words(&self, slot: usize) -> Vec<u32> {
+    fn last_words(&self, slot: usize) -> Vec<u32> {
         self.from(self.slots[slot]).map(|vector| vector[3]).collect()
     }
 
@@ -55,33 +54,6 @@ impl States<'_> {
             SlotSource::Constant(bits) => bits,
         }
     }
-}
-
-/// What is needed of the states of paths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
-    Hits,
-    /// One slot of each state.
-    Slot(usize),
-    All,
-}
-
-/// Keeps what is recorded of a sample.
-pub(super) trait Keep {
-    /// Begins the sample with this index.
-    fn begin(&mut self, sample: u32);
-
-    /// What is needed of the states after a pass, if anything.
-    fn wants(&mut self, moment: Moment) -> Option<Wanted>;
-
-    /// Keeps the states after a pass.
-    fn keep(&mut self, moment: Moment, states: &States<'_>);
-
-    /// Keeps the sums of the pixels, and ends the sample.
-    fn end(&mut self, film: RecordedFilm);
-
-    /// The recording of the sample.
-    fn recording(&self) -> LitRecording<'_>;
 }
 
 /// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
@@ -141,83 +113,16 @@ impl<'a> Reader<'a> {
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
     }
 
-    /// Reads what is wanted of the states, and calls `keep` with them.
+    /// Reads the states, and calls `keep` with them.
     pub(super) async fn states(
         &self,
         flow: &mut Flow<'_>,
-        wanted: Wanted,
         keep: impl FnOnce(&States<'_>),
     ) -> Result<(), GpuError> {
         let Self { pixels, slots, .. } = *self;
-        let bytes = pixels as u64 * size_of::<[u32; 4]>() as u64;
-        let of_slot = |slot: usize| slot as u64 * bytes..(slot as u64 + 1) * bytes;
-        let range = match wanted {
-            Wanted::Hits => of_slot(HIT),
-            Wanted::Slot(slot) => match slots[slot] {
-                SlotSource::Device(slot) => of_slot(slot),
-                SlotSource::Constant(_) => 0..0,
-            },
-            Wanted::All => 0..self.paths.buffer.size(),
-        };
-        let paths = &self.frame.paths;
-        let (start, size) = (range.start, range.end - range.start);
-        flow.encoder().copy_buffer_to_buffer(paths, start, &self.paths.buffer, start, size);
+        self.paths.record_copy(flow.encoder(), &self.frame.paths);
         flow.finish(&[&self.paths.buffer]).await?;
         self.paths.read(|vectors: &[[u32; 4]]| keep(&States { vectors, pixels, slots }))
-    }
-}
-
-/// Keeps the states of the paths of a sample.
-pub(super) struct PathKeeper {
-    recording: PathRecording,
-    sample: RecordedSample,
-}
-
-impl PathKeeper {
-    pub(super) fn new(given: LitInputs) -> Self {
-        let recording = PathRecording { given, samples: Vec::new() };
-        Self { recording, sample: RecordedSample::default() }
-    }
-}
-
-impl Keep for PathKeeper {
-    fn begin(&mut self, sample: u32) {
-        self.recording.samples.clear();
-        self.sample = RecordedSample { sample, ..RecordedSample::default() };
-    }
-
-    fn wants(&mut self, moment: Moment) -> Option<Wanted> {
-        Some(match moment {
-            Moment::Extended => Wanted::Hits,
-            Moment::Occluded => Wanted::Slot(PathState::PENDING),
-            _ => Wanted::All,
-        })
-    }
-
-    fn keep(&mut self, moment: Moment, states: &States<'_>) {
-        match (moment, self.sample.surfaces.last_mut()) {
-            (Moment::Extended, _) => {
-                let hits = states.hits();
-                self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
-            }
-            (Moment::Shaded, Some(surface)) => {
-                surface.open = states.last_words(PathState::PENDING);
-                surface.scattered = states.all();
-            }
-            (Moment::Occluded, Some(surface)) => {
-                surface.open = states.last_words(PathState::PENDING);
-            }
-            _ => self.sample.start = states.all(),
-        }
-    }
-
-    fn end(&mut self, film: RecordedFilm) {
-        self.sample.film = film;
-        self.recording.samples.push(std::mem::take(&mut self.sample));
-    }
-
-    fn recording(&self) -> LitRecording<'_> {
-        LitRecording::Paths(&self.recording)
     }
 }
 
@@ -244,89 +149,109 @@ pub(super) fn longest_side(lighting: &LightingData) -> u32 {
     (pixels.isqrt() as u32 / 8 * 8).clamp(8, LONGEST_SIDE)
 }
 
-/// Keeps the states of the rays of a sample.
-pub(super) struct StudioKeeper {
-    recording: StudioRecording,
-    sample: StudioSample,
-    /// Whether a ray still passes through surfaces.
-    is_any_alive: bool,
-    /// Whether all surfaces were recorded that rays pass through.
+/// Keeps what is recorded of a sample.
+pub(super) struct Keeper<S> {
+    recording: RectangleRecording<S>,
+    sample: RectangleSample<S>,
+    /// Whether all surfaces of a studio were recorded that rays pass through.
     is_over: bool,
-    /// The hidden lights or directions that are not yet added up.
+    /// The hidden lights or directions of a studio that are not yet added up.
     hidden: Option<Vec<u32>>,
+}
+
+impl<S: Default> Keeper<S> {
+    pub(super) fn new(given: LitInputs) -> Self {
+        let recording = RectangleRecording { given, samples: Vec::new() };
+        Self { recording, sample: RectangleSample::default(), is_over: false, hidden: None }
+    }
+
+    /// Begins the sample with this index.
+    pub(super) fn begin(&mut self, sample: u32) {
+        self.recording.samples.clear();
+        self.sample = RectangleSample { sample, ..RectangleSample::default() };
+        (self.is_over, self.hidden) = (false, None);
+    }
+
+    /// Keeps the sums of the pixels, and ends the sample.
+    pub(super) fn end(&mut self, film: RecordedFilm) {
+        self.sample.film = film;
+        self.recording.samples.push(std::mem::take(&mut self.sample));
+    }
+}
+
+/// What is kept of a sample, along paths or in a studio.
+pub(super) trait Keep {
+    /// Whether the states after a pass are kept.
+    fn wants(&mut self, moment: Moment) -> bool;
+
+    /// Keeps the states after a pass.
+    fn keep(&mut self, moment: Moment, states: &States<'_>);
+
+    /// The recording of the sample.
+    fn recording(&self) -> LitRecording<'_>;
+}
+
+impl Keep for Keeper<RecordedSurface> {
+    fn wants(&mut self, _: Moment) -> bool {
+        true
+    }
+
+    fn keep(&mut self, moment: Moment, states: &States<'_>) {
+        match (moment, self.sample.surfaces.last_mut()) {
+            (Moment::Extended, _) => {
+                let hits = states.hits();
+                self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
+            }
+            (Moment::Shaded, Some(surface)) => {
+                surface.open = states.last_words(PathState::PENDING);
+                surface.scattered = states.all();
+            }
+            (Moment::Occluded, Some(surface)) => {
+                surface.open = states.last_words(PathState::PENDING);
+            }
+            _ => self.sample.start = states.all(),
+        }
+    }
+
+    fn recording(&self) -> LitRecording<'_> {
+        LitRecording::Paths(&self.recording)
+    }
 }
 
 /// Flag of a ray that passes on, `PATH_ALIVE` in `shaders/path/state.wgsl`.
 const ALIVE: u32 = crate::light::codes::path::ALIVE;
 
-impl StudioKeeper {
-    pub(super) fn new(given: LitInputs) -> Self {
-        Self {
-            recording: StudioRecording { given, samples: Vec::new() },
-            sample: StudioSample::default(),
-            is_any_alive: true,
-            is_over: false,
-            hidden: None,
-        }
-    }
-
-    fn is_any_alive(states: &[PathState]) -> bool {
-        states.iter().any(|state| state.slots[0][3] & ALIVE != 0)
-    }
-
-    /// The light of a batch of lights or directions.
-    fn light(&mut self, states: &States<'_>) -> StudioLight {
-        let (left, radiance) = (hidden_of(states), states.slot(PathState::RADIANCE));
-        let hidden = self.hidden.take().unwrap_or_else(|| vec![0; left.len()]);
-        StudioLight { hidden, radiance, left }
-    }
-}
-
-/// The bits of hidden lights.
-fn hidden_of(states: &States<'_>) -> Vec<u32> {
-    states.last_words(PathState::NORMAL)
-}
-
-impl Keep for StudioKeeper {
-    fn begin(&mut self, sample: u32) {
-        self.recording.samples.clear();
-        self.sample = StudioSample { sample, ..StudioSample::default() };
-        (self.is_any_alive, self.is_over, self.hidden) = (true, false, None);
-    }
-
+impl Keep for Keeper<StudioSurface> {
     /// Once every ray has ended, no state changes any more.
-    fn wants(&mut self, moment: Moment) -> Option<Wanted> {
-        self.is_over |= moment == Moment::Extended && !self.is_any_alive;
-        let wanted = match moment {
-            Moment::Extended => Wanted::Hits,
-            Moment::Shadowed | Moment::Searched => Wanted::Slot(PathState::NORMAL),
-            _ => Wanted::All,
-        };
-        (!self.is_over).then_some(wanted)
+    fn wants(&mut self, moment: Moment) -> bool {
+        if let (Moment::Extended, Some(before)) = (moment, self.sample.surfaces.last()) {
+            self.is_over |= before.shaded.iter().all(|state| state.slots[0][3] & ALIVE == 0);
+        }
+        !self.is_over
     }
 
     fn keep(&mut self, moment: Moment, states: &States<'_>) {
-        let light =
-            matches!(moment, Moment::Illuminated | Moment::Gathered).then(|| self.light(states));
-        match (moment, self.sample.surfaces.last_mut(), light) {
-            (Moment::Extended, ..) => {
+        let hidden = states.last_words(PathState::NORMAL);
+        match (moment, self.sample.surfaces.last_mut()) {
+            (Moment::Extended, _) => {
                 let hits = states.hits();
                 self.sample.surfaces.push(StudioSurface { hits, ..StudioSurface::default() });
             }
-            (Moment::Shadowed | Moment::Searched, ..) => self.hidden = Some(hidden_of(states)),
-            (Moment::Shaded, Some(surface), _) => {
-                surface.shaded = states.all();
-                self.is_any_alive = Self::is_any_alive(&surface.shaded);
+            (Moment::Shadowed | Moment::Searched, _) => self.hidden = Some(hidden),
+            (Moment::Shaded, Some(surface)) => surface.shaded = states.all(),
+            (Moment::Illuminated | Moment::Gathered, Some(surface)) => {
+                let light = StudioLight {
+                    hidden: self.hidden.take().unwrap_or_else(|| vec![0; hidden.len()]),
+                    radiance: states.slot(PathState::RADIANCE),
+                    left: hidden,
+                };
+                match moment {
+                    Moment::Illuminated => surface.lights.push(light),
+                    _ => surface.ambient.push(light),
+                }
             }
-            (Moment::Illuminated, Some(surface), Some(light)) => surface.lights.push(light),
-            (Moment::Gathered, Some(surface), Some(light)) => surface.ambient.push(light),
             _ => self.sample.start = states.all(),
         }
-    }
-
-    fn end(&mut self, film: RecordedFilm) {
-        self.sample.film = film;
-        self.recording.samples.push(std::mem::take(&mut self.sample));
     }
 
     fn recording(&self) -> LitRecording<'_> {

@@ -9,7 +9,6 @@ use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::readback::{ReadableBuffer, TileTextures};
-use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
@@ -103,60 +102,54 @@ impl Headless {
         scene: &SceneBuffers,
         view: &View<'_>,
     ) -> Result<TraceTime, GpuError> {
-        let key = RendererKey::new(scene, view.camera);
-        self.with_renderer(key, async |renderer: &Renderer| {
-            self.measure_with(renderer, scene, view).await
-        })
-        .await
-    }
-
-    async fn measure_with(
-        &self,
-        renderer: &Renderer,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-    ) -> Result<TraceTime, GpuError> {
-        let (device, queue) = (&self.device, &self.queue);
-        let tile_size = tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
-        let textures = scoped(device, || TileTextures::new(device, tile_size, false)).await?;
-        let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
-        let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let period = f64::from(queue.get_timestamp_period());
-        let stamps = scoped(device, || has_clock.then(|| Stamps::new(device, period))).await?;
-        // wgpu clears a buffer when it is first used; this must not be measured.
-        let mut encoder = self.encoder();
-        frame.record_clear(&mut encoder);
-        self.run(encoder, &[]).await?;
-        let mut time = TraceTime::default();
-        for tile in tiles(&view.film, tile_size) {
-            frame.set_tile(queue, scene, view, tile, &PrimarySettings::default());
-            for part in frame.parts().collect::<Vec<_>>() {
-                let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
-                    frame.set_first_group(queue, part.slot, groups.first);
-                    let mut encoder = self.encoder();
-                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                        label: None,
-                        timestamp_writes: stamps.as_ref().map(Stamps::writes),
-                    });
-                    let slice = BandBrick { groups, ..part };
-                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
-                    drop(pass);
-                    stamps.iter().for_each(|stamps| stamps.record_copy(&mut encoder));
-                    let mapped: Vec<_> =
-                        stamps.iter().map(|stamps| &stamps.readable.buffer).collect();
-                    let unnoted = PassNames::default();
-                    let elapsed =
-                        self.submit_slice(encoder, unnoted, groups, scene, &mapped).await?;
-                    time.pixels += groups.pixels();
-                    time.add(elapsed, stamps.as_ref().map(Stamps::elapsed).transpose()?);
+        let options = self.options_for(scene, view.camera);
+        self.with_renderer(options, async |renderer: &Renderer| {
+            let (device, queue) = (&self.device, &self.queue);
+            let tile_size =
+                tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
+            let textures = scoped(device, || TileTextures::new(device, tile_size, false)).await?;
+            let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
+            let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+            let period = f64::from(queue.get_timestamp_period());
+            let stamps = scoped(device, || has_clock.then(|| Stamps::new(device, period))).await?;
+            // wgpu clears a buffer when it is first used; this must not be measured.
+            let mut encoder = self.encoder();
+            frame.record_clear(&mut encoder);
+            self.run(encoder, &[]).await?;
+            let mut time = TraceTime::default();
+            for tile in tiles(&view.film, tile_size) {
+                frame.set_tile(queue, scene, view, tile, &PrimarySettings::default());
+                for part in frame.parts().collect::<Vec<_>>() {
+                    let mut left = vec![part.groups];
+                    while let Some(groups) =
+                        Groups::take(&mut left, scene.submission_size().groups())
+                    {
+                        frame.set_first_group(queue, part.slot, groups.first);
+                        let mut encoder = self.encoder();
+                        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                            label: None,
+                            timestamp_writes: stamps.as_ref().map(Stamps::writes),
+                        });
+                        let slice = BandBrick { groups, ..part };
+                        renderer.record_trace(&mut pass, scene, &frame, slice)?;
+                        drop(pass);
+                        stamps.iter().for_each(|stamps| stamps.record_copy(&mut encoder));
+                        let mapped: Vec<_> =
+                            stamps.iter().map(|stamps| &stamps.readable.buffer).collect();
+                        let unnoted = PassNames::default();
+                        let elapsed =
+                            self.submit_slice(encoder, unnoted, groups, scene, &mapped).await?;
+                        time.pixels += groups.pixels();
+                        time.add(elapsed, stamps.as_ref().map(Stamps::elapsed).transpose()?);
+                    }
                 }
             }
-        }
-        let mut encoder = self.encoder();
-        textures.status.record_copy(&mut encoder, frame.status());
-        self.run(encoder, &[&textures.status.buffer]).await?;
-        textures.check_steps()?;
-        Ok(time)
+            let mut encoder = self.encoder();
+            textures.status.record_copy(&mut encoder, frame.status());
+            self.run(encoder, &[&textures.status.buffer]).await?;
+            textures.check_steps()?;
+            Ok(time)
+        })
+        .await
     }
 }

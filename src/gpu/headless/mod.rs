@@ -22,26 +22,27 @@ pub(crate) mod waiting;
 
 use std::convert::Infallible;
 use std::sync::Arc;
-use std::time::Duration;
 
 use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 
 use crate::accel::AccelChoice;
 use crate::camera::View;
 use crate::gpu::adapter;
+use crate::gpu::cache::Cache;
 use crate::gpu::checks::Faults;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
-use crate::gpu::headless::renderers::{RendererKey, Renderers};
+use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::profile::Profile;
+use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::query_structure;
+use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
@@ -55,16 +56,14 @@ pub struct Headless {
     info: AdapterInfo,
     device: Device,
     queue: Queue,
-    timeout: Duration,
-    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
-    is_indirect: bool,
-    /// Whether one pass takes whole samples where it can.
-    is_one_pass: bool,
+    /// The options that the device was opened with, indirect dispatches only if it has them.
+    options: HeadlessOptions,
     faults: Arc<Faults>,
-    profile: Option<Profile>,
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
     /// be attributed to a render.
     renderers: Turns<Renderers>,
+    lit: Cache<LitKey, LitPasses>,
+    recolor: Cache<(), Recolor>,
     /// Edits of kernels that are built where they are used.
     edits: Edits,
 }
@@ -129,26 +128,22 @@ impl Headless {
         device.set_device_lost_callback(move |_, message| {
             reported.report(GpuError::DeviceLost { message });
         });
-        let timeout = options.timeout;
         let downlevel = adapter.get_downlevel_capabilities().flags;
-        let is_indirect =
-            options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
+        let has_indirect = downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let edits = Edits { replacements: options.edits.clone(), rewrite: options.rewrite.clone() };
-        let renderers = Turns::new(Renderers::new(edits.clone()));
-        let is_one_pass = options.one_pass;
         let info =
             AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
-        let profile = options.profile.clone();
+        let options =
+            HeadlessOptions { indirect: options.indirect && has_indirect, ..options.clone() };
         Ok(Self {
             info,
             device,
             queue,
-            timeout,
-            is_indirect,
-            is_one_pass,
+            options,
             faults,
-            profile,
-            renderers,
+            renderers: Turns::default(),
+            lit: Cache::default(),
+            recolor: Cache::default(),
             edits,
         })
     }
@@ -258,15 +253,15 @@ impl Headless {
         }
     }
 
-    /// Calls `work` with the renderer for a key, while nothing else uses this device.
+    /// Calls `work` with a renderer, while nothing else uses this device.
     pub(crate) async fn with_renderer<T>(
         &self,
-        key: RendererKey,
+        options: RendererOptions,
         work: impl AsyncFnOnce(&Renderer) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(async |renderers: &mut Renderers| {
             let phase = self.phase("create pipelines");
-            let renderer = renderers.of(&self.device, self.info.device_type, key).await?;
+            let renderer = renderers.of(&self.device, options).await?;
             drop(phase);
             work(renderer).await
         })
@@ -279,11 +274,11 @@ impl Headless {
         key: LitKey,
         work: impl AsyncFnOnce(&LitPasses) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        self.alone(async |renderers: &mut Renderers| {
+        self.alone(async |_: &mut Renderers| {
             let phase = self.phase("create pipelines");
-            let passes = renderers.lit(&self.device, key).await?;
+            let passes = self.lit.of(key, LitPasses::new(&self.device, key, &self.edits)).await?;
             drop(phase);
-            work(passes).await
+            work(&passes).await
         })
         .await
     }
@@ -333,7 +328,8 @@ impl Headless {
             buffer.map_async(wgpu::MapMode::Read, .., |mapped| to_answer.give(mapped));
             answers.push(answer);
         }
-        let done = waiting::until_done(&self.device, &self.queue, submission, self.timeout).await;
+        let done =
+            waiting::until_done(&self.device, &self.queue, submission, self.options.timeout).await;
         if let Err(GpuError::Timeout { .. }) = done {
             // Dropping the last handle of a queue waits for its work, which may never end.
             std::mem::forget(self.queue.clone());

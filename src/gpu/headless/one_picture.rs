@@ -13,10 +13,11 @@ use crate::gpu::headless::progress::{
     Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
 };
 use crate::gpu::headless::readback::{Derived, ReadableBuffer, TileTextures};
-use crate::gpu::headless::renderers::{RendererKey, Renderers};
-use crate::gpu::headless::uploading::KeyOf;
+use crate::gpu::headless::renderers::Renderers;
+use crate::gpu::headless::uploading::OptionsOf;
 use crate::gpu::passes::bands::{rows_per_band, tile_size};
 use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::gpu::passes::visible_bricks::{VisibleBricks, space_of};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -54,13 +55,14 @@ impl Headless {
             let image = self.render_by_brick(scene, plan, view, settings, layers, watches, None);
             return Ok(Picture { image: image.await?, samples: 1, noise: None, hits: None });
         }
-        let key_of = |kind: BrickKind, several_bricks: bool| {
-            RendererKey::of_picture(vec![kind], several_bricks, view.camera, layers)
+        let options_of = |kind: BrickKind, several_bricks: bool| {
+            let options = self.options_of(&[kind], several_bricks, view.camera);
+            RendererOptions { data_layers: layers != LayerSet::COLOR, ..options }
         };
-        let key_of: Option<&KeyOf<'_>> =
-            if settings.integrator.is_primary() { Some(&key_of) } else { None };
+        let options_of: Option<&OptionsOf<'_>> =
+            if settings.integrator.is_primary() { Some(&options_of) } else { None };
         let plans = plan.structures();
-        let buffers = self.upload_ahead_of(scene, &plans, upload_watch, key_of).await?;
+        let buffers = self.upload_ahead_of(scene, &plans, upload_watch, options_of).await?;
         self.render_uploaded(&buffers, view, settings, layers, watch).await
     }
 
@@ -93,7 +95,6 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         let data_layers = layers != LayerSet::COLOR;
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
-        let device_type = self.info.device_type;
         let size = [film.width(), film.height()];
         let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
         let phase = self.phase("divide");
@@ -114,14 +115,12 @@ impl Headless {
             let primary = scene.primary_settings(settings)?;
             let visible = VisibleBricks::of(view, &scene.space, &boxes);
             let textures = scoped(device, || TileTextures::new(device, size, data_layers)).await?;
-            let key = |structure| RendererKey {
-                kinds: vec![BrickKind { structure, primitive: Primitive::Sphere }],
-                data_layers,
-                several_bricks: true,
-                ..RendererKey::new(&scene, view.camera)
-            };
-            let keys = kinds.map(key);
-            let first = renderers.of(device, device_type, keys[0].clone()).await?;
+            let options = kinds.map(|structure| {
+                let kind = BrickKind { structure, primitive: Primitive::Sphere };
+                let options = self.options_of(&[kind], true, view.camera);
+                RendererOptions { data_layers, ..options }
+            });
+            let first = renderers.of(device, options[0].clone()).await?;
             let mut frame = Frame::new(first, device, &textures.targets()).await?;
             let seen_buffer = scoped(device, || {
                 ReadableBuffer::new(device, "pinhole hits read-back", frame.traced().0.size())
@@ -157,10 +156,10 @@ impl Headless {
                 }
                 self.flush().await?;
                 drop(phase);
-                let key = keys[usize::from(brick.is_nested())].clone();
+                let options = options[usize::from(brick.is_nested())].clone();
                 drop(brick);
                 scene.set_bricks(upload.take_bricks());
-                let renderer = renderers.of(device, device_type, key).await?;
+                let renderer = renderers.of(device, options).await?;
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(queue, part.slot, groups.first);

@@ -40,22 +40,15 @@ pub struct RenderPlan {
     pub device_bytes: u64,
     /// Maximum number of bytes of host memory in use at once, excluding the scene itself.
     pub host_bytes: u64,
-    /// The phase of the render that needs `host_bytes`.
-    pub host_peak: HostPeak,
+    /// What needs `host_bytes`, in words.
+    pub host_peak: &'static str,
 }
 
-/// The phase in which a render needs the most host memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HostPeak {
-    /// Building the structure.
-    Building,
-    /// Copying the structure to the device.
-    Uploading,
-    /// Holding the finished picture.
-    Picture,
-    /// Checking a recording.
-    Checking,
-}
+/// What needs the most host memory.
+pub(crate) const BUILDING: &str = "building the structure";
+pub(crate) const UPLOADING: &str = "copying the scene to the device";
+pub(crate) const PICTURE: &str = "the picture";
+const CHECKING: &str = "checking the picture";
 
 /// The picture that a plan is made for.
 #[derive(Clone, Copy, Debug)]
@@ -83,27 +76,9 @@ pub struct StructurePlans {
 }
 
 impl RenderPlan {
-    /// Plans a picture of primary rays.
-    pub(crate) fn of_primary(
-        request: &PictureRequest<'_>,
-        accel: AccelPlan,
-        device: &DeviceLimits,
-    ) -> Self {
-        Self::planned(request, accel, device, false)
-    }
-
-    /// Plans a recording of primary rays with all layers, rays and hits, a second render without rays, and the check of
-    /// both.
-    pub(crate) fn of_recording(
-        request: &PictureRequest<'_>,
-        accel: AccelPlan,
-        device: &DeviceLimits,
-    ) -> Self {
-        let request = PictureRequest { layers: LayerSet::DATA, ..*request };
-        Self::planned(&request, accel, device, true)
-    }
-
-    fn planned(
+    /// Plans a picture of primary rays. With `keeps_rays`, it is a recording of all layers, rays and hits, a second render
+    /// without rays, and the check of both.
+    pub(crate) fn planned(
         request: &PictureRequest<'_>,
         accel: AccelPlan,
         device: &DeviceLimits,
@@ -132,13 +107,13 @@ impl RenderPlan {
         let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let moments = [
-            (HostPeak::Building, device.building_bytes(&accel, &scene_buffers)),
-            (HostPeak::Uploading, device.uploading_bytes(&accel, &scene_buffers)),
-            (HostPeak::Checking, checking),
-            (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
+            (BUILDING, device.building_bytes(&accel, &scene_buffers)),
+            (UPLOADING, device.uploading_bytes(&accel, &scene_buffers)),
+            (CHECKING, checking),
+            (PICTURE, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
         let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);
-        let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
+        let (host_peak, host_bytes) = worst.unwrap_or((PICTURE, 0));
         Self {
             accel,
             occluders: None,
@@ -193,36 +168,17 @@ impl RenderPlan {
                 return Err(GpuError::Limit { what, needed, limit_name, limit });
             }
         }
-        match memory {
-            Some(available) if self.host_bytes > available => Err(GpuError::HostMemory {
-                what: self.host_peak.what(),
-                needed: self.host_bytes,
-                available,
-                instead: self.host_peak.instead(self.accel.structure),
-            }),
-            _ => Ok(()),
-        }
-    }
-}
-
-impl HostPeak {
-    /// Returns a description of what needs the memory.
-    #[must_use]
-    pub const fn what(self) -> &'static str {
-        match self {
-            Self::Building => "building the structure",
-            Self::Uploading => "copying the scene to the device",
-            Self::Picture => "the picture",
-            Self::Checking => "checking the picture",
-        }
-    }
-
-    /// What the user should choose if there is not enough memory.
-    const fn instead(self, structure: Structure) -> &'static str {
-        match (self, structure) {
-            (Self::Picture | Self::Checking, _) => "a smaller size",
+        let instead = match (self.host_peak, self.accel.structure) {
+            (PICTURE | CHECKING, _) => "a smaller size",
             (_, Structure::Grid) => "fewer spheres, or the structure `tree`",
             _ => "fewer spheres",
+        };
+        let (what, needed) = (self.host_peak, self.host_bytes);
+        match memory {
+            Some(available) if needed > available => {
+                Err(GpuError::HostMemory { what, needed, available, instead })
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -309,11 +265,7 @@ mod tests {
             host_bytes_per_pixel: 16,
         };
         let device = DeviceLimits { limits: Limits::default(), device_type };
-        if keeps_rays {
-            RenderPlan::of_recording(&request, accel, &device)
-        } else {
-            RenderPlan::of_primary(&request, accel, &device)
-        }
+        RenderPlan::planned(&request, accel, &device, keeps_rays)
     }
 
     #[test]
@@ -375,7 +327,7 @@ mod tests {
         let gpu = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
         let software = plan(1024, LayerSet::COLOR, DeviceType::Cpu);
         assert_eq!(software.device_bytes, gpu.device_bytes);
-        assert_eq!(software.host_peak, HostPeak::Picture);
+        assert_eq!(software.host_peak, PICTURE);
         assert_eq!(software.host_bytes, gpu.host_bytes + gpu.device_bytes);
         assert_eq!(software.check(&Limits::default(), Some(software.host_bytes)), Ok(()));
         assert!(matches!(
@@ -387,11 +339,11 @@ mod tests {
     #[test]
     fn a_recording_keeps_rays_and_hits() {
         let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
-        let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
+        let recording = planned(1024, LayerSet::DATA, DeviceType::DiscreteGpu, true);
         assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
         // Both rays of each pixel, and the read-back buffers of rays and hits.
         assert_eq!(recording.device_bytes, plan.device_bytes + ((64 + 80) << 20));
-        assert_eq!(recording.host_peak, HostPeak::Checking);
+        assert_eq!(recording.host_peak, CHECKING);
         assert_eq!(recording.host_bytes, plan.host_bytes + ((72 + 2 + 32) << 20) + 40_000);
         assert_eq!(recording.check(&Limits::default(), None), Ok(()));
     }

@@ -1,8 +1,6 @@
 //! Planning renders on a device, for every integrator. Drivers that are known to compute wrong results get another
 //! structure; `docs/drivers.md` contains the evidence.
 
-use wgpu::AdapterInfo;
-
 use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::camera::View;
 use crate::gpu::device_shape::DeviceLimits;
@@ -22,7 +20,7 @@ impl RenderPlan {
         device: &DeviceLimits,
     ) -> Self {
         if request.settings.integrator.is_primary() {
-            Self::of_primary(request, structures.accel, device)
+            Self::planned(request, structures.accel, device, false)
         } else {
             Self::of_lit(request, structures, device)
         }
@@ -62,16 +60,24 @@ impl Headless {
         let (settings, layers) = (&RenderSettings::default(), LayerSet::DATA);
         let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
         let accel = self.plan_accel(scene, choice);
-        RenderPlan::of_recording(&request, accel, &self.device_limits())
+        RenderPlan::planned(&request, accel, &self.device_limits(), true)
     }
 
     /// Plans the structure of a scene for this device.
     #[must_use]
     pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
         let binding = binding_limit(&self.device().limits());
-        let plan = without_defects(self.adapter_info(), scene, choice, |choice| {
-            AccelPlan::new(scene.spheres(), choice, binding)
-        });
+        let planned = |choice| AccelPlan::new(scene.spheres(), choice, binding);
+        let mut plan = planned(choice);
+        // `SwiftShader` of Chromium 156 has this defect: where invocations that run together leave a loop by `break` at
+        // different times, those that left first lose the values that they assigned in the loop. Grids are traversed in
+        // such loops; trees are not.
+        let is_grid = matches!(plan.structure, Structure::Grid | Structure::NestedGrid);
+        if choice == AccelChoice::Auto && is_grid && self.info.name.starts_with("SwiftShader") {
+            plan = planned(AccelChoice::Tree);
+            plan.reason =
+                format!("{} spheres, and this driver computes grids wrongly", scene.len());
+        }
         match scene.whole() {
             Some(whole) => plan.within((whole.min, whole.max)),
             None => plan,
@@ -84,25 +90,4 @@ impl Headless {
         let device_type = self.adapter_info().device_type;
         DeviceLimits { limits: self.device().limits(), device_type }
     }
-}
-
-/// Plans the structure that suits the data, or another one if the driver is known to compute wrong results with it.
-///
-/// `SwiftShader` of Chromium 156 has this defect: where invocations that run together leave a loop by `break` at
-/// different times, those that left first lose the values that they assigned in the loop. Grids are traversed in such
-/// loops; trees are not.
-fn without_defects(
-    info: &AdapterInfo,
-    scene: &Scene,
-    choice: AccelChoice,
-    plan: impl Fn(AccelChoice) -> AccelPlan,
-) -> AccelPlan {
-    let planned = plan(choice);
-    let is_grid = matches!(planned.structure, Structure::Grid | Structure::NestedGrid);
-    if choice == AccelChoice::Auto && is_grid && info.name.starts_with("SwiftShader") {
-        let mut tree = plan(AccelChoice::Tree);
-        tree.reason = format!("{} spheres, and this driver computes grids wrongly", scene.len());
-        return tree;
-    }
-    planned
 }

@@ -8,10 +8,10 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
 use crate::gpu::headless::readback::{Derived, ReadableTrace, TileTextures};
-use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_bricks::traced_pixels;
 use crate::gpu::profile::PassNames;
@@ -38,8 +38,8 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
         let data_layers = layers != LayerSet::COLOR;
-        let key = RendererKey { data_layers, ..RendererKey::new(scene, view.camera) };
-        self.with_renderer(key, async |renderer: &Renderer| {
+        let options = RendererOptions { data_layers, ..self.options_for(scene, view.camera) };
+        self.with_renderer(options, async |renderer: &Renderer| {
             let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
             let output = Output { image: &mut image, pixels: None };
             self.render_tiles(renderer, scene, view, primary, output, watch).await?;

@@ -14,25 +14,25 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 impl Headless {
     /// What notes the passes of one submission.
     pub(crate) fn pass_names(&self) -> PassNames {
-        PassNames(self.profile.as_ref().map(|_| Vec::new()))
+        PassNames(self.options.profile.as_ref().map(|_| Vec::new()))
     }
 
     /// Whether every pass is submitted by itself, so that the host's clock can measure it for a profile.
     pub(crate) fn submits_one_by_one(&self) -> bool {
-        self.profile.is_some()
+        self.options.profile.is_some()
     }
 
     /// Adds the passes of a submission to the profile, which has just finished. The device may have begun with it at
     /// `began`.
     pub(crate) fn note_passes(&self, names: &PassNames, began: Instant) {
-        if let (Some(profile), Some(name)) = (&self.profile, names.of_all()) {
+        if let (Some(profile), Some(name)) = (&self.options.profile, names.of_all()) {
             profile.add_pass(name, began.elapsed());
         }
     }
 
     /// Begins a phase of the host, if there is a profile.
     pub(crate) fn phase(&self, name: &'static str) -> Option<ProfilePhase> {
-        self.profile.as_ref().map(|profile| profile.phase(name))
+        self.options.profile.as_ref().map(|profile| profile.phase(name))
     }
 
     /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and

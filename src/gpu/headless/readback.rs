@@ -1,7 +1,5 @@
 //! The host's copy of a tile: textures, rays and hits, and the layers that it computes from them.
 
-use std::ops::Range;
-
 use wgpu::{Buffer, CommandEncoder, Device, Texture, TextureFormat, TextureView};
 
 use crate::accel::PlannedBuffer;
@@ -15,7 +13,7 @@ use crate::gpu::resources::{buffer, extent, texture};
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records::{self, NO_HIT};
 use crate::image::color::LinearRgb;
-use crate::image::{Image, NO_ID, RowMut};
+use crate::image::{Image, NO_ID, RowMut, put};
 use crate::scene::SceneAppearance;
 use crate::verify::{TracedPixel, TracedRay};
 
@@ -23,9 +21,8 @@ use crate::verify::{TracedPixel, TracedRay};
 #[derive(Debug)]
 pub(crate) struct ReadableTexture {
     texture: Texture,
-    pub(crate) view: TextureView,
-    pub(crate) buffer: Buffer,
-    bytes_per_pixel: u32,
+    view: TextureView,
+    back: ReadableBuffer,
 }
 
 impl ReadableTexture {
@@ -37,11 +34,9 @@ impl ReadableTexture {
     ) -> Self {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let texture = texture(device, label, format, size, usage);
-        let bytes_per_pixel = bytes_per_pixel(format);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let ReadableBuffer { buffer } =
-            ReadableBuffer::new(device, label, Self::buffer_bytes(format, size));
-        Self { texture, view, buffer, bytes_per_pixel }
+        let back = ReadableBuffer::new(device, label, Self::buffer_bytes(format, size));
+        Self { texture, view, back }
     }
 
     /// Size of the texture in bytes.
@@ -59,10 +54,13 @@ impl ReadableTexture {
         encoder.copy_texture_to_buffer(
             self.texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
-                buffer: &self.buffer,
+                buffer: &self.back.buffer,
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some(padded_row(size[0], self.bytes_per_pixel)),
+                    bytes_per_row: Some(padded_row(
+                        size[0],
+                        bytes_per_pixel(self.texture.format()),
+                    )),
                     rows_per_image: None,
                 },
             },
@@ -76,18 +74,13 @@ impl ReadableTexture {
         [width, height]: [u32; 2],
         mut row: impl FnMut(usize, &[T]),
     ) -> Result<(), GpuError> {
-        let bytes = self
-            .buffer
-            .get_mapped_range(..)
-            .map_err(|error| GpuError::Device { message: error.to_string() })?;
-        let padded = padded_row(width, self.bytes_per_pixel) as usize;
-        let used = (width * self.bytes_per_pixel) as usize;
-        for (j, bytes) in bytes.chunks(padded).take(height as usize).enumerate() {
-            row(j, bytemuck::cast_slice(&bytes[..used]));
-        }
-        drop(bytes);
-        self.buffer.unmap();
-        Ok(())
+        let of_pixel = bytes_per_pixel(self.texture.format());
+        let (padded, used) = (padded_row(width, of_pixel) as usize, (width * of_pixel) as usize);
+        self.back.read(|bytes: &[u8]| {
+            for (j, bytes) in bytes.chunks(padded).take(height as usize).enumerate() {
+                row(j, bytemuck::cast_slice(&bytes[..used]));
+            }
+        })
     }
 }
 
@@ -140,42 +133,6 @@ pub(crate) struct Derived<'a> {
 }
 
 impl Derived<'_> {
-    /// Sets the positions of the hits in some columns of row `j`, which follow from the depths.
-    pub(crate) fn set_by_depths(
-        &self,
-        row: &mut RowMut<'_>,
-        columns: Range<usize>,
-        j: usize,
-        depths: &[f32],
-    ) {
-        let Some(position) = &mut row.position else { return };
-        let pixels = position[columns.clone()].iter_mut().zip(columns);
-        for ((point, i), t) in pixels.zip(depths) {
-            *point = if *t >= NO_HIT { [0.0; 3] } else { self.point([i, j], *t) };
-        }
-    }
-
-    /// Sets the layers that follow from ids in some columns of a row: opacity, albedo, and the number of samples and
-    /// the variance of pixels with a single ray each.
-    pub(crate) fn set_by_ids(&self, row: &mut RowMut<'_>, columns: Range<usize>, ids: &[u32]) {
-        if let Some(alpha) = &mut row.alpha {
-            for (alpha, id) in alpha[columns.clone()].iter_mut().zip(ids) {
-                *alpha = RowMut::coverage(*id);
-            }
-        }
-        if let Some(albedo) = &mut row.albedo {
-            for (albedo, id) in albedo[columns.clone()].iter_mut().zip(ids) {
-                *albedo = self.albedo(*id);
-            }
-        }
-        if let Some(samples) = &mut row.samples {
-            samples[columns.clone()].fill(1);
-        }
-        if let Some(variance) = &mut row.variance {
-            variance[columns].fill(0.0);
-        }
-    }
-
     /// The point in world space at a distance along the ray of a pixel.
     fn point(&self, [i, j]: [usize; 2], t: f32) -> [f32; 3] {
         let location = self.view.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
@@ -252,7 +209,7 @@ impl TileTextures {
             texture.record_copy(encoder, size);
         }
         self.status.record_copy(encoder, frame.status());
-        self.all().map(|texture| &texture.buffer).chain([&self.status.buffer]).collect()
+        self.all().map(|texture| &texture.back.buffer).chain([&self.status.buffer]).collect()
     }
 
     fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
@@ -289,26 +246,33 @@ impl TileTextures {
             return Ok(());
         };
         depth.read_rows(tile.size, |j, depths: &[f32]| {
-            derived.set_by_depths(&mut rows[j], columns.clone(), y + j, depths);
-            let Some(row) = &mut rows[j].depth else {
-                return;
-            };
-            for (pixel, t) in row[columns.clone()].iter_mut().zip(depths) {
-                *pixel = if *t >= NO_HIT { f32::INFINITY } else { *t };
+            let row = &mut rows[j];
+            for (i, t) in columns.clone().zip(depths) {
+                let is_miss = *t >= NO_HIT;
+                put(&mut row.depth, i, if is_miss { f32::INFINITY } else { *t });
+                if row.position.is_some() {
+                    let point = if is_miss { [0.0; 3] } else { derived.point([i, y + j], *t) };
+                    put(&mut row.position, i, point);
+                }
             }
         })?;
         normal.read_rows(tile.size, |j, normals: &[[f32; 4]]| {
-            let Some(row) = &mut rows[j].normal else {
-                return;
-            };
-            for (pixel, [x, y, z, _]) in row[columns.clone()].iter_mut().zip(normals) {
-                *pixel = [*x, *y, *z];
+            for (i, [x, y, z, _]) in columns.clone().zip(normals) {
+                put(&mut rows[j].normal, i, [*x, *y, *z]);
             }
         })?;
         id.read_rows(tile.size, |j, ids: &[u32]| {
-            derived.set_by_ids(&mut rows[j], columns.clone(), ids);
-            let Some(row) = &mut rows[j].id else { return };
-            row[columns.clone()].copy_from_slice(ids);
+            let row = &mut rows[j];
+            for (i, id) in columns.clone().zip(ids) {
+                put(&mut row.id, i, *id);
+                put(&mut row.alpha, i, RowMut::coverage(*id));
+                if row.albedo.is_some() {
+                    put(&mut row.albedo, i, derived.albedo(*id));
+                }
+                // Pixels have a single ray each.
+                put(&mut row.samples, i, 1);
+                put(&mut row.variance, i, 0.0);
+            }
         })
     }
 }

@@ -4,19 +4,20 @@
 use crate::accel::{AccelChoice, AccelPlan};
 use crate::camera::film::Film;
 use crate::camera::{Camera, PinholeCamera, View};
+use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
-use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::{Headless, retried};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::self_test::{TestedProperty, fence_probe};
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::image::color::LinearRgb;
 use crate::image::{Image, LayerSet, NO_ID};
-use crate::render::{Decision, PrimarySettings, RenderSettings};
+use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
@@ -79,13 +80,22 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
         check_whole(&view.film)?;
-        let primary = scene.primary_settings(settings)?;
-        let key = RendererKey {
-            data_layers: true,
-            keeps_rays: true,
-            ..RendererKey::new(scene, view.camera)
-        };
-        self.with_renderer(key, async |renderer: &Renderer| {
+        self.recorded(scene, view, scene.primary_settings(settings)?, None, watch).await
+    }
+
+    /// A recording by kernels with one more edit.
+    async fn recorded(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        primary: PrimarySettings,
+        edit: Option<ShaderEdit>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Recording, GpuError> {
+        let options = self.options_for(scene, view.camera);
+        let edits = edit.into_iter().chain(options.edits).collect();
+        let options = RendererOptions { data_layers: true, keeps_rays: true, edits, ..options };
+        self.with_renderer(options, async |renderer: &Renderer| {
             let mut recording = new_recording(&scene.space, view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
@@ -155,31 +165,17 @@ impl Headless {
         };
         let spheres = (0..ALONG * ALONG * ALONG).map(sphere).collect();
         // The scene and the view are good by construction.
-        let invalid =
-            |error: &dyn std::fmt::Display| GpuError::Device { message: error.to_string() };
-        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).map_err(|error| invalid(&error))?;
-        let film = Film::new(SIDE, SIDE).map_err(|error| invalid(&error))?;
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
+        let film = Film::new(SIDE, SIDE)?;
         let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())
-            .map_err(|error| invalid(&error))?;
+            .map_err(|error| GpuError::Device { message: error.to_string() })?;
         let view = View::new(&camera, film);
         let limit = self.device().limits().max_storage_buffer_binding_size;
         let plan = AccelPlan::new(scene.spheres(), AccelChoice::Grid, limit);
         let buffers = self.upload(&scene, &plan.build(scene.spheres()).into()).await?;
         let primary = buffers.primary_settings(&RenderSettings::default())?;
-        let key = RendererKey {
-            data_layers: true,
-            keeps_rays: true,
-            probes_fences: true,
-            ..RendererKey::new(&buffers, &camera)
-        };
-        let mut recording = new_recording(&buffers.space, &view, primary)?;
-        self.with_renderer(key, async |renderer: &Renderer| {
-            let output =
-                Output { image: &mut recording.image, pixels: Some(&mut recording.pixels) };
-            let go_on = &mut |_: &_| Decision::GoOn;
-            self.render_tiles(renderer, &buffers, &view, &primary, output, go_on).await
-        })
-        .await?;
+        let edit = Some(fence_probe::edit());
+        let recording = self.recorded(&buffers, &view, primary, edit, &mut go_on).await?;
         Ok(fence_probe::judge(&recording.pixels))
     }
 }

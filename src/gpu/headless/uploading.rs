@@ -7,18 +7,19 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{UploadProgress, UploadStep, UploadWatch, go_on};
-use crate::gpu::headless::renderers::{RendererKey, Renderers};
+use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::resources::Make;
+use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
 use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
-/// The renderer that a picture needs for bricks of a kind, of which there may be several.
-pub(crate) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
+/// The options of the renderer that a picture needs for bricks of a kind, of which there may be several.
+pub(crate) type OptionsOf<'a> = dyn Fn(BrickKind, bool) -> RendererOptions + 'a;
 
 /// Is told the structure of bricks that have been built, and whether there are several.
 type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
@@ -47,12 +48,15 @@ impl Headless {
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
             let renderer = self.layouts_of(kinds).await?;
-            let all =
-                self.upload_all(&renderer, scene, accel.into(), watch, &mut |_, _| {}).await?;
+            let all = self
+                .upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {})
+                .await?;
             let Some(accel) = occluders else {
                 return Ok(all);
             };
-            let some = self.upload_occluders(&renderer, scene, accel.into(), watch).await?;
+            let some = self
+                .upload_bricks(&renderer, scene, true, accel.into(), watch, &mut |_, _| {})
+                .await?;
             Ok(all.with_occluders(some))
         })
         .await
@@ -74,14 +78,14 @@ impl Headless {
         self.upload_ahead_of(scene, plans, watch, None).await
     }
 
-    /// Like [`Headless::upload_planned`]. `key_of` returns what the picture that follows will need for the bricks:
+    /// Like [`Headless::upload_planned`]. `options_of` returns what the picture that follows will need for the bricks:
     /// it is built on a thread while the last brick is copied, which leaves other cores idle.
     pub(crate) async fn upload_ahead_of(
         &self,
         scene: &Scene,
         plans: &StructurePlans,
         watch: &mut UploadWatch<'_>,
-        key_of: Option<&KeyOf<'_>>,
+        options_of: Option<&OptionsOf<'_>>,
     ) -> Result<SceneBuffers, GpuError> {
         let StructurePlans { accel, occluders } = plans;
         let planned = [accel].into_iter().chain(occluders).map(|plan| plan.structure);
@@ -93,17 +97,19 @@ impl Headless {
             let bricks = accel.bricks(scene.spheres()).into();
             drop(phase);
             let mut begin = |structure: Structure, several_bricks: bool| {
-                if let Some(key_of) = key_of {
+                if let Some(options_of) = options_of {
                     let kind = BrickKind { structure, primitive: Primitive::Sphere };
-                    self.begin_renderer(renderers, key_of(kind, several_bricks));
+                    self.begin_renderer(renderers, options_of(kind, several_bricks));
                 }
             };
-            let all = self.upload_all(&renderer, scene, bricks, watch, &mut begin).await?;
+            let all =
+                self.upload_bricks(&renderer, scene, false, bricks, watch, &mut begin).await?;
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
             };
             let bricks = plan.bricks(opaque.spheres()).into();
-            let some = self.upload_occluders(&renderer, scene, bricks, watch).await?;
+            let some =
+                self.upload_bricks(&renderer, scene, true, bricks, watch, &mut |_, _| {}).await?;
             Ok(all.with_occluders(some))
         })
         .await
@@ -129,8 +135,8 @@ impl Headless {
         let loses_opacity =
             buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
         if buffers.takes_in_place(scene, update) && !loses_opacity {
-            let work = async |renderers: &mut Renderers| {
-                let recolor = renderers.recolor(&self.device).await?;
+            let work = async |_: &mut Renderers| {
+                let recolor = self.recolor.of((), Recolor::new(&self.device)).await?;
                 let make = Make { device: &self.device, queue: &self.queue };
                 let (mut encoder, mut names) = (self.encoder(), self.pass_names());
                 let recorded = (&mut encoder, &mut names);
@@ -162,53 +168,35 @@ impl Headless {
         Renderer::new(self.device(), &options).await
     }
 
-    async fn upload_all<B: Borrow<Brick>>(
-        &self,
-        renderer: &Renderer,
-        scene: &Scene,
-        bricks: BrickSource<impl ExactSizeIterator<Item = B>>,
-        watch: &mut UploadWatch<'_>,
-        built: &mut WhenBuilt<'_>,
-    ) -> Result<SceneBuffers, GpuError> {
-        let ids = ShapeIds::of_all(scene, bricks.may_part_equals);
-        self.upload_bricks(renderer, SceneSummary::of(scene), bricks, &ids, watch, built).await
-    }
-
-    async fn upload_occluders<B: Borrow<Brick>>(
-        &self,
-        renderer: &Renderer,
-        scene: &Scene,
-        bricks: BrickSource<impl ExactSizeIterator<Item = B>>,
-        watch: &mut UploadWatch<'_>,
-    ) -> Result<SceneBuffers, GpuError> {
-        let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-        self.upload_bricks(renderer, summary, bricks, &ids, watch, &mut |_, _| {}).await
-    }
-
     /// Begins to build a renderer on a thread. A browser builds it later.
-    fn begin_renderer(&self, renderers: &mut Renderers, key: RendererKey) {
+    fn begin_renderer(&self, renderers: &mut Renderers, options: RendererOptions) {
         #[cfg(not(target_arch = "wasm32"))]
         {
-            renderers.begin(self.device(), self.info.device_type, key, self.profile.clone());
+            renderers.begin(self.device(), options, self.options.profile.clone());
         }
         #[cfg(target_arch = "wasm32")]
-        let _ = (renderers, key);
+        let _ = (renderers, options);
     }
 
-    /// Copies bricks one after the other, and waits for the copy of each, so that its memory is free for the next. Calls
-    /// `built` once all are built, before the last is copied.
+    /// Copies bricks of all spheres, or of those that cast shadows, one after the other, and waits for the copy of each, so
+    /// that its memory is free for the next. Calls `built` once all are built, before the last is copied.
     async fn upload_bricks<B: Borrow<Brick>>(
         &self,
         renderer: &Renderer,
-        summary: SceneSummary,
+        scene: &Scene,
+        cast_shadows: bool,
         bricks: BrickSource<impl ExactSizeIterator<Item = B>>,
-        ids: &ShapeIds,
         watch: &mut UploadWatch<'_>,
         built: &mut WhenBuilt<'_>,
     ) -> Result<SceneBuffers, GpuError> {
-        let BrickSource { space, mut bricks, .. } = bricks;
+        let BrickSource { space, may_part_equals, mut bricks } = bricks;
+        let (summary, ids) = if cast_shadows {
+            (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene))
+        } else {
+            (SceneSummary::of(scene), ShapeIds::of_all(scene, may_part_equals))
+        };
         let (device, queue, total) = (self.device(), self.queue(), bricks.len());
-        let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, ids).await?;
+        let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, &ids).await?;
         let mut structure = space.structure;
         for number in 0..total {
             let mut tell = |step| UploadProgress { step, brick: number, bricks: total }.tell(watch);

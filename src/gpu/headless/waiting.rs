@@ -76,12 +76,6 @@ pub trait Wait: Future + Sized {
 #[cfg(not(target_arch = "wasm32"))]
 impl<T: Future> Wait for T {}
 
-/// Whether the future that this thread runs may block it.
-#[cfg(not(target_arch = "wasm32"))]
-fn may_block() -> bool {
-    MAY_BLOCK.get()
-}
-
 /// Lets the device call callbacks of what has happened already.
 pub(crate) fn call_back(device: &Device) {
     #[cfg(not(target_arch = "wasm32"))]
@@ -101,7 +95,7 @@ pub(crate) async fn until_done(
     timeout: Duration,
 ) -> Result<(), GpuError> {
     let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(timeout) };
-    if may_block() {
+    if MAY_BLOCK.get() {
         return poll(device, wait, timeout);
     }
     let (answer, to_answer) = answer();
@@ -205,10 +199,6 @@ pub(crate) struct Turn<'a, T: Default> {
 }
 
 impl<T: Default> Turns<T> {
-    pub(crate) fn new(value: T) -> Self {
-        Self { shared: Mutex::new(Place { value, is_taken: false, waiting: Vec::new() }) }
-    }
-
     /// Waits until no other task uses the value.
     pub(crate) async fn turn(&self) -> Turn<'_, T> {
         std::future::poll_fn(|context| {
@@ -243,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_turn_that_was_given_up_blocks_nobody() {
-        let turns = Turns::new(1);
+        let turns = Turns::<i32>::default();
         let first = turns.turn().wait();
         let mut context = Context::from_waker(Waker::noop());
         let mut given_up = Box::pin(turns.turn());
@@ -256,9 +246,9 @@ mod tests {
                 turn.value
             });
             drop(first);
-            assert_eq!(second.join().unwrap(), 2);
+            assert_eq!(second.join().unwrap(), 1);
         });
-        assert_eq!(turns.turn().wait().value, 2);
+        assert_eq!(turns.turn().wait().value, 1);
     }
 
     /// Without [`Wait::wait`], a future returns to its caller while a device or a callback is busy.

@@ -227,19 +227,14 @@ impl LitPicture {
     fn free_place(&self, max_rays: u64) -> Option<usize> {
         let DataCursor { parts, left } = &self.data_cursor;
         let is_begun = *parts > 0 || !left.is_empty();
-        let is_sliced =
-            !self.has_data() && (is_begun || self.data_groups() * RAYS_PER_GROUP > max_rays);
+        let groups: u64 = self.data.parts().map(|part| part.groups.count()).sum();
+        let is_sliced = !self.has_data() && (is_begun || groups * RAYS_PER_GROUP > max_rays);
         self.tickets.free().filter(|_| !is_sliced || self.tickets.are_all_free())
     }
 
     /// Whether the picture by primary rays is recorded.
     fn has_data(&self) -> bool {
         self.data_cursor.parts == self.data.parts().count()
-    }
-
-    /// Number of workgroups of the picture by primary rays, over all bricks.
-    fn data_groups(&self) -> u64 {
-        self.data.parts().map(|part| part.groups.count()).sum()
     }
 
     /// Records the picture by primary rays, or one more slice of it.

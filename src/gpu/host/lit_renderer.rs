@@ -1,14 +1,12 @@
 //! The passes of lit pictures for hosts, which are built when they are first needed.
 
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use wgpu::{BindGroupLayout, ComputePipeline, Device};
+use wgpu::{ComputePipeline, Device};
 
 use crate::camera::View;
+use crate::gpu::cache::Cache;
 use crate::gpu::checks::Checks;
-use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{
     LightingData, LitKey, LitLayouts, LitPasses, LitScene, LiveKey, LivePasses,
@@ -111,38 +109,16 @@ impl LitRenderer {
 
     pub(super) async fn resolve(&self, device: &Device) -> Result<Arc<ComputePipeline>, GpuError> {
         let Renderer { color, layouts, edits, .. } = &self.renderer;
-        self.resolve.of((), resolve_pipeline(device, *color, &layouts.targets, edits)).await
-    }
-}
-
-/// Passes that are built once for each key.
-#[derive(Debug)]
-struct Cache<K, T>(Mutex<HashMap<K, Arc<T>>>);
-
-impl<K: Eq + Hash, T> Cache<K, T> {
-    fn get(&self, key: &K) -> Option<Arc<T>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
-    }
-
-    /// Returns what was built for a key, and builds it if necessary. The lock is not held meanwhile. If two threads build
-    /// it, one of the two is dropped.
-    async fn of(
-        &self,
-        key: K,
-        build: impl Future<Output = Result<T, GpuError>>,
-    ) -> Result<Arc<T>, GpuError> {
-        if let Some(built) = self.get(&key) {
-            return Ok(built);
-        }
-        let built = Arc::new(build.await?);
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(Arc::clone(all.entry(key).or_insert(built)))
-    }
-}
-
-impl<K, T> Default for Cache<K, T> {
-    fn default() -> Self {
-        Self(Mutex::default())
+        let build = async {
+            let checks = Checks::default();
+            let kernel = resolve_kernel(*color).edited(edits)?;
+            let film = checks.create(device, || LitLayouts::new(device).film);
+            let groups = [Some(&film), None, Some(&layouts.targets)];
+            let pipeline = pipeline_with(device, &kernel, &groups, &checks);
+            checks.passed().await?;
+            Ok(pipeline)
+        };
+        self.resolve.of((), build).await
     }
 }
 
@@ -176,19 +152,4 @@ pub(crate) fn resolve_kernel(color: ColorTarget) -> Kernel {
         part!("host/resolve.wgsl"),
     ];
     Kernel::new("resolve", parts)
-}
-
-/// Builds the pipeline. `targets` is the layout of the host's textures.
-pub(crate) async fn resolve_pipeline(
-    device: &Device,
-    color: ColorTarget,
-    targets: &BindGroupLayout,
-    edits: &Edits,
-) -> Result<ComputePipeline, GpuError> {
-    let checks = Checks::default();
-    let kernel = resolve_kernel(color).edited(edits)?;
-    let film = checks.create(device, || LitLayouts::new(device).film);
-    let pipeline = pipeline_with(device, &kernel, &[Some(&film), None, Some(targets)], &checks);
-    checks.passed().await?;
-    Ok(pipeline)
 }

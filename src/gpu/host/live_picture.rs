@@ -195,8 +195,9 @@ impl LivePicture {
             self.before = None;
         }
         let [_, visible] = &self.frames;
+        // Those of a pixel are to the surface, to a lamp and for ambient light.
         let rays = Groups { first: [0, 0], size: visible.traced_size }.pixels()
-            * u64::from(self.rays_of_pixel());
+            * u64::from(2 + self.lighting.parameters.occlusion_samples);
         let Some(place) = self.tickets.free() else {
             let state = LitState::Waiting;
             return Ok(LiveProgress { rays: 0, state, was_lost: news.is_lost });
@@ -213,11 +214,6 @@ impl LivePicture {
         self.count = self.count.wrapping_add(1);
         self.tickets.record(encoder, place, [&self.buffers.status; 2]);
         Ok(LiveProgress { rays, state: LitState::Refining, was_lost: news.is_lost })
-    }
-
-    /// Number of rays of a pixel: to the surface, to a lamp and for ambient light.
-    fn rays_of_pixel(&self) -> u32 {
-        2 + self.lighting.parameters.occlusion_samples
     }
 
     fn record_passes(

@@ -1,7 +1,6 @@
 //! What is at a pixel, read back without waiting.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
@@ -90,22 +89,10 @@ pub enum PickError {
 #[derive(Debug)]
 struct Slot {
     buffer: Buffer,
-    state: Arc<AtomicU8>,
+    /// Set when the commands were executed, by a callback that shares it until it is called or dropped.
+    executed: Arc<OnceLock<()>>,
     /// The pixel and its ray, until the result is taken.
     asked: Option<([u32; 2], Option<Ray>)>,
-}
-
-const WAITING: u8 = 0;
-const READY: u8 = 1;
-const LOST: u8 = 2;
-
-/// The state of a slot that waits. If the callback is dropped before it is called, the result is lost.
-struct Waiting(Arc<AtomicU8>);
-
-impl Drop for Waiting {
-    fn drop(&mut self) {
-        let _ = self.0.compare_exchange(WAITING, LOST, Ordering::AcqRel, Ordering::Acquire);
-    }
 }
 
 impl Picker {
@@ -117,7 +104,7 @@ impl Picker {
         let slots = scoped(device, || {
             let slot = |_| Slot {
                 buffer: buffer(device, "pinhole pick", 8, BufferUsages::MAP_READ),
-                state: Arc::new(AtomicU8::new(WAITING)),
+                executed: Arc::default(),
                 asked: None,
             };
             (0..capacity.max(1)).map(slot).collect()
@@ -171,10 +158,11 @@ impl Picker {
                 wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
             );
         }
-        slot.state = Arc::new(AtomicU8::new(WAITING));
-        let waiting = Waiting(Arc::clone(&slot.state));
+        let executed = Arc::clone(&slot.executed);
         encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| {
-            waiting.0.store(if mapped.is_ok() { READY } else { LOST }, Ordering::Release);
+            if mapped.is_ok() {
+                let _ = executed.set(());
+            }
         });
         slot.asked = Some((pixel, view.ray_through_center(pixel)));
         self.next = (self.next + 1) % capacity;
@@ -190,15 +178,10 @@ impl Picker {
         let capacity = self.slots.len();
         let slot = &mut self.slots[self.oldest];
         let Some((pixel, ray)) = slot.asked else { return Ok(None) };
-        let state = slot.state.load(Ordering::Acquire);
-        if state == WAITING {
-            return Ok(None);
-        }
+        let Some(executed) = Arc::get_mut(&mut slot.executed) else { return Ok(None) };
         slot.asked = None;
         self.oldest = (self.oldest + 1) % capacity;
-        if state == LOST {
-            return Err(PickError::Lost { pixel });
-        }
+        executed.take().ok_or(PickError::Lost { pixel })?;
         let words = slot.buffer.get_mapped_range(..).map(|bytes| {
             let word = |at: usize| u32::from_ne_bytes([0, 1, 2, 3].map(|i| bytes[at + i]));
             [word(0), word(4)]

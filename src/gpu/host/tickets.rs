@@ -3,8 +3,7 @@
 //! Each recording ends with a copy of its status words into a small buffer, and asks for the buffer to be mapped when
 //! the encoder is submitted. The callback tells that the commands were executed; if it is dropped, they never will be.
 
-use std::sync::atomic::{AtomicU8, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 
@@ -12,10 +11,6 @@ use crate::gpu::resources::buffer;
 
 /// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next.
 pub(super) const AT_ONCE: usize = 3;
-
-const FREE: u8 = 0;
-const WAITING: u8 = 1;
-const EXECUTED: u8 = 2;
 
 /// The recordings under way.
 #[derive(Debug)]
@@ -29,7 +24,9 @@ pub(super) struct Tickets {
 #[derive(Debug)]
 struct Slot {
     buffer: Buffer,
-    state: Arc<AtomicU8>,
+    /// Number of the recording under way, and what is set when its commands were executed, by a callback that shares it
+    /// until it is called or dropped.
+    under_way: Option<(u64, Arc<OnceLock<()>>)>,
 }
 
 /// What is known of the order in which recordings were executed.
@@ -56,30 +53,6 @@ impl Order {
     }
 }
 
-/// A recording under way. If this is dropped before it is executed, the commands are lost.
-struct Ticket {
-    number: u64,
-    state: Arc<AtomicU8>,
-    order: Arc<Mutex<Order>>,
-}
-
-impl Ticket {
-    fn executed(self) {
-        self.order.lock().unwrap_or_else(PoisonError::into_inner).executed(self.number);
-        self.state.store(EXECUTED, Ordering::Release);
-    }
-}
-
-impl Drop for Ticket {
-    fn drop(&mut self) {
-        let changed =
-            self.state.compare_exchange(WAITING, FREE, Ordering::AcqRel, Ordering::Acquire);
-        if changed.is_ok() {
-            self.order.lock().unwrap_or_else(PoisonError::into_inner).dropped(self.number);
-        }
-    }
-}
-
 /// What has become known since the last question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct News {
@@ -93,7 +66,7 @@ impl Tickets {
     pub(super) fn new(device: &Device) -> Self {
         let slot = |_| Slot {
             buffer: buffer(device, "pinhole recording", 8, BufferUsages::MAP_READ),
-            state: Arc::new(AtomicU8::new(FREE)),
+            under_way: None,
         };
         Self { slots: [0; AT_ONCE].map(slot), next: 0, order: Arc::default() }
     }
@@ -101,33 +74,36 @@ impl Tickets {
     /// Takes the results that have arrived. This never waits.
     pub(super) fn news(&mut self) -> News {
         let mut news = News::default();
-        for slot in &self.slots {
-            if slot.state.load(Ordering::Acquire) == EXECUTED {
+        let mut order = locked(&self.order);
+        for slot in &mut self.slots {
+            let Some((number, executed)) = &mut slot.under_way else { continue };
+            let Some(executed) = Arc::get_mut(executed) else { continue };
+            if executed.take().is_some() {
                 let words = slot.buffer.get_mapped_range(..);
                 news.is_spent |= words.is_ok_and(|words| words.iter().any(|byte| *byte != 0));
                 slot.buffer.unmap();
-                slot.state.store(FREE, Ordering::Release);
+            } else {
+                order.dropped(*number);
             }
+            slot.under_way = None;
         }
-        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
         news.is_lost = std::mem::take(&mut order.is_broken);
         news
     }
 
     /// The place of a recording that can be made now.
     pub(super) fn free(&self) -> Option<usize> {
-        self.slots.iter().position(|slot| slot.state.load(Ordering::Acquire) == FREE)
+        self.slots.iter().position(|slot| slot.under_way.is_none())
     }
 
     /// Whether no recording is under way.
     pub(super) fn are_all_free(&self) -> bool {
-        self.slots.iter().all(|slot| slot.state.load(Ordering::Acquire) == FREE)
+        self.slots.iter().all(|slot| slot.under_way.is_none())
     }
 
     /// Notes that the next recording begins with clearing what all earlier ones made.
     pub(super) fn begin_again(&mut self) {
-        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
-        *order = Order { first: self.next, expected: self.next, is_broken: false };
+        *locked(&self.order) = Order { first: self.next, expected: self.next, is_broken: false };
     }
 
     /// Records the copies of two status words, whose recording takes this place.
@@ -141,17 +117,21 @@ impl Tickets {
         for (word, offset) in words.into_iter().zip([0, 4]) {
             encoder.copy_buffer_to_buffer(word, 0, &slot.buffer, offset, 4);
         }
-        slot.state = Arc::new(AtomicU8::new(WAITING));
-        let (state, order) = (Arc::clone(&slot.state), Arc::clone(&self.order));
-        let ticket = Ticket { number: self.next, state, order };
+        let executed = Arc::default();
+        slot.under_way = Some((self.next, Arc::clone(&executed)));
+        let (number, order) = (self.next, Arc::clone(&self.order));
         self.next += 1;
         encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| {
-            // Without memory that is mapped, the ticket is dropped.
             if mapped.is_ok() {
-                ticket.executed();
+                locked(&order).executed(number);
+                let _ = executed.set(());
             }
         });
     }
+}
+
+fn locked(order: &Mutex<Order>) -> MutexGuard<'_, Order> {
+    order.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::gpu::shader::formats::ColorTarget;
 
 /// The cameras, structures and targets that a renderer is built for. A renderer with fewer cameras is built more
 /// quickly.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RendererOptions {
     /// Format of the colour texture.
     pub color: ColorTarget,

@@ -48,7 +48,7 @@ pub(crate) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
 pub(crate) use kernels::Mode;
 pub(crate) use lighting::LightingData;
 pub(crate) use live::{LiveKey, LivePasses, LiveView};
-pub(crate) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
+pub(crate) use passes::{LitKey, LitLayouts, LitPasses};
 pub(crate) use recorder::Recorder;
 pub(crate) use records::LitSizes;
 pub(crate) use round::{Attempt, Moment, Round, Step};

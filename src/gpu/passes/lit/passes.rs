@@ -1,6 +1,5 @@
 //! All passes that a lit picture needs.
 
-use std::collections::HashMap;
 use std::num::NonZeroU64;
 
 use wgpu::{
@@ -239,9 +238,6 @@ impl LitPasses {
         })
     }
 }
-
-/// The passes of a device. Each set is built when it is first needed.
-pub(crate) type AllLitPasses = HashMap<LitKey, LitPasses>;
 
 /// The pipeline of a kernel, which can be recorded into any encoder of its device.
 #[derive(Debug)]

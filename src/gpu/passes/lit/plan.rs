@@ -3,7 +3,8 @@
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::headless::plan::{
-    HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count, total,
+    BUILDING, PICTURE, PictureRequest, RenderPlan, StructurePlans, UPLOADING, scene_buffers,
+    tile_count, total,
 };
 use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::lit::lighting::LightingData;
@@ -23,7 +24,7 @@ impl RenderPlan {
         let layers = settings.layers_for(request.layers);
         // Depth, normals and ids are rendered first, with one ray for each pixel. The buffers of that render are then
         // freed.
-        let data = Self::of_primary(&PictureRequest { layers, ..*request }, accel, device);
+        let data = Self::planned(&PictureRequest { layers, ..*request }, accel, device, false);
         let data_bytes = total(&data.tile_buffers) + total(&data.tile_textures);
         let all_buffers = data.scene_buffers;
         let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
@@ -81,12 +82,12 @@ impl RenderPlan {
         let picture =
             film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky + emitters);
         let moments = [
-            (HostPeak::Building, building),
-            (HostPeak::Uploading, uploading),
-            (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
+            (BUILDING, building),
+            (UPLOADING, uploading),
+            (PICTURE, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
         let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);
-        let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
+        let (host_peak, host_bytes) = worst.unwrap_or((PICTURE, 0));
         Self {
             accel: data.accel,
             occluders,
