@@ -10,8 +10,7 @@ pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 pub use crate::gpu::edited_composite;
 pub use crate::verify::NO_HIT;
 pub use crate::verify::lit::recording::{
-    PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,
-    StudioSurface, UploadedLighting, UploadedSky,
+    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 
 /// Foreign text in messages.

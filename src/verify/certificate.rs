@@ -16,6 +16,7 @@ pub const MOST_UNDECIDED: f64 = 0.01;
 /// Only [`Outcome::Proved`] means that a picture is legal. A picture of which too much stays undecided is not called
 /// legal, even if nothing in it is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Outcome {
     /// Nothing is wrong, and at most [`MOST_UNDECIDED`] of all answers are undecided.
     Proved,
@@ -57,6 +58,7 @@ impl fmt::Display for Outcome {
 
 /// The verdict about a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Verdict {
     /// There is a single legal answer, and the device gave it.
     Decided,
@@ -143,6 +145,7 @@ impl fmt::Display for LegalHits {
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Violation {
     /// Column and row of the pixel, from the top left.

@@ -13,58 +13,20 @@ use crate::verify::lit::judge::{
 };
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{
-    BITS, LitInputs, LitRecording, LitSurface, NO_EMITTER, PathRecording, PathState,
-    RecordedSample, RectangleRecording, RectangleSample, StudioLight, StudioRecording,
-    StudioSample, flag, slot,
+    BITS, LitInputs, LitRecording, NO_EMITTER, PathState, RecordedSample, RecordedSurface,
+    StudioLight, flag, slot,
 };
-use crate::verify::lit::search::check_open;
+use crate::verify::lit::search::{Hidden, OPEN, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::radiance_so_far;
 use crate::verify::studio::light::Change;
-use crate::verify::studio::search::Hidden;
 use crate::verify::studio::surface::Met;
-
-/// The stage and the name of a number, for reports.
-type Name = (LitStage, &'static str);
-
-const ENDED_PATH: Name = (LitStage::Scatter, "a path that has ended");
-const ENDED_RAY: Name = (LitStage::Surface, "a ray that has ended");
 
 impl Checker<'_> {
     /// Judges every stage of every sample. The recording must be of the scene of this checker.
     #[must_use]
-    pub fn certify_lit(&self, recording: LitRecording<'_>) -> LitCertificate {
-        match recording {
-            LitRecording::Paths(recording) => self.certify_paths(recording),
-            LitRecording::Studio(recording) => self.certify_studio(recording),
-        }
-    }
-
-    /// Judges every stage of every path. The recording must be of the scene of this checker.
-    #[must_use]
-    pub fn certify_paths(&self, recording: &PathRecording) -> LitCertificate {
-        self.certify_samples(recording, |check, sample, index, part, legal| {
-            check.judge_path(sample, index, part, legal);
-        })
-    }
-
-    /// Judges every stage of every sample. The recording must be of the scene of this checker.
-    #[must_use]
-    pub fn certify_studio(&self, recording: &StudioRecording) -> LitCertificate {
-        let certificate = self.certify_samples(recording, |check, sample, index, part, legal| {
-            check.judge_sample(sample, index, part, legal);
-        });
-        LitCertificate { is_studio: true, ..certificate }
-    }
-
-    /// `judge` is called with the index of a pixel.
-    fn certify_samples<S: LitSurface>(
-        &self,
-        recording: &RectangleRecording<S>,
-        judge: impl Fn(&LitCheck<'_>, &RectangleSample<S>, usize, &mut LitCertificate, &mut LegalHits)
-        + Sync,
-    ) -> LitCertificate {
+    pub fn certify_lit(&self, recording: &LitRecording) -> LitCertificate {
         let given = &recording.given;
         let upload = upload::check(self.scene, &self.candidates, given)
             .and_then(|()| recording.check_size())
@@ -74,6 +36,7 @@ impl Checker<'_> {
             film_pixels: given.film.pixel_count(),
             film_samples: given.settings.sampling.samples,
             rectangles: vec![given.rectangle()],
+            is_studio: given.is_studio(),
             ..LitCertificate::default()
         };
         if certificate.upload.is_some() {
@@ -88,11 +51,12 @@ impl Checker<'_> {
             checker: self,
             inputs: given,
             model: CameraModel::new(given.camera.kind, &given.uploaded, &given.film),
+            is_studio: given.is_studio(),
             is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
         };
         for sample in &recording.samples {
             certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
-                judge(&check, sample, index, part, legal);
+                check.judge_sample(sample, index, part, legal);
             }));
         }
         certificate
@@ -100,101 +64,110 @@ impl Checker<'_> {
 }
 
 impl LitCheck<'_> {
-    fn judge_path(
+    /// Judges a sample of the pixel with this index.
+    fn judge_sample(
         &self,
         recorded: &RecordedSample,
         index: usize,
         part: &mut LitCertificate,
         legal: &mut LegalHits,
     ) {
+        let (stage, ray, ended) = match self.is_studio {
+            true => (LitStage::Surface, "ray", "a ray that has ended"),
+            false => (LitStage::Scatter, "path", "a path that has ended"),
+        };
         let (mut address, mut state) = self.start(recorded, index, part);
         let mut last = None;
-        for (surface, stage) in (0..).zip(&recorded.surfaces) {
+        for (surface, found) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
-            let after = stage.scattered[index];
-            if state.has(flag::ALIVE) {
-                let hit = Hit::new(stage.hits[index]);
-                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
-                part.note(LitStage::Scatter, address, self.scatter(address, &state, hit, &after));
-                last = Some(hit);
-            } else if let Err(mismatch) = unchanged(ENDED_PATH, [&state, &after]) {
-                part.note(LitStage::Scatter, address, Err(mismatch));
-            }
-            let open = f32::from_bits(stage.open[index]);
-            let is_searched = surface < self.inputs.max_surfaces
-                && self.inputs.lighting.source_count > 0
-                && after.number(slot::SHADOW) > 0.0;
-            if is_searched {
-                part.note(LitStage::Occlude, address, self.occlude(&after, open));
-            } else if stage.open[index] != after.bits(slot::PENDING) {
-                let words = format!("{open:?}, without a search");
-                let what = "the visibility of the light";
-                let fail = Expected::default().fail(LitStage::Occlude, what, words);
-                part.note(LitStage::Occlude, address, Err(fail));
-            }
-            state = after.with_visibility(stage.open[index]);
-        }
-        let color = radiance_so_far(&state);
-        if state.has(flag::ALIVE) {
-            part.note(LitStage::Extend, address, Err(unfinished("path")));
-        }
-        let sums = check_sums(color, &state, &recorded.film, index);
-        part.note(LitStage::Accumulate, address, sums);
-    }
-
-    fn judge_sample(
-        &self,
-        recorded: &StudioSample,
-        index: usize,
-        part: &mut LitCertificate,
-        legal: &mut LegalHits,
-    ) {
-        let (mut address, mut state) = self.start(recorded, index, part);
-        let mut last = None;
-        for (surface, stage) in (0..).zip(&recorded.surfaces) {
-            address.surface = surface;
-            let mut after = stage.shaded[index];
+            let after = found.states[index];
             let mut met = Some(Met::Nothing);
             if state.has(flag::ALIVE) {
-                let hit = Hit::new(stage.hits[index]);
-                let result = self.extend(&state, last, hit, legal);
-                part.note(LitStage::Extend, address, result);
-                let (result, found) = self.surface(address, &state, hit, &after);
-                part.note(LitStage::Surface, address, result);
-                (met, last) = (found, Some(hit));
-            } else if let Err(mismatch) = unchanged(ENDED_RAY, [&state, &after]) {
-                part.note(LitStage::Surface, address, Err(mismatch));
+                let hit = Hit::new(found.hits[index]);
+                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
+                let (result, seen) = self.shade(address, &state, hit, &after);
+                part.note(stage, address, result);
+                (met, last) = (seen, Some(hit));
+            } else if let Err(mismatch) = unchanged((stage, ended), [&state, &after]) {
+                part.note(stage, address, Err(mismatch));
             }
-            for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
-                for (batch, light) in (0..).zip(lights) {
-                    let found = Light { kind, first: batch * BITS, light, index };
-                    self.judge_light(address, met, &after, found, part);
-                    after = after.with_light(light.radiance[index], light.left[index]);
-                }
-            }
-            state = after;
+            state = match self.is_studio {
+                true => self.judge_lights(address, met, after, (found, index), part),
+                false => self.judge_open(address, after, found.open[index], part),
+            };
         }
         if state.has(flag::ALIVE) {
-            part.note(LitStage::Extend, address, Err(unfinished("ray")));
+            part.note(LitStage::Extend, address, Err(unfinished(ray)));
         }
-        let color = Vector::recorded(state.vector(slot::RADIANCE));
+        let color = match self.is_studio {
+            true => Vector::recorded(state.vector(slot::RADIANCE)),
+            false => radiance_so_far(&state),
+        };
         let sums = check_sums(color, &state, &recorded.film, index);
         part.note(LitStage::Accumulate, address, sums);
     }
 
-    fn scatter(
+    /// Judges the shading of a surface, and says what a ray of a studio met, if that is known.
+    fn shade(
         &self,
         address: Address,
         before: &PathState,
         hit: Hit,
         after: &PathState,
-    ) -> Result<Judged, Mismatch> {
-        along_choices(|choices| {
+    ) -> (Result<Judged, Mismatch>, Option<Met>) {
+        let mut met = None;
+        let is_last = address.surface + 1 >= self.inputs.max_surfaces;
+        let result = along_choices(|choices| {
             let mut kernel = self.kernel(address, before, choices);
             (kernel.hit, kernel.after) = (hit, after);
-            kernel.follow()?;
+            match self.is_studio {
+                true => met = Some(kernel.follow_surface(is_last)?),
+                false => kernel.follow()?,
+            }
             Ok(kernel.expected)
-        })
+        });
+        (result, met)
+    }
+
+    /// Judges whether the sampled light of a path is occluded, and returns the state with the answer.
+    fn judge_open(
+        &self,
+        address: Address,
+        after: PathState,
+        bits: u32,
+        part: &mut LitCertificate,
+    ) -> PathState {
+        let open = f32::from_bits(bits);
+        let is_searched = address.surface < self.inputs.max_surfaces
+            && self.inputs.lighting.source_count > 0
+            && after.number(slot::SHADOW) > 0.0;
+        if is_searched {
+            part.note(LitStage::Occlude, address, self.occlude(&after, open));
+        } else if bits != after.bits(slot::PENDING) {
+            let words = format!("{open:?}, without a search");
+            let fail = Expected::default().fail(OPEN.0, OPEN.1, words);
+            part.note(LitStage::Occlude, address, Err(fail));
+        }
+        after.with_visibility(bits)
+    }
+
+    /// Judges the light of a surface of a studio, and returns the state with it.
+    fn judge_lights(
+        &self,
+        address: Address,
+        met: Option<Met>,
+        mut after: PathState,
+        (surface, index): (&RecordedSurface, usize),
+        part: &mut LitCertificate,
+    ) -> PathState {
+        for (kind, lights) in [(Kind::Lights, &surface.lights), (Kind::Ambient, &surface.ambient)] {
+            for (batch, light) in (0..).zip(lights) {
+                let found = Light { kind, first: batch * BITS, light, index };
+                self.judge_light(address, met, &after, found, part);
+                after = after.with_light(light.radiance[index], light.left[index]);
+            }
+        }
+        after
     }
 
     fn occlude(&self, state: &PathState, open: f32) -> Result<Judged, Mismatch> {
@@ -207,25 +180,6 @@ impl LitCheck<'_> {
             .map(|sphere| sphere.map(f32::from_bits));
         let doubts = check_open(self.searched(), state, sphere_of_light, open, &mut expected)?;
         Ok(searched(doubts.is_some(), || doubts.unwrap_or_default().alternatives()))
-    }
-
-    /// Judges what is seen of a surface, and says what was met, if that is known.
-    fn surface(
-        &self,
-        address: Address,
-        before: &PathState,
-        hit: Hit,
-        after: &PathState,
-    ) -> (Result<Judged, Mismatch>, Option<Met>) {
-        let mut met = None;
-        let is_last = address.surface + 1 >= self.inputs.max_surfaces;
-        let result = along_choices(|choices| {
-            let mut kernel = self.kernel(address, before, choices);
-            (kernel.hit, kernel.after) = (hit, after);
-            met = Some(kernel.follow_surface(is_last)?);
-            Ok(kernel.expected)
-        });
-        (result, met)
     }
 
     /// Judges which of some lights are hidden, and the light of the others.

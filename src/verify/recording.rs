@@ -160,6 +160,7 @@ pub(super) const LEAST_MARGIN: f64 = 16.0 * U;
 /// Why the data on the device are not those that were requested.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 pub struct UploadError(pub(super) String);
 
 /// Compares the recording with the scene, in f64.

@@ -129,7 +129,7 @@ impl VerifyOutputs {
         &self,
         run: &Run,
         certificate: &Certificate,
-        report: &Report,
+        report: &Report<'_>,
         kept: &Kept,
     ) -> Result<()> {
         match &self.folder {
@@ -142,7 +142,7 @@ impl VerifyOutputs {
         &self,
         run: &Run,
         certificate: &Certificate,
-        report: &Report,
+        report: &Report<'_>,
         kept: &Kept,
     ) -> Result<()> {
         let mut files = Vec::new();

@@ -21,7 +21,7 @@ const TEMPLATE: &str = include_str!("page.html");
 /// What the script of the page reads.
 #[derive(Serialize)]
 struct Page<'a> {
-    report: &'a Report,
+    report: &'a Report<'a>,
     verdict: String,
     /// Version of the program that checks.
     checked_by: &'static str,
@@ -52,7 +52,7 @@ struct Drawn {
 pub(crate) fn page(
     run: &Run,
     certificate: &Certificate,
-    report: &Report,
+    report: &Report<'_>,
     lit: Option<&ShownPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {

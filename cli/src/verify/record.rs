@@ -147,7 +147,7 @@ pub(crate) fn certify_light(
         let recording = "recording light";
         progress::stage(recording);
         let recorded = interrupt::on_device(|| {
-            let each = &mut |recorded: LitRecording<'_>| {
+            let each = &mut |recorded: &LitRecording| {
                 interrupt::driver_rests(true);
                 progress::stage("checking light");
                 certificate.join(checker.certify_lit(recorded));

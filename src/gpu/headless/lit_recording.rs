@@ -23,7 +23,7 @@ use crate::render::RenderSettings;
 use crate::verify::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
 
 /// Callback with the recording of each sample.
-pub type EachSample<'a> = dyn FnMut(LitRecording<'_>) + 'a;
+pub type EachSample<'a> = dyn FnMut(&LitRecording) + 'a;
 
 impl Headless {
     /// Takes some samples of a lit picture one by one and records the state of every path, or of every ray of a studio,
@@ -62,7 +62,7 @@ impl Headless {
         let key = attempt.key(scenes.key(lighting, &self.device.limits()));
         self.with_lit_passes(key, async |passes: &LitPasses| {
             let is_first = Cell::new(true);
-            let mut each = |recording: LitRecording<'_>| {
+            let mut each = |recording: &LitRecording| {
                 is_first.set(false);
                 each(recording);
             };
@@ -285,7 +285,7 @@ mod lit_inputs_tests {
     use super::*;
     use crate::accel::{AccelChoice, AccelPlan};
     use crate::gpu::scene::scene_summary::SceneSummary;
-    use crate::verify::{Checker, PathRecording};
+    use crate::verify::Checker;
 
     /// The checker accepts the numbers that the host computes for a device from random scenes.
     #[test]
@@ -304,14 +304,14 @@ mod lit_inputs_tests {
             let lighting = LightingData::new(&random.settings, &summary, view.camera);
             let part = [[0; 2], [view.film.width(), view.film.height()]];
             let given = inputs_in([&space; 2], &view, &random.settings, &lighting, part);
-            let mut recording = PathRecording { given, samples: Vec::new() };
-            let certificate = checker.certify_paths(&recording);
+            let mut recording = LitRecording { given, samples: Vec::new() };
+            let certificate = checker.certify_lit(&recording);
             assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);
             // The checker rejects a roughness of more than 1, which shows that it can fail.
             if seed % 8 == 0 {
                 let material = recording.given.lighting.material_first as usize;
                 recording.given.tables[material][2] = 1.001_f32.to_bits();
-                let certificate = checker.certify_paths(&recording);
+                let certificate = checker.certify_lit(&recording);
                 assert!(certificate.upload.is_some(), "seed {seed}: {}", random.name);
             }
         }

@@ -7,8 +7,8 @@ use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::lit::{LightingData, LitFrame, Mode, Moment};
 use crate::verify::{
-    LitInputs, LitRecording, PathRecording, PathState, PixelSums, RecordedFilm, RecordedSample,
-    RecordedSurface, StudioLight, StudioRecording, StudioSample, StudioSurface,
+    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface,
+    StudioLight,
 };
 
 /// Maximum side in pixels of the rectangle that is recorded. A sample of a path of eight surfaces then takes 130 MB of
@@ -81,7 +81,7 @@ pub(super) trait Keep {
     fn end(&mut self, film: RecordedFilm);
 
     /// The recording of the sample.
-    fn recording(&self) -> LitRecording<'_>;
+    fn recording(&self) -> &LitRecording;
 }
 
 /// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
@@ -169,13 +169,13 @@ impl<'a> Reader<'a> {
 
 /// Keeps the states of the paths of a sample.
 pub(super) struct PathKeeper {
-    recording: PathRecording,
+    recording: LitRecording,
     sample: RecordedSample,
 }
 
 impl PathKeeper {
     pub(super) fn new(given: LitInputs) -> Self {
-        let recording = PathRecording { given, samples: Vec::new() };
+        let recording = LitRecording { given, samples: Vec::new() };
         Self { recording, sample: RecordedSample::default() }
     }
 }
@@ -202,7 +202,7 @@ impl Keep for PathKeeper {
             }
             (Moment::Shaded, Some(surface)) => {
                 surface.open = states.last_words(PathState::PENDING);
-                surface.scattered = states.all();
+                surface.states = states.all();
             }
             (Moment::Occluded, Some(surface)) => {
                 surface.open = states.last_words(PathState::PENDING);
@@ -216,8 +216,8 @@ impl Keep for PathKeeper {
         self.recording.samples.push(std::mem::take(&mut self.sample));
     }
 
-    fn recording(&self) -> LitRecording<'_> {
-        LitRecording::Paths(&self.recording)
+    fn recording(&self) -> &LitRecording {
+        &self.recording
     }
 }
 
@@ -246,8 +246,8 @@ pub(super) fn longest_side(lighting: &LightingData) -> u32 {
 
 /// Keeps the states of the rays of a sample.
 pub(super) struct StudioKeeper {
-    recording: StudioRecording,
-    sample: StudioSample,
+    recording: LitRecording,
+    sample: RecordedSample,
     /// Whether a ray still passes through surfaces.
     is_any_alive: bool,
     /// Whether all surfaces were recorded that rays pass through.
@@ -262,8 +262,8 @@ const ALIVE: u32 = crate::light::codes::path::ALIVE;
 impl StudioKeeper {
     pub(super) fn new(given: LitInputs) -> Self {
         Self {
-            recording: StudioRecording { given, samples: Vec::new() },
-            sample: StudioSample::default(),
+            recording: LitRecording { given, samples: Vec::new() },
+            sample: RecordedSample::default(),
             is_any_alive: true,
             is_over: false,
             hidden: None,
@@ -290,7 +290,7 @@ fn hidden_of(states: &States<'_>) -> Vec<u32> {
 impl Keep for StudioKeeper {
     fn begin(&mut self, sample: u32) {
         self.recording.samples.clear();
-        self.sample = StudioSample { sample, ..StudioSample::default() };
+        self.sample = RecordedSample { sample, ..RecordedSample::default() };
         (self.is_any_alive, self.is_over, self.hidden) = (true, false, None);
     }
 
@@ -311,12 +311,12 @@ impl Keep for StudioKeeper {
         match (moment, self.sample.surfaces.last_mut(), light) {
             (Moment::Extended, ..) => {
                 let hits = states.hits();
-                self.sample.surfaces.push(StudioSurface { hits, ..StudioSurface::default() });
+                self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
             }
             (Moment::Shadowed | Moment::Searched, ..) => self.hidden = Some(hidden_of(states)),
             (Moment::Shaded, Some(surface), _) => {
-                surface.shaded = states.all();
-                self.is_any_alive = Self::is_any_alive(&surface.shaded);
+                surface.states = states.all();
+                self.is_any_alive = Self::is_any_alive(&surface.states);
             }
             (Moment::Illuminated, Some(surface), Some(light)) => surface.lights.push(light),
             (Moment::Gathered, Some(surface), Some(light)) => surface.ambient.push(light),
@@ -329,7 +329,7 @@ impl Keep for StudioKeeper {
         self.recording.samples.push(std::mem::take(&mut self.sample));
     }
 
-    fn recording(&self) -> LitRecording<'_> {
-        LitRecording::Studio(&self.recording)
+    fn recording(&self) -> &LitRecording {
+        &self.recording
     }
 }

@@ -8,7 +8,7 @@ use crate::verify::lit::certificate::{Address, LitCertificate, LitStage};
 use crate::verify::lit::film::judge_start;
 use crate::verify::lit::judge::{Expected, Judged, Mismatch, searched};
 use crate::verify::lit::kernel::{Hit, Kernel};
-use crate::verify::lit::recording::{LitInputs, PathState, RectangleSample};
+use crate::verify::lit::recording::{LitInputs, PathState, RecordedSample};
 use crate::verify::lit::search::{Searched, check_hit};
 
 /// The data with which samples are judged.
@@ -16,14 +16,15 @@ pub(crate) struct LitCheck<'a> {
     pub(crate) checker: &'a Checker<'a>,
     pub(crate) inputs: &'a LitInputs,
     pub(crate) model: CameraModel,
+    pub(crate) is_studio: bool,
     pub(crate) is_matt: bool,
 }
 
 impl LitCheck<'_> {
     /// Judges the state of a path at the camera, and returns it with its address.
-    pub(crate) fn start<S>(
+    pub(crate) fn start(
         &self,
-        recorded: &RectangleSample<S>,
+        recorded: &RecordedSample,
         index: usize,
         part: &mut LitCertificate,
     ) -> (Address, PathState) {

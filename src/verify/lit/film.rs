@@ -81,8 +81,7 @@ fn check_start(
     slots[slot::FIRST] = [0, 0, 0, found.bits(slot::FIRST)];
     let legal = PathState { slots };
     // A studio writes the other slots only once there is a surface.
-    let is_studio = inputs.settings.studio_parameters().is_some();
-    let written = if is_studio { slot::NORMAL } else { PathState::SLOTS };
+    let written = if inputs.is_studio() { slot::NORMAL } else { PathState::SLOTS };
     (0..written).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))
 }
 

@@ -61,7 +61,7 @@ impl<'a> RunFile<'a> {
     pub fn light(
         &self,
         run: &Run,
-        each: &mut dyn FnMut(LitRecording<'_>),
+        each: &mut dyn FnMut(&LitRecording),
     ) -> Result<bool, RunFileError> {
         lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
     }
