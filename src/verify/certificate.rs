@@ -111,6 +111,9 @@ pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
     [(index % width) as u32, (index / width) as u32]
 }
 
+/// The number of pixels that a thread takes at a time.
+pub(super) const CHUNK: usize = 1 << 12;
+
 /// The largest number of violations that are kept; all are counted.
 pub(super) const KEPT: usize = 1000;
 
@@ -158,7 +161,6 @@ pub struct Violation {
 }
 
 impl fmt::Display for Violation {
-    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], stage, message } = self;
         write!(f, "pixel ({i}, {j}), {stage}: {message}")
@@ -182,7 +184,19 @@ impl Mismatch {
     }
 }
 
-/// The names of axes.
+/// Judges a number, which has a name in two words.
+pub(super) fn legal_is(
+    stage: &'static str,
+    (of, name): (&str, &str),
+    found: f32,
+    legal: Interval,
+) -> Result<(), Mismatch> {
+    match legal.contains(found.into()) {
+        true => Ok(()),
+        false => Err(Mismatch::new(stage, format!("{of}{name} is {found:?}; legal is {legal}"))),
+    }
+}
+
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The name of a channel of a colour, from 0 for red to 3 for alpha.

@@ -6,17 +6,17 @@ use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{Address, LitCertificate, LitStage};
-use crate::verify::lit::check::{LitCheck, unfinished};
-use crate::verify::lit::film::check_sums;
+use crate::verify::lit::check::LitCheck;
+use crate::verify::lit::film::{check_sums, judge_start};
 use crate::verify::lit::judge::{
-    Expected, Judged, Mismatch, StageOutcome, along_choices, judge_pixels, searched, unchanged,
+    Expected, Judged, Mismatch, Name, StageOutcome, along_choices, judge_pixels, searched,
 };
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{
-    BITS, LitInputs, LitRecording, NO_EMITTER, PathState, RecordedSample, RecordedSurface,
-    StudioLight, flag, slot,
+    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
+    flag, slot,
 };
-use crate::verify::lit::search::{Hidden, OPEN, check_open};
+use crate::verify::lit::search::{Hidden, OPEN, check_hit, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::radiance_so_far;
@@ -76,7 +76,11 @@ impl LitCheck<'_> {
             true => (LitStage::Surface, "ray", "a ray that has ended"),
             false => (LitStage::Scatter, "path", "a path that has ended"),
         };
-        let (mut address, mut state) = self.start(recorded, index, part);
+        let pixel = self.inputs.pixel(index);
+        let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
+        let mut state = recorded.start[index];
+        let started = judge_start(self.inputs, &self.model, address, &state);
+        part.note(LitStage::Start, address, started);
         let mut last = None;
         for (surface, found) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -84,11 +88,14 @@ impl LitCheck<'_> {
             let mut met = Some(Met::Nothing);
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(found.hits[index]);
-                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
+                let result = check_hit(self, &state, last, hit, legal);
+                part.note(LitStage::Extend, address, result);
                 let (result, seen) = self.shade(address, &state, hit, &after);
                 part.note(stage, address, result);
                 (met, last) = (seen, Some(hit));
-            } else if let Err(mismatch) = unchanged((stage, ended), [&state, &after]) {
+            } else if let Err(mismatch) =
+                Expected::default().unchanged((stage, ended), [&state, &after])
+            {
                 part.note(stage, address, Err(mismatch));
             }
             state = match self.is_studio {
@@ -97,7 +104,9 @@ impl LitCheck<'_> {
             };
         }
         if state.has(flag::ALIVE) {
-            part.note(LitStage::Extend, address, Err(unfinished(ray)));
+            let words = format!("the {ray} was not followed to its end");
+            let unfinished = Expected::default().fail((LitStage::Extend, "the hit"), words);
+            part.note(LitStage::Extend, address, Err(unfinished));
         }
         let color = match self.is_studio {
             true => Vector::recorded(state.vector(slot::RADIANCE)),
@@ -142,10 +151,10 @@ impl LitCheck<'_> {
             && self.inputs.lighting.source_count > 0
             && after.number(slot::SHADOW) > 0.0;
         if is_searched {
-            part.note(LitStage::Occlude, address, self.occlude(&after, open));
+            part.note(LitStage::Occlude, address, check_open(self, &after, open));
         } else if bits != after.bits(slot::PENDING) {
             let words = format!("{open:?}, without a search");
-            let fail = Expected::default().fail(OPEN.0, OPEN.1, words);
+            let fail = Expected::default().fail(OPEN, words);
             part.note(LitStage::Occlude, address, Err(fail));
         }
         after.with_visibility(bits)
@@ -160,26 +169,18 @@ impl LitCheck<'_> {
         (surface, index): (&RecordedSurface, usize),
         part: &mut LitCertificate,
     ) -> PathState {
-        for (kind, lights) in [(Kind::Lights, &surface.lights), (Kind::Ambient, &surface.ambient)] {
+        let UploadedLighting { light_count, occlusion_samples, .. } = self.inputs.lighting;
+        for (kind, count, lights) in [
+            (&LIGHTS, light_count, &surface.lights),
+            (&AMBIENT, occlusion_samples, &surface.ambient),
+        ] {
             for (batch, light) in (0..).zip(lights) {
-                let found = Light { kind, first: batch * BITS, light, index };
+                let found = Light { kind, count, first: batch * BITS, light, index };
                 self.judge_light(address, met, &after, found, part);
                 after = after.with_light(light.radiance[index], light.left[index]);
             }
         }
         after
-    }
-
-    fn occlude(&self, state: &PathState, open: f32) -> Result<Judged, Mismatch> {
-        let mut expected = Expected::default();
-        let LitInputs { emitters, .. } = self.inputs;
-        let emitter = state.departure().emitter;
-        let sphere_of_light = (emitter != NO_EMITTER)
-            .then(|| emitters.get((emitter as usize).saturating_mul(3)))
-            .flatten()
-            .map(|sphere| sphere.map(f32::from_bits));
-        let doubts = check_open(self.searched(), state, sphere_of_light, open, &mut expected)?;
-        Ok(searched(doubts.is_some(), || doubts.unwrap_or_default().alternatives()))
     }
 
     /// Judges which of some lights are hidden, and the light of the others.
@@ -200,17 +201,13 @@ impl LitCheck<'_> {
                 }
             }
             Some(Met::Surface) => {
-                let (searches, sums) = match found.kind {
-                    Kind::Lights => (LitStage::Shadow, LitStage::Illuminate),
-                    Kind::Ambient => (LitStage::Ambient, LitStage::Gather),
-                };
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);
                     if let Some(result) = result.transpose() {
-                        part.note(searches, address, result);
+                        part.note(found.kind.searches, address, result);
                     }
                 }
-                part.note(sums, address, self.added(address, state, found));
+                part.note(found.kind.sums, address, self.added(address, state, found));
             }
         }
     }
@@ -226,13 +223,13 @@ impl LitCheck<'_> {
         let is_hidden = found.bits() & (1 << offset) != 0;
         let index = found.first + offset;
         let candidates = &self.checker.candidates;
-        let is_searched = index < self.count(found.kind)
-            && (found.kind == Kind::Ambient
+        let is_searched = index < found.count
+            && (found.kind.is_ambient
                 || self.kernel(address, state, &mut Choices::default()).casts_shadow(index));
         let legal = if is_searched {
-            self.outcomes(address, state, Hidden::or, |kernel| match found.kind {
-                Kind::Lights => kernel.is_light_hidden(candidates, index),
-                Kind::Ambient => kernel.is_direction_hidden(candidates, index),
+            self.outcomes(address, state, Hidden::or, |kernel| match found.kind.is_ambient {
+                false => kernel.is_light_hidden(candidates, index),
+                true => kernel.is_direction_hidden(candidates, index),
             })
         } else {
             Some(Hidden::NEVER)
@@ -247,19 +244,8 @@ impl LitCheck<'_> {
             _ if !is_searched => return Ok(None),
             _ => return Ok(Some(searched(may && !must, || doubts.alternatives()))),
         };
-        let (stage, what) = match found.kind {
-            Kind::Lights => (LitStage::Shadow, "light"),
-            Kind::Ambient => (LitStage::Ambient, "direction"),
-        };
-        let words = format!("{what} {index} is {answer}");
-        Err(Expected::default().fail(stage, "what is hidden", words))
-    }
-
-    fn count(&self, kind: Kind) -> u32 {
-        match kind {
-            Kind::Lights => self.inputs.lighting.light_count,
-            Kind::Ambient => self.inputs.lighting.occlusion_samples,
-        }
+        let words = format!("{} {index} is {answer}", found.kind.one);
+        Err(Expected::default().fail((found.kind.searches, "what is hidden"), words))
     }
 
     /// The outcomes of a kernel for all combinations of its open decisions, joined; `None` if they are too many.
@@ -288,18 +274,7 @@ impl LitCheck<'_> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
-        let (stage, radiance, opacity) = match found.kind {
-            Kind::Lights => (
-                LitStage::Illuminate,
-                "the radiance with these lights",
-                "the opacity with these lights",
-            ),
-            Kind::Ambient => (
-                LitStage::Gather,
-                "the radiance with ambient light",
-                "the opacity with ambient light",
-            ),
-        };
+        let Kind { sums: stage, radiance, opacity, .. } = *found.kind;
         let mut expected = Expected::default();
         let before = state.vector(slot::RADIANCE);
         let [r, g, b, found_opacity] = found.light.radiance[found.index].map(f32::from_bits);
@@ -321,9 +296,9 @@ impl LitCheck<'_> {
         found: Light<'_>,
         total: Number,
     ) -> Option<Change> {
-        let count = self.count(found.kind).saturating_sub(found.first).min(BITS);
+        let count = found.count.saturating_sub(found.first).min(BITS);
         let bits = found.bits();
-        if found.kind == Kind::Ambient {
+        if found.kind.is_ambient {
             let hidden = bits.count_ones();
             return self.outcomes(address, state, Change::union, |kernel| {
                 kernel.ambient_added(count, hidden, total)
@@ -339,17 +314,41 @@ impl LitCheck<'_> {
     }
 }
 
-/// The kind of light that a [`StudioLight`] holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Lights,
-    Ambient,
+/// A kind of light that a [`StudioLight`] holds.
+struct Kind {
+    is_ambient: bool,
+    /// What is searched for.
+    one: &'static str,
+    searches: LitStage,
+    sums: LitStage,
+    radiance: &'static str,
+    opacity: &'static str,
 }
+
+const LIGHTS: Kind = Kind {
+    is_ambient: false,
+    one: "light",
+    searches: LitStage::Shadow,
+    sums: LitStage::Illuminate,
+    radiance: "the radiance with these lights",
+    opacity: "the opacity with these lights",
+};
+
+const AMBIENT: Kind = Kind {
+    is_ambient: true,
+    one: "direction",
+    searches: LitStage::Ambient,
+    sums: LitStage::Gather,
+    radiance: "the radiance with ambient light",
+    opacity: "the opacity with ambient light",
+};
 
 /// The light of a pixel from a batch.
 #[derive(Clone, Copy)]
 struct Light<'a> {
-    kind: Kind,
+    kind: &'static Kind,
+    /// The number of lights or directions of this kind.
+    count: u32,
     /// Index of the first light or direction.
     first: u32,
     light: &'a StudioLight,
@@ -364,7 +363,7 @@ impl Light<'_> {
 
     /// Checks that a ray on which no surface is lit does not change.
     fn unlit(&self, state: &PathState) -> Result<(), Mismatch> {
-        const KEPT: (LitStage, &str) = (LitStage::Illuminate, "a ray without a lit surface");
+        const KEPT: Name = (LitStage::Illuminate, "a ray without a lit surface");
         let mut expected = Expected::default();
         let bits = state.bits(slot::NORMAL);
         let (hidden, left) = (self.bits(), self.light.left[self.index]);

@@ -209,7 +209,7 @@ fn small_lit() -> (Scene, Recording, Vec<u8>) {
 #[track_caller]
 fn contradicts(bytes: &[u8], words: &str) {
     let error = replayed(bytes).unwrap_err();
-    let RunFileError::Contents { message } = &error else { panic!("{error}") };
+    let RunFileError::Contents(message) = &error else { panic!("{error}") };
     assert!(message.contains(words), "{message} lacks {words}");
     assert_eq!(error.to_string().lines().count(), 1, "{error}");
 }
@@ -279,7 +279,7 @@ fn other_files_and_other_versions() {
         let other = format!("\"pinhole_run\":\"{version}\"");
         let error =
             run_file::read(&with_header(&bytes, "\"pinhole_run\":\"5\"", &other)).unwrap_err();
-        assert_eq!(error, RunFileError::Version { found: version.to_owned() });
+        assert_eq!(error, RunFileError::Version(version.to_owned()));
         let words = "this program reads version 5; record it again with `verify --save`";
         assert_eq!(error.to_string(), format!("run file of version {version}; {words}"));
     }

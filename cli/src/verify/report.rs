@@ -39,7 +39,7 @@ pub(crate) struct Report<'a> {
     pub(crate) studio: Option<LightReport<'a>>,
     /// The check of the denoiser, for a scene whose picture is denoised.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) denoiser: Option<DenoiserReport>,
+    pub(crate) denoiser: Option<DenoiserReport<'a>>,
     /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
     pub(crate) biased: Vec<String>,
     pub(crate) outcome: Outcome,
@@ -47,7 +47,6 @@ pub(crate) struct Report<'a> {
     pub(crate) command: String,
     #[serde(skip)]
     certificate: &'a Certificate,
-    /// The first pixels with several legal answers.
     pub(crate) open: Vec<OpenPixel>,
 }
 
@@ -79,7 +78,7 @@ impl<'a> Report<'a> {
         run: &'a Run,
         certificate: &'a Certificate,
         light: Option<&'a LitCertificate>,
-        denoiser: Option<&DenoiseCertificate>,
+        denoiser: Option<&'a DenoiseCertificate>,
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
@@ -110,7 +109,8 @@ impl<'a> Report<'a> {
             violations: listed(&certificate.violations),
             paths: light.filter(|light| !light.is_studio).map(LightReport::new),
             studio: light.filter(|light| light.is_studio).map(LightReport::new),
-            denoiser: denoiser.map(DenoiserReport::from),
+            denoiser: denoiser
+                .map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
@@ -250,7 +250,6 @@ struct Judged {
 }
 
 impl Judged {
-    /// The share in words.
     fn words(&self) -> String {
         let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
         // Rounded down, so that nothing but all of them is called 100 %.
@@ -305,32 +304,15 @@ pub(crate) fn open_pixels(
 
 /// The object `denoiser` of the JSON document.
 #[derive(Serialize)]
-pub(crate) struct DenoiserReport {
-    pixels: u64,
-    undecided: u64,
-    violation_count: u64,
-    violations: Vec<String>,
+pub(crate) struct DenoiserReport<'a> {
+    #[serde(flatten)]
+    certificate: &'a DenoiseCertificate,
     outcome: Outcome,
 }
 
-impl From<&DenoiseCertificate> for DenoiserReport {
-    fn from(certificate: &DenoiseCertificate) -> Self {
-        let DenoiseCertificate { pixels, undecided, violation_count, ref violations, .. } =
-            *certificate;
-        Self {
-            pixels,
-            undecided,
-            violation_count,
-            violations: violations.iter().take(LISTED).map(ToString::to_string).collect(),
-            outcome: certificate.outcome(),
-        }
-    }
-}
-
-impl DenoiserReport {
-    /// The report as one line of text.
+impl DenoiserReport<'_> {
     fn line(&self) -> String {
-        let Self { pixels, undecided, violation_count, .. } = self;
+        let DenoiseCertificate { pixels, undecided, violation_count, .. } = self.certificate;
         let legal = pixels - undecided - violation_count;
         format!(
             "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n"

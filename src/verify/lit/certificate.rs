@@ -90,7 +90,6 @@ pub struct LitViolation {
 }
 
 impl fmt::Display for LitViolation {
-    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], sample, surface, stage, message } = self;
         let stage = stage.name();

@@ -5,27 +5,20 @@
 use glam::{DVec3, Vec4};
 
 use crate::image::NO_ID;
-use crate::scene::Scene;
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
+use crate::verify::checker::Checker;
 use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
 use crate::verify::lit::certificate::LitStage;
-use crate::verify::lit::judge::{Expected, Mismatch};
+use crate::verify::lit::check::LitCheck;
+use crate::verify::lit::judge::{Expected, Judged, Mismatch, Name, searched};
 use crate::verify::lit::kernel::Hit;
-use crate::verify::lit::recording::{PathState, flag, slot};
+use crate::verify::lit::recording::{NO_EMITTER, PathState, flag, slot};
 use crate::verify::number::Number;
 use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::{Line, Slack};
 
 const STAGE: LitStage = LitStage::Extend;
-
-/// The data in which searches are made.
-#[derive(Clone, Copy)]
-pub(crate) struct Searched<'a> {
-    pub(crate) model: &'a CameraModel,
-    pub(crate) scene: &'a Scene,
-    pub(crate) candidates: &'a Candidates,
-}
 
 /// A ray that starts where it enters a box of spheres.
 pub(crate) struct Entry {
@@ -126,15 +119,15 @@ pub(crate) fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
     Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
 
-/// Judges the nearest hit of a ray; returns whether several answers are legal. `last` is the previous hit of the path.
+/// Judges the nearest hit of a ray. `last` is the previous hit of the path.
 pub(crate) fn check_hit(
-    Searched { model, scene, candidates }: Searched<'_>,
+    LitCheck { checker: Checker { scene, candidates }, model, .. }: &LitCheck<'_>,
     state: &PathState,
     last: Option<Hit>,
     found: Hit,
-    expected: &mut Expected,
     legal: &mut LegalHits,
-) -> Result<bool, Mismatch> {
+) -> Result<Judged, Mismatch> {
+    let mut expected = Expected::default();
     let Hit { t, id, distance, .. } = found;
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
@@ -160,13 +153,13 @@ pub(crate) fn check_hit(
         legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
     }
     let is_open = legal.count() > 1;
-    let fail = |what, words| Err(expected.fail(STAGE, what, words));
+    let fail = |what, words: String| Err(expected.fail((STAGE, what), words));
     if id == NO_ID {
         if !legal.miss {
             return fail("a miss", format!("legal is {legal}"));
         }
         return if t.to_bits() == NO_HIT.to_bits() {
-            Ok(is_open)
+            Ok(searched(is_open, || legal.alternatives()))
         } else {
             fail("the distance of a miss", format!("{t:?}; legal is {NO_HIT:?}"))
         };
@@ -183,24 +176,27 @@ pub(crate) fn check_hit(
         _ => Number::between(low, high),
     };
     expected.number((STAGE, "where the ray enters the scene's box"), distance, enter)?;
-    Ok(is_open)
+    Ok(searched(is_open, || legal.alternatives()))
 }
 
-pub(crate) const OPEN: (LitStage, &str) = (LitStage::Occlude, "the visibility of the light");
+pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
 
-/// Judges the occlusion of a light; if both answers are legal, returns why. `sphere_of_light` is the emitter, if the
-/// light is one.
+/// Judges the occlusion of a light.
 pub(crate) fn check_open(
-    Searched { model, scene, candidates }: Searched<'_>,
+    LitCheck { checker: Checker { scene, candidates }, model, inputs, .. }: &LitCheck<'_>,
     state: &PathState,
-    sphere_of_light: Option<[f32; 4]>,
     open: f32,
-    expected: &mut Expected,
-) -> Result<Option<Doubts>, Mismatch> {
+) -> Result<Judged, Mismatch> {
+    let mut expected = Expected::default();
     let before = state.number(slot::PENDING);
     let [x, y, z, distance] = state.slots[slot::SHADOW].map(f32::from_bits);
     let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
     let departed = scene.spheres().get(state.departure().id as usize).copied();
+    let emitter = state.departure().emitter;
+    let sphere_of_light = (emitter != NO_EMITTER)
+        .then(|| inputs.emitters.get((emitter as usize).saturating_mul(3)))
+        .flatten()
+        .map(|sphere| sphere.map(f32::from_bits));
     let exempt = [departed, sphere_of_light];
     let hidden = entry.hidden(candidates, Number::recorded(distance), |candidate| {
         exempt.into_iter().flatten().any(|own| is_same(candidate.sphere, own))
@@ -212,12 +208,12 @@ pub(crate) fn check_open(
         } else {
             "visible, but a surface is in between"
         };
-        return Err(expected.fail(OPEN.0, OPEN.1, words.to_owned()));
+        return Err(expected.fail(OPEN, words));
     }
     if !is_hidden {
         expected.bits(OPEN, open.to_bits(), before.to_bits())?;
     }
-    Ok((hidden.may && !hidden.must).then_some(hidden.doubts))
+    Ok(searched(hidden.may && !hidden.must, || hidden.doubts.alternatives()))
 }
 
 /// The largest number of alternatives that are named.

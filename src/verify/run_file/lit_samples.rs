@@ -69,7 +69,14 @@ impl LitSamples {
         let ([x, y], [width, height]) = (given.origin, given.size);
         for RecordedSample { sample, start, surfaces, film } in &recording.samples {
             let (count, pixels) = (surfaces.len(), start.len());
-            self.check(pixels, count, batches)?;
+            if self.count == MAX_SAMPLES {
+                let words = format!("a run file has room for {MAX_SAMPLES} samples");
+                return Err(io::Error::other(words));
+            }
+            let sizes = [pixels, count, batches].map(|size| size as u64);
+            if bytes_in_memory(sizes) > MAX_SAMPLE_BYTES {
+                return Err(io::Error::other("a sample of the light is too large for a run file"));
+            }
             self.keep("place", &[5], [*sample, x, y, width, height].into_iter())?;
             self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
             for (name, sums) in [("before", &film.before), ("after", &film.after)] {
@@ -98,17 +105,6 @@ impl LitSamples {
             self.count += 1;
         }
         Ok(())
-    }
-
-    fn check(&self, pixels: usize, surfaces: usize, batches: usize) -> io::Result<()> {
-        let bytes = bytes_in_memory([pixels, surfaces, batches].map(|count| count as u64));
-        if self.count == MAX_SAMPLES {
-            Err(io::Error::other(format!("a run file has room for {MAX_SAMPLES} samples")))
-        } else if bytes > MAX_SAMPLE_BYTES {
-            Err(io::Error::other("a sample of the light is too large for a run file"))
-        } else {
-            Ok(())
-        }
     }
 
     /// Writes an array to the end of the spool.
@@ -260,7 +256,6 @@ impl Sample<'_, '_> {
         Ok(self.vectors(array, &[count, 3])?.as_chunks().0.to_vec())
     }
 
-    /// The numbers of surfaces and of pixels of a sample.
     fn shape(self, given: &LitInputs, batches: usize) -> Result<[usize; 2], RunFileError> {
         let shape = self.file.shape(&self.name("hits"))?;
         let surfaces = shape.first().copied().unwrap_or_default();

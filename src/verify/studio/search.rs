@@ -33,12 +33,6 @@ impl Kernel<'_> {
         self.lamp(light, position, u, None)
     }
 
-    /// A pair of random numbers of the pixel.
-    fn numbers(&self, sample: u32, number: u32) -> [u32; 2] {
-        use crate::camera::sampling::{pair, pixel_seed};
-        pair(pixel_seed(self.address.pixel, self.lighting().seed), sample, number)
-    }
-
     /// Whether a light is hidden from the surface; a light behind it is not searched for.
     pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Hidden {
         let Lamp { direction, distance, .. } = self.lamp_of_surface(light);
@@ -121,7 +115,7 @@ impl Entry {
         if !is_known {
             return None;
         }
-        let mut crossing = BoxCrossing::default();
+        let mut crossing = BoxCrossing::UNBOUNDED;
         for axis in 0..3 {
             crossing.cut(slab([low[axis], high[axis]], origin[axis], axes[axis]));
         }
