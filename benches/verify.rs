@@ -402,8 +402,7 @@ fn lit_campaign(headless: &Headless, seeds: Range<u64>, view: ViewOf) {
         let buffers = headless.upload(&scene, &plan.build(&scene)).wait().unwrap();
         let checker = Checker::new(&scene).unwrap();
         let mut certificate = LitCertificate::default();
-        let each =
-            &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
+        let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
         headless
             .record_lit(&buffers, &view, &settings, (LitPart::Middle, &[0, 1]), (each, go_on))
             .wait()

@@ -8,8 +8,7 @@ pub use crate::cpu::light::live::{LiveFrame, LiveReference};
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 pub use crate::verify::NO_HIT;
 pub use crate::verify::lit::recording::{
-    PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight, StudioSample,
-    StudioSurface, UploadedLighting, UploadedSky,
+    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 
 /// Foreign text in messages.

@@ -99,7 +99,6 @@ impl Deviations {
         &mut self.all[self.last]
     }
 
-    /// Adds the result for a quantity.
     pub(super) fn add(&mut self, stage: &'static str, what: &'static str, deviation: f64) {
         let one = self.of(stage, what);
         one.count += 1;
@@ -107,19 +106,19 @@ impl Deviations {
         one.squares += deviation * deviation;
     }
 
-    /// Adds the result for a quantity, unless [`deviation`] says nothing of it.
-    pub(super) fn add_if(
+    /// Adds the result for a quantity, unless its bounds say nothing of it.
+    pub(super) fn measure(
         &mut self,
         stage: &'static str,
         what: &'static str,
-        deviation: Option<f64>,
+        found: f64,
+        legal: Interval,
     ) {
-        if let Some(deviation) = deviation {
+        if let Some(deviation) = deviation(found, legal) {
             self.add(stage, what, deviation);
         }
     }
 
-    /// Adds the results of another part.
     pub(super) fn join(&mut self, other: &Self) {
         for Deviation { stage, what, count, sum, squares } in &other.all {
             let one = self.of(stage, what);
@@ -153,9 +152,7 @@ mod tests {
             let by_chance = 0.6 * (random.f64() - 0.5);
             for (what, shift) in [("fair", 0.0), ("larger", 0.05), ("smaller", -0.05)] {
                 let found = middle + (by_chance + shift) * half * middle.signum();
-                if let Some(deviation) = deviation(found, legal) {
-                    deviations.add("test", what, deviation);
-                }
+                deviations.measure("test", what, found, legal);
             }
         }
         let biased: Vec<_> = deviations.biased().map(|one| one.what).collect();

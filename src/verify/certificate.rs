@@ -16,6 +16,7 @@ pub const MOST_UNDECIDED: f64 = 0.01;
 /// Only [`Outcome::Proved`] means that a picture is legal. A picture of which too much stays undecided is not called
 /// legal, even if nothing in it is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Outcome {
     /// Nothing is wrong, and at most [`MOST_UNDECIDED`] of all answers are undecided.
     Proved,
@@ -57,6 +58,7 @@ impl fmt::Display for Outcome {
 
 /// The verdict about a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Verdict {
     /// There is a single legal answer, and the device gave it.
     Decided,
@@ -109,6 +111,9 @@ pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
     [(index % width) as u32, (index / width) as u32]
 }
 
+/// The number of pixels that a thread takes at a time.
+pub(super) const CHUNK: usize = 1 << 12;
+
 /// The largest number of violations that are kept; all are counted.
 pub(super) const KEPT: usize = 1000;
 
@@ -143,6 +148,7 @@ impl fmt::Display for LegalHits {
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Violation {
     /// Column and row of the pixel, from the top left.
@@ -155,7 +161,6 @@ pub struct Violation {
 }
 
 impl fmt::Display for Violation {
-    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], stage, message } = self;
         write!(f, "pixel ({i}, {j}), {stage}: {message}")
@@ -179,7 +184,19 @@ impl Mismatch {
     }
 }
 
-/// The names of axes.
+/// Judges a number, which has a name in two words.
+pub(super) fn legal_is(
+    stage: &'static str,
+    (of, name): (&str, &str),
+    found: f32,
+    legal: Interval,
+) -> Result<(), Mismatch> {
+    match legal.contains(found.into()) {
+        true => Ok(()),
+        false => Err(Mismatch::new(stage, format!("{of}{name} is {found:?}; legal is {legal}"))),
+    }
+}
+
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The name of a channel of a colour, from 0 for red to 3 for alpha.

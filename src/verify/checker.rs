@@ -7,10 +7,10 @@ use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
 use crate::parallel::{map_parts, ranges};
 use crate::scene::{Scene, SceneError};
-use crate::verify::bias::{Deviations, deviation};
+use crate::verify::bias::Deviations;
 use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
 use crate::verify::certificate::{
-    AXES, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, pixel_at,
+    AXES, CHUNK, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, legal_is, pixel_at,
 };
 use crate::verify::hit::{Candidates, LegalHits};
 use crate::verify::recording::{
@@ -20,9 +20,6 @@ use crate::verify::rounding::{Interval, PAD, U, unit_error};
 use crate::verify::sphere::{
     LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth,
 };
-
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 12;
 
 /// Judges recordings of a scene.
 #[derive(Debug)]
@@ -93,7 +90,6 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Judges a range of pixels.
 fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> Certificate {
     let mut part = Certificate::default();
     let mut legal = LegalHits::default();
@@ -229,10 +225,11 @@ impl PixelCheck<'_> {
         let normal = self.check_hit(&layers, depths, id, &shading)?;
         if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
             for (what, found, legal) in entered.numbers(&ray) {
-                measured.add_if("camera", what, deviation(found, legal));
+                measured.measure("camera", what, found, legal);
             }
-            let t = side.and_then(|crossing| deviation(t.into(), crossing));
-            measured.add_if("trace", "the distance of a hit", t);
+            if let Some(crossing) = side {
+                measured.measure("trace", "the distance of a hit", t.into(), crossing);
+            }
             self.measure_shading(&layers, &shading, measured);
         }
         Ok(Judged { verdict, depth, normal })
@@ -274,21 +271,15 @@ impl PixelCheck<'_> {
         if !depths.contains(layers.depth.into()) {
             return Err(Mismatch::value("depth", layers.depth, depths));
         }
-        self.check_shading(layers, &shading.line, shading.slack, shading.direction)
+        self.check_shading(layers, shading)
     }
 
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
     /// bound.
-    pub(super) fn check_shading(
-        &self,
-        layers: &Layers,
-        line: &Line,
-        slack: Slack,
-        direction: [Interval; 3],
-    ) -> Result<f64, Mismatch> {
+    fn check_shading(&self, layers: &Layers, ray: &Shaded) -> Result<f64, Mismatch> {
         let (scene, id) = (self.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
-        let normals = LegalNormals::new(line, sphere, slack);
+        let normals = LegalNormals::new(&ray.line, sphere, ray.slack);
         let normal = wide(layers.normal);
         let fraction = normals.fraction(normal);
         let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
@@ -298,7 +289,7 @@ impl PixelCheck<'_> {
         }
         let color = scene.color(id).to_array();
         let shading = self.recording.primary.shading;
-        check_color(layers.color, legal_color(shading, color, normal, direction))?;
+        check_color(layers.color, legal_color(shading, color, (normal, 0.0), ray.direction))?;
         Ok(fraction)
     }
 
@@ -310,13 +301,14 @@ impl PixelCheck<'_> {
         if let Some((exact, error)) = normals.only() {
             for axis in 0..3 {
                 let legal = Interval::around(exact[axis], error);
-                measured.add_if("shade", "the normal", deviation(normal[axis], legal));
+                measured.measure("shade", "the normal", normal[axis], legal);
             }
         }
         let shading = self.recording.primary.shading;
-        let legal = legal_color(shading, scene.color(id).to_array(), normal, ray.direction);
+        let color = scene.color(id).to_array();
+        let legal = legal_color(shading, color, (normal, 0.0), ray.direction);
         for (found, legal) in layers.color.into_iter().zip(legal) {
-            measured.add_if("shade", "the color", deviation(found.into(), legal));
+            measured.measure("shade", "the color", found.into(), legal);
         }
     }
 }
@@ -324,23 +316,15 @@ impl PixelCheck<'_> {
 fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
     for (axis, name) in AXES.iter().enumerate() {
         let (found, legal) = (ray.direction[axis], entered.direction[axis]);
-        if !legal.contains(found.into()) {
-            let message = format!("the direction's {name} is {found:?}; legal is {legal}");
-            return Err(Mismatch::new("camera", message));
-        }
+        legal_is("camera", ("the direction's ", name), found, legal)?;
     }
     entered.check_start(ray)
 }
 
 fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
-    match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
-        None => Ok(()),
-        Some(channel) => {
-            let (found, legal) = (found[channel], legal[channel]);
-            let name = channel_name(channel);
-            Err(Mismatch::new("color", format!("{name} is {found:?}; legal is {legal}")))
-        }
-    }
+    (0..3).try_for_each(|channel| {
+        legal_is("color", ("", channel_name(channel)), found[channel], legal[channel])
+    })
 }
 
 fn wrong_id(found: u32, traced: u32) -> Mismatch {
@@ -403,7 +387,8 @@ impl PixelCheck<'_> {
         {
             return Err(Mismatch::value("depth", depth, legal));
         }
-        self.check_shading(layers, &ray.line, ray.slack, ray.direction).map(|_| ())
+        let AnyRay { line, slack, direction, .. } = ray;
+        self.check_shading(layers, &Shaded { line, slack, direction }).map(|_| ())
     }
 
     /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not

@@ -63,6 +63,7 @@ pub struct DenoiseViolation {
 
 /// Whether a device denoised a picture as a conforming WGSL implementation may.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct DenoiseCertificate {
     /// The number of pixels.
@@ -80,6 +81,13 @@ impl DenoiseCertificate {
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         Outcome::of(self.violation_count > 0, self.undecided, self.pixels)
+    }
+}
+
+#[cfg(feature = "run-file")]
+impl serde::Serialize for DenoiseViolation {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

@@ -13,9 +13,6 @@ use crate::verify::sphere::{Line, Slack, SphereTest};
 /// The largest number of spheres in a leaf.
 const LEAF: usize = 6;
 
-/// The largest number of levels, because a tree has at most as many levels as an id has bits.
-const LEVELS: usize = 32;
-
 /// Subtrees of up to this number of levels are built by one thread.
 const SMALL: u32 = 10;
 
@@ -47,7 +44,7 @@ pub(super) struct Candidates {
 }
 
 /// A node during the traversal, and the range of spheres below it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Visit {
     node: usize,
     level: u32,
@@ -75,7 +72,9 @@ impl Candidates {
 
     /// The length of the longest vector from a point to a sphere's centre.
     pub(super) fn longest_from(&self, point: DVec3) -> f64 {
-        farthest(point, &self.nodes[0])
+        let Node { low, high } = self.nodes[0];
+        let low = (low.as_dvec3() - point).abs();
+        low.max((high.as_dvec3() - point).abs()).length()
     }
 
     /// Calls `offer` for every sphere that a ray, displaced by up to `moved`, may hit before `nearest`. The return
@@ -96,47 +95,43 @@ impl Candidates {
         &self,
         line: &Line,
         beside: f64,
-        mut nearest: f64,
+        nearest: f64,
         mut offer: impl FnMut(&Candidate) -> f64,
     ) {
-        let root = &self.nodes[0];
-        let slab = Slab { origin: line.origin, inverse: line.inverse(), beside };
+        let slab = Slab { line, inverse: line.inverse(), beside };
+        let entry = slab.entry(&self.nodes[0]);
+        let root = Visit { node: 0, level: self.levels, start: 0, end: self.items.len(), entry };
         // The entry of a box that is not hit is infinite, which is farther than any limit.
-        nearest = nearest.min(f64::MAX);
-        let mut stack = [Visit::default(); LEVELS];
-        let mut top = 0;
-        let end = self.items.len();
-        let entry = slab.entry(root);
-        let mut next = Visit { node: 0, level: self.levels, start: 0, end, entry };
-        loop {
-            if next.entry > nearest || next.start == next.end {
-                // Nothing nearer can be found there.
-            } else if next.level == 0 {
-                let items = self.items[next.start..next.end].iter();
-                for item in items.filter(|item| slab.may_hit(line, item)) {
-                    nearest = offer(item).min(f64::MAX);
-                }
-            } else {
-                let [near, far] = self.children(&slab, next);
-                if far.entry <= nearest {
-                    stack[top] = far;
-                    top += 1;
-                }
-                if near.entry <= nearest {
-                    next = near;
-                    continue;
-                }
+        self.visit_node(&slab, root, &mut nearest.min(f64::MAX), &mut offer);
+    }
+
+    fn visit_node(
+        &self,
+        slab: &Slab<'_>,
+        visit: Visit,
+        nearest: &mut f64,
+        offer: &mut impl FnMut(&Candidate) -> f64,
+    ) {
+        let Visit { level, start, end, entry, .. } = visit;
+        if entry > *nearest || start == end {
+            // Nothing nearer can be found there.
+        } else if level == 0 {
+            for item in self.items[start..end].iter().filter(|item| slab.may_hit(item)) {
+                *nearest = offer(item).min(f64::MAX);
             }
-            if top == 0 {
-                return;
+        } else {
+            for child in self.children(slab, visit) {
+                self.visit_node(slab, child, nearest, offer);
             }
-            top -= 1;
-            next = stack[top];
         }
     }
 
     /// Both children, the nearer one first.
-    fn children(&self, slab: &Slab, Visit { node, level, start, end, .. }: Visit) -> [Visit; 2] {
+    fn children(
+        &self,
+        slab: &Slab<'_>,
+        Visit { node, level, start, end, .. }: Visit,
+    ) -> [Visit; 2] {
         let (middle, level) = (start + (end - start) / 2, level - 1);
         let (left, right) = (node + 1, node + (2 << level));
         let left_entry = slab.entry(&self.nodes[left]);
@@ -189,35 +184,25 @@ fn longest_axis(items: &[Candidate]) -> usize {
     (high - low).max_position()
 }
 
-/// The length of the longest vector from a point to a point of a box.
-fn farthest(point: DVec3, node: &Node) -> f64 {
-    let low = (node.low.as_dvec3() - point).abs();
-    low.max((node.high.as_dvec3() - point).abs()).length()
-}
-
-struct Slab {
-    origin: DVec3,
+struct Slab<'a> {
+    line: &'a Line,
     inverse: DVec3,
     beside: f64,
 }
 
-impl Slab {
+impl Slab<'_> {
     /// Whether the ray comes close enough to the sphere that a kernel may find a hit.
-    fn may_hit(
-        &self,
-        line: &Line,
-        Candidate { sphere: [x, y, z, radius], .. }: &Candidate,
-    ) -> bool {
-        let to_center = wide([*x, *y, *z]) - line.origin;
-        let along = to_center.dot(line.direction);
-        let foot = to_center - along * line.direction;
+    fn may_hit(&self, Candidate { sphere: [x, y, z, radius], .. }: &Candidate) -> bool {
+        let Line { origin, direction, .. } = *self.line;
+        let to_center = wide([*x, *y, *z]) - origin;
+        let foot = to_center - to_center.dot(direction) * direction;
         foot.length_squared() <= (f64::from(*radius) + self.beside).powi(2)
     }
 
     /// The distance at which the ray enters the box, widened by `beside` on all sides; infinity if it misses.
     fn entry(&self, node: &Node) -> f64 {
-        let low = (node.low.as_dvec3() - self.beside - self.origin) * self.inverse;
-        let high = (node.high.as_dvec3() + self.beside - self.origin) * self.inverse;
+        let low = (node.low.as_dvec3() - self.beside - self.line.origin) * self.inverse;
+        let high = (node.high.as_dvec3() + self.beside - self.line.origin) * self.inverse;
         let entry = low.min(high).max_element().max(0.0);
         let exit = low.max(high).min_element();
         if entry <= exit { entry } else { f64::INFINITY }

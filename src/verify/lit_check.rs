@@ -6,65 +6,27 @@ use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{Address, LitCertificate, LitStage};
-use crate::verify::lit::check::{LitCheck, unfinished};
-use crate::verify::lit::film::check_sums;
+use crate::verify::lit::check::LitCheck;
+use crate::verify::lit::film::{check_sums, judge_start};
 use crate::verify::lit::judge::{
-    Expected, Judged, Mismatch, StageOutcome, along_choices, judge_pixels, searched, unchanged,
+    Expected, Judged, Mismatch, Name, StageOutcome, along_choices, judge_pixels, searched,
 };
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{
-    BITS, LitInputs, LitRecording, LitSurface, NO_EMITTER, PathRecording, PathState,
-    RecordedSample, RectangleRecording, RectangleSample, StudioLight, StudioRecording,
-    StudioSample, flag, slot,
+    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
+    flag, slot,
 };
-use crate::verify::lit::search::check_open;
+use crate::verify::lit::search::{Hidden, OPEN, check_hit, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::radiance_so_far;
 use crate::verify::studio::light::Change;
-use crate::verify::studio::search::Hidden;
 use crate::verify::studio::surface::Met;
-
-/// The stage and the name of a number, for reports.
-type Name = (LitStage, &'static str);
-
-const ENDED_PATH: Name = (LitStage::Scatter, "a path that has ended");
-const ENDED_RAY: Name = (LitStage::Surface, "a ray that has ended");
 
 impl Checker<'_> {
     /// Judges every stage of every sample. The recording must be of the scene of this checker.
     #[must_use]
-    pub fn certify_lit(&self, recording: LitRecording<'_>) -> LitCertificate {
-        match recording {
-            LitRecording::Paths(recording) => self.certify_paths(recording),
-            LitRecording::Studio(recording) => self.certify_studio(recording),
-        }
-    }
-
-    /// Judges every stage of every path. The recording must be of the scene of this checker.
-    #[must_use]
-    pub fn certify_paths(&self, recording: &PathRecording) -> LitCertificate {
-        self.certify_samples(recording, |check, sample, index, part, legal| {
-            check.judge_path(sample, index, part, legal);
-        })
-    }
-
-    /// Judges every stage of every sample. The recording must be of the scene of this checker.
-    #[must_use]
-    pub fn certify_studio(&self, recording: &StudioRecording) -> LitCertificate {
-        let certificate = self.certify_samples(recording, |check, sample, index, part, legal| {
-            check.judge_sample(sample, index, part, legal);
-        });
-        LitCertificate { is_studio: true, ..certificate }
-    }
-
-    /// `judge` is called with the index of a pixel.
-    fn certify_samples<S: LitSurface>(
-        &self,
-        recording: &RectangleRecording<S>,
-        judge: impl Fn(&LitCheck<'_>, &RectangleSample<S>, usize, &mut LitCertificate, &mut LegalHits)
-        + Sync,
-    ) -> LitCertificate {
+    pub fn certify_lit(&self, recording: &LitRecording) -> LitCertificate {
         let given = &recording.given;
         let upload = upload::check(self.scene, &self.candidates, given)
             .and_then(|()| recording.check_size())
@@ -74,6 +36,7 @@ impl Checker<'_> {
             film_pixels: given.film.pixel_count(),
             film_samples: given.settings.sampling.samples,
             rectangles: vec![given.rectangle()],
+            is_studio: given.is_studio(),
             ..LitCertificate::default()
         };
         if certificate.upload.is_some() {
@@ -88,11 +51,12 @@ impl Checker<'_> {
             checker: self,
             inputs: given,
             model: CameraModel::new(given.camera.kind, &given.uploaded, &given.film),
+            is_studio: given.is_studio(),
             is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
         };
         for sample in &recording.samples {
             certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
-                judge(&check, sample, index, part, legal);
+                check.judge_sample(sample, index, part, legal);
             }));
         }
         certificate
@@ -100,117 +64,60 @@ impl Checker<'_> {
 }
 
 impl LitCheck<'_> {
-    fn judge_path(
+    /// Judges a sample of the pixel with this index.
+    fn judge_sample(
         &self,
         recorded: &RecordedSample,
         index: usize,
         part: &mut LitCertificate,
         legal: &mut LegalHits,
     ) {
-        let (mut address, mut state) = self.start(recorded, index, part);
+        let (stage, ray, ended) = match self.is_studio {
+            true => (LitStage::Surface, "ray", "a ray that has ended"),
+            false => (LitStage::Scatter, "path", "a path that has ended"),
+        };
+        let pixel = self.inputs.pixel(index);
+        let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
+        let mut state = recorded.start[index];
+        let started = judge_start(self.inputs, &self.model, address, &state);
+        part.note(LitStage::Start, address, started);
         let mut last = None;
-        for (surface, stage) in (0..).zip(&recorded.surfaces) {
+        for (surface, found) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
-            let after = stage.scattered[index];
-            if state.has(flag::ALIVE) {
-                let hit = Hit::new(stage.hits[index]);
-                part.note(LitStage::Extend, address, self.extend(&state, last, hit, legal));
-                part.note(LitStage::Scatter, address, self.scatter(address, &state, hit, &after));
-                last = Some(hit);
-            } else if let Err(mismatch) = unchanged(ENDED_PATH, [&state, &after]) {
-                part.note(LitStage::Scatter, address, Err(mismatch));
-            }
-            let open = f32::from_bits(stage.open[index]);
-            let is_searched = surface < self.inputs.max_surfaces
-                && self.inputs.lighting.source_count > 0
-                && after.number(slot::SHADOW) > 0.0;
-            if is_searched {
-                part.note(LitStage::Occlude, address, self.occlude(&after, open));
-            } else if stage.open[index] != after.bits(slot::PENDING) {
-                let words = format!("{open:?}, without a search");
-                let what = "the visibility of the light";
-                let fail = Expected::default().fail(LitStage::Occlude, what, words);
-                part.note(LitStage::Occlude, address, Err(fail));
-            }
-            state = after.with_visibility(stage.open[index]);
-        }
-        let color = radiance_so_far(&state);
-        if state.has(flag::ALIVE) {
-            part.note(LitStage::Extend, address, Err(unfinished("path")));
-        }
-        let sums = check_sums(color, &state, &recorded.film, index);
-        part.note(LitStage::Accumulate, address, sums);
-    }
-
-    fn judge_sample(
-        &self,
-        recorded: &StudioSample,
-        index: usize,
-        part: &mut LitCertificate,
-        legal: &mut LegalHits,
-    ) {
-        let (mut address, mut state) = self.start(recorded, index, part);
-        let mut last = None;
-        for (surface, stage) in (0..).zip(&recorded.surfaces) {
-            address.surface = surface;
-            let mut after = stage.shaded[index];
+            let after = found.states[index];
             let mut met = Some(Met::Nothing);
             if state.has(flag::ALIVE) {
-                let hit = Hit::new(stage.hits[index]);
-                let result = self.extend(&state, last, hit, legal);
+                let hit = Hit::new(found.hits[index]);
+                let result = check_hit(self, &state, last, hit, legal);
                 part.note(LitStage::Extend, address, result);
-                let (result, found) = self.surface(address, &state, hit, &after);
-                part.note(LitStage::Surface, address, result);
-                (met, last) = (found, Some(hit));
-            } else if let Err(mismatch) = unchanged(ENDED_RAY, [&state, &after]) {
-                part.note(LitStage::Surface, address, Err(mismatch));
+                let (result, seen) = self.shade(address, &state, hit, &after);
+                part.note(stage, address, result);
+                (met, last) = (seen, Some(hit));
+            } else if let Err(mismatch) =
+                Expected::default().unchanged((stage, ended), [&state, &after])
+            {
+                part.note(stage, address, Err(mismatch));
             }
-            for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
-                for (batch, light) in (0..).zip(lights) {
-                    let found = Light { kind, first: batch * BITS, light, index };
-                    self.judge_light(address, met, &after, found, part);
-                    after = after.with_light(light.radiance[index], light.left[index]);
-                }
-            }
-            state = after;
+            state = match self.is_studio {
+                true => self.judge_lights(address, met, after, (found, index), part),
+                false => self.judge_open(address, after, found.open[index], part),
+            };
         }
         if state.has(flag::ALIVE) {
-            part.note(LitStage::Extend, address, Err(unfinished("ray")));
+            let words = format!("the {ray} was not followed to its end");
+            let unfinished = Expected::default().fail((LitStage::Extend, "the hit"), words);
+            part.note(LitStage::Extend, address, Err(unfinished));
         }
-        let color = Vector::recorded(state.vector(slot::RADIANCE));
+        let color = match self.is_studio {
+            true => Vector::recorded(state.vector(slot::RADIANCE)),
+            false => radiance_so_far(&state),
+        };
         let sums = check_sums(color, &state, &recorded.film, index);
         part.note(LitStage::Accumulate, address, sums);
     }
 
-    fn scatter(
-        &self,
-        address: Address,
-        before: &PathState,
-        hit: Hit,
-        after: &PathState,
-    ) -> Result<Judged, Mismatch> {
-        along_choices(|choices| {
-            let mut kernel = self.kernel(address, before, choices);
-            (kernel.hit, kernel.after) = (hit, after);
-            kernel.follow()?;
-            Ok(kernel.expected)
-        })
-    }
-
-    fn occlude(&self, state: &PathState, open: f32) -> Result<Judged, Mismatch> {
-        let mut expected = Expected::default();
-        let LitInputs { emitters, .. } = self.inputs;
-        let emitter = state.departure().emitter;
-        let sphere_of_light = (emitter != NO_EMITTER)
-            .then(|| emitters.get((emitter as usize).saturating_mul(3)))
-            .flatten()
-            .map(|sphere| sphere.map(f32::from_bits));
-        let doubts = check_open(self.searched(), state, sphere_of_light, open, &mut expected)?;
-        Ok(searched(doubts.is_some(), || doubts.unwrap_or_default().alternatives()))
-    }
-
-    /// Judges what is seen of a surface, and says what was met, if that is known.
-    fn surface(
+    /// Judges the shading of a surface, and says what a ray of a studio met, if that is known.
+    fn shade(
         &self,
         address: Address,
         before: &PathState,
@@ -222,10 +129,58 @@ impl LitCheck<'_> {
         let result = along_choices(|choices| {
             let mut kernel = self.kernel(address, before, choices);
             (kernel.hit, kernel.after) = (hit, after);
-            met = Some(kernel.follow_surface(is_last)?);
+            match self.is_studio {
+                true => met = Some(kernel.follow_surface(is_last)?),
+                false => kernel.follow()?,
+            }
             Ok(kernel.expected)
         });
         (result, met)
+    }
+
+    /// Judges whether the sampled light of a path is occluded, and returns the state with the answer.
+    fn judge_open(
+        &self,
+        address: Address,
+        after: PathState,
+        bits: u32,
+        part: &mut LitCertificate,
+    ) -> PathState {
+        let open = f32::from_bits(bits);
+        let is_searched = address.surface < self.inputs.max_surfaces
+            && self.inputs.lighting.source_count > 0
+            && after.number(slot::SHADOW) > 0.0;
+        if is_searched {
+            part.note(LitStage::Occlude, address, check_open(self, &after, open));
+        } else if bits != after.bits(slot::PENDING) {
+            let words = format!("{open:?}, without a search");
+            let fail = Expected::default().fail(OPEN, words);
+            part.note(LitStage::Occlude, address, Err(fail));
+        }
+        after.with_visibility(bits)
+    }
+
+    /// Judges the light of a surface of a studio, and returns the state with it.
+    fn judge_lights(
+        &self,
+        address: Address,
+        met: Option<Met>,
+        mut after: PathState,
+        (surface, index): (&RecordedSurface, usize),
+        part: &mut LitCertificate,
+    ) -> PathState {
+        let UploadedLighting { light_count, occlusion_samples, .. } = self.inputs.lighting;
+        for (kind, count, lights) in [
+            (&LIGHTS, light_count, &surface.lights),
+            (&AMBIENT, occlusion_samples, &surface.ambient),
+        ] {
+            for (batch, light) in (0..).zip(lights) {
+                let found = Light { kind, count, first: batch * BITS, light, index };
+                self.judge_light(address, met, &after, found, part);
+                after = after.with_light(light.radiance[index], light.left[index]);
+            }
+        }
+        after
     }
 
     /// Judges which of some lights are hidden, and the light of the others.
@@ -246,17 +201,13 @@ impl LitCheck<'_> {
                 }
             }
             Some(Met::Surface) => {
-                let (searches, sums) = match found.kind {
-                    Kind::Lights => (LitStage::Shadow, LitStage::Illuminate),
-                    Kind::Ambient => (LitStage::Ambient, LitStage::Gather),
-                };
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);
                     if let Some(result) = result.transpose() {
-                        part.note(searches, address, result);
+                        part.note(found.kind.searches, address, result);
                     }
                 }
-                part.note(sums, address, self.added(address, state, found));
+                part.note(found.kind.sums, address, self.added(address, state, found));
             }
         }
     }
@@ -272,13 +223,13 @@ impl LitCheck<'_> {
         let is_hidden = found.bits() & (1 << offset) != 0;
         let index = found.first + offset;
         let candidates = &self.checker.candidates;
-        let is_searched = index < self.count(found.kind)
-            && (found.kind == Kind::Ambient
+        let is_searched = index < found.count
+            && (found.kind.is_ambient
                 || self.kernel(address, state, &mut Choices::default()).casts_shadow(index));
         let legal = if is_searched {
-            self.outcomes(address, state, Hidden::or, |kernel| match found.kind {
-                Kind::Lights => kernel.is_light_hidden(candidates, index),
-                Kind::Ambient => kernel.is_direction_hidden(candidates, index),
+            self.outcomes(address, state, Hidden::or, |kernel| match found.kind.is_ambient {
+                false => kernel.is_light_hidden(candidates, index),
+                true => kernel.is_direction_hidden(candidates, index),
             })
         } else {
             Some(Hidden::NEVER)
@@ -293,19 +244,8 @@ impl LitCheck<'_> {
             _ if !is_searched => return Ok(None),
             _ => return Ok(Some(searched(may && !must, || doubts.alternatives()))),
         };
-        let (stage, what) = match found.kind {
-            Kind::Lights => (LitStage::Shadow, "light"),
-            Kind::Ambient => (LitStage::Ambient, "direction"),
-        };
-        let words = format!("{what} {index} is {answer}");
-        Err(Expected::default().fail(stage, "what is hidden", words))
-    }
-
-    fn count(&self, kind: Kind) -> u32 {
-        match kind {
-            Kind::Lights => self.inputs.lighting.light_count,
-            Kind::Ambient => self.inputs.lighting.occlusion_samples,
-        }
+        let words = format!("{} {index} is {answer}", found.kind.one);
+        Err(Expected::default().fail((found.kind.searches, "what is hidden"), words))
     }
 
     /// The outcomes of a kernel for all combinations of its open decisions, joined; `None` if they are too many.
@@ -334,18 +274,7 @@ impl LitCheck<'_> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
-        let (stage, radiance, opacity) = match found.kind {
-            Kind::Lights => (
-                LitStage::Illuminate,
-                "the radiance with these lights",
-                "the opacity with these lights",
-            ),
-            Kind::Ambient => (
-                LitStage::Gather,
-                "the radiance with ambient light",
-                "the opacity with ambient light",
-            ),
-        };
+        let Kind { sums: stage, radiance, opacity, .. } = *found.kind;
         let mut expected = Expected::default();
         let before = state.vector(slot::RADIANCE);
         let [r, g, b, found_opacity] = found.light.radiance[found.index].map(f32::from_bits);
@@ -367,9 +296,9 @@ impl LitCheck<'_> {
         found: Light<'_>,
         total: Number,
     ) -> Option<Change> {
-        let count = self.count(found.kind).saturating_sub(found.first).min(BITS);
+        let count = found.count.saturating_sub(found.first).min(BITS);
         let bits = found.bits();
-        if found.kind == Kind::Ambient {
+        if found.kind.is_ambient {
             let hidden = bits.count_ones();
             return self.outcomes(address, state, Change::union, |kernel| {
                 kernel.ambient_added(count, hidden, total)
@@ -385,17 +314,41 @@ impl LitCheck<'_> {
     }
 }
 
-/// The kind of light that a [`StudioLight`] holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Lights,
-    Ambient,
+/// A kind of light that a [`StudioLight`] holds.
+struct Kind {
+    is_ambient: bool,
+    /// What is searched for.
+    one: &'static str,
+    searches: LitStage,
+    sums: LitStage,
+    radiance: &'static str,
+    opacity: &'static str,
 }
+
+const LIGHTS: Kind = Kind {
+    is_ambient: false,
+    one: "light",
+    searches: LitStage::Shadow,
+    sums: LitStage::Illuminate,
+    radiance: "the radiance with these lights",
+    opacity: "the opacity with these lights",
+};
+
+const AMBIENT: Kind = Kind {
+    is_ambient: true,
+    one: "direction",
+    searches: LitStage::Ambient,
+    sums: LitStage::Gather,
+    radiance: "the radiance with ambient light",
+    opacity: "the opacity with ambient light",
+};
 
 /// The light of a pixel from a batch.
 #[derive(Clone, Copy)]
 struct Light<'a> {
-    kind: Kind,
+    kind: &'static Kind,
+    /// The number of lights or directions of this kind.
+    count: u32,
     /// Index of the first light or direction.
     first: u32,
     light: &'a StudioLight,
@@ -410,7 +363,7 @@ impl Light<'_> {
 
     /// Checks that a ray on which no surface is lit does not change.
     fn unlit(&self, state: &PathState) -> Result<(), Mismatch> {
-        const KEPT: (LitStage, &str) = (LitStage::Illuminate, "a ray without a lit surface");
+        const KEPT: Name = (LitStage::Illuminate, "a ray without a lit surface");
         let mut expected = Expected::default();
         let bits = state.bits(slot::NORMAL);
         let (hidden, left) = (self.bits(), self.light.left[self.index]);

@@ -250,7 +250,15 @@ mod tests {
     }
 
     fn compare(found: &[[f64; 3]], expected: &[[f64; 3]]) -> Means {
-        Estimates { size: SIZE, samples: 4, reach: 0, found, expected, ties: &[] }.compare()
+        compare_mixed(found, expected, 0)
+    }
+
+    fn compare_mixed(found: &[[f64; 3]], expected: &[[f64; 3]], reach: u32) -> Means {
+        Estimates { size: SIZE, samples: 4, reach, found, expected, ties: &[] }.compare()
+    }
+
+    fn noisy(random: &mut Rng, mean: f64) -> Vec<[f64; 3]> {
+        (0..64 * 48).map(|_| [mean + 0.02 * (random.f64() - 0.5); 3]).collect()
     }
 
     #[test]
@@ -286,27 +294,17 @@ mod tests {
         for seed in 0..40 {
             let [found, expected] =
                 [2 * seed, 2 * seed + 1].map(|seed| mixed(&picture(seed, 1.0), 3));
-            let estimates = |reach| {
-                let (found, expected) = (&found[..], &expected[..]);
-                Estimates { size: SIZE, samples: 4, reach, found, expected, ties: &[] }.compare()
-            };
-            let means = estimates(3);
+            let means = compare_mixed(&found, &expected, 3);
             assert_eq!(means.count(Outcome::Violated), 0, "{:?}", means.worst());
             assert_eq!(means.means.len(), 6);
             // Who overlooks that they are mixed accuses a correct device.
-            accused += usize::from(estimates(0).outcome() == Outcome::Violated);
+            let means = compare(&found, &expected);
+            accused += usize::from(means.outcome() == Outcome::Violated);
         }
         assert!(accused > 0);
         let mut random = Rng::with_seed(1);
-        let mut noisy = |mean: f64| -> Vec<[f64; 3]> {
-            mixed(
-                &(0..64 * 48).map(|_| [mean + 0.02 * (random.f64() - 0.5); 3]).collect::<Vec<_>>(),
-                3,
-            )
-        };
-        let (found, expected) = (&noisy(0.52)[..], &noisy(0.5)[..]);
-        let means =
-            Estimates { size: SIZE, samples: 4, reach: 3, found, expected, ties: &[] }.compare();
+        let [found, expected] = [0.52, 0.5].map(|mean| mixed(&noisy(&mut random, mean), 3));
+        let means = compare_mixed(&found, &expected, 3);
         assert_eq!(means.outcome(), Outcome::Violated, "{means:?}");
     }
 
@@ -317,9 +315,7 @@ mod tests {
         let brighter: Vec<[f64; 3]> = vec![[0.501; 3]; 64 * 48];
         assert_eq!(compare(&brighter, &exact).outcome(), Outcome::Violated);
         let mut random = Rng::with_seed(1);
-        let mut noisy = |mean: f64| -> Vec<[f64; 3]> {
-            (0..64 * 48).map(|_| [mean + 0.02 * (random.f64() - 0.5); 3]).collect()
-        };
+        let mut noisy = |mean| noisy(&mut random, mean);
         let (right, wrong) = (noisy(0.5), noisy(0.52));
         assert_eq!(compare(&right, &noisy(0.5)).outcome(), Outcome::Proved);
         assert_eq!(compare(&wrong, &noisy(0.5)).outcome(), Outcome::Violated);

@@ -21,7 +21,7 @@
 //! equal to the bit the smallest id wins, even if they are in different bricks, because all kernels of a picture
 //! compute the same result from the same numbers.
 //!
-//! The paths of pictures with lighting are judged in the same way, dispatch by dispatch ([`Checker::certify_paths`]).
+//! The paths of pictures with lighting are judged in the same way, dispatch by dispatch ([`Checker::certify_lit`]).
 //! There the checker also assumes that a fenced number that a kernel's text computes in two places is the same in both,
 //! and that products of sums are not expanded.
 //!
@@ -67,13 +67,10 @@ pub use hit::{LegalHit, LegalHits};
 pub use lit::certificate::{
     LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts,
 };
-pub use lit::recording::{
-    LitInputs, LitRecording, PathRecording, RectangleRecording, RectangleSample, StudioRecording,
-};
+pub use lit::recording::{LitInputs, LitRecording, RecordedSample};
 #[cfg(feature = "gpu")]
 pub(crate) use lit::recording::{
-    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, StudioSurface,
-    UploadedLighting, UploadedSky,
+    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 pub use recording::{
     NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadError, UploadedView,

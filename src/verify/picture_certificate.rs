@@ -20,8 +20,6 @@
 //! A digest tells what has been changed by mistake. It is no signature: who changes a picture on purpose can also
 //! compute digests, but cannot make the check of its samples succeed.
 
-use std::fmt::Write;
-
 use sha2::{Digest, Sha256};
 
 use super::run_file::hex;
@@ -104,18 +102,14 @@ impl PictureCertificate {
         let mut text = format!("{FIRST} {VERSION}\n");
         let mut line = |key: &str, value: &str| {
             // What is not ASCII is written as in Rust's strings, because PNG and OpenEXR have Latin-1 alone.
-            let ascii: String = value
-                .chars()
-                .map(|c| {
-                    if c == '\\' || !c.is_ascii() {
-                        c.escape_default().to_string()
-                    } else {
-                        c.to_string()
-                    }
-                })
-                .collect();
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{key} {ascii}");
+            text.extend([key, " "]);
+            for c in value.chars() {
+                match c == '\\' || !c.is_ascii() {
+                    true => text.extend(c.escape_default()),
+                    false => text.push(c),
+                }
+            }
+            text.push('\n');
         };
         line("version", &one_line(&self.version));
         line("adapter", &one_line(&self.adapter));
@@ -136,8 +130,7 @@ impl PictureCertificate {
         line("proved", &self.counts[0].to_string());
         line("undecided", &self.counts[1].to_string());
         let digest = hex(Sha256::new_with_prefix(&text));
-        let _ = writeln!(text, "{DIGEST} {digest}");
-        Ok(text)
+        Ok(text + &format!("{DIGEST} {digest}\n"))
     }
 
     /// Reads the text of a certificate.

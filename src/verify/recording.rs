@@ -72,6 +72,15 @@ impl RequestedCamera {
     pub fn of(camera: &dyn Camera) -> Self {
         Self { kind: camera.kind(), vectors: camera.vectors() }
     }
+
+    /// The factor of `forward` at which the nearest corner of a box lies, if the camera has a plane; else 0.
+    fn nearest(&self, origin: DVec3, [low, high]: [DVec3; 2]) -> f64 {
+        let CameraVectors { right, up, forward, .. } = self.vectors;
+        let across = right.cross(up);
+        let ahead = |corner: DVec3| (corner - origin).dot(across) / forward.dot(across);
+        let corners = Bounds::between(low, high).corners().into_iter().map(ahead);
+        if self.kind.is_linear() { corners.fold(f64::INFINITY, f64::min).max(0.0) } else { 0.0 }
+    }
 }
 
 /// The numbers of a view with which kernels compute, in the scene's frame.
@@ -108,11 +117,7 @@ impl UploadedView {
         let (min, max) = (min - margin, max + margin);
         let CameraVectors { origin, right, up, forward, numbers } = camera.vectors;
         let origin = origin - scene_origin;
-        let across = right.cross(up);
-        let ahead = |corner: DVec3| (corner - origin).dot(across) / forward.dot(across);
-        let corners = Bounds::between(min.as_dvec3(), max.as_dvec3()).corners();
-        let nearest = corners.into_iter().map(ahead).fold(f64::INFINITY, f64::min);
-        let advance = if camera.kind.is_linear() { nearest.max(0.0) as f32 } else { 0.0 };
+        let advance = camera.nearest(origin, [min, max].map(|v| v.as_dvec3())) as f32;
         Self {
             origin: narrow(origin + f64::from(advance) * forward),
             advance,
@@ -160,6 +165,7 @@ pub(super) const LEAST_MARGIN: f64 = 16.0 * U;
 /// Why the data on the device are not those that were requested.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 pub struct UploadError(pub(super) String);
 
 /// Compares the recording with the scene, in f64.
@@ -229,13 +235,7 @@ pub(super) fn check_view(
     }
     let (low, high) = (wide(view.scene_min), wide(view.scene_max));
     let across = vectors.right.cross(vectors.up);
-    let nearest = Bounds::between(low, high)
-        .corners()
-        .map(|corner| (corner - origin).dot(across) / vectors.forward.dot(across))
-        .into_iter()
-        .fold(f64::INFINITY, f64::min)
-        .max(0.0);
-    let nearest = if camera.kind.is_linear() { nearest } else { 0.0 };
+    let nearest = camera.nearest(origin, [low, high]);
     // The rounding to f32, and rounding errors of f64 if the box is far from the camera.
     let far =
         f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()

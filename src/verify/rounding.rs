@@ -64,6 +64,16 @@ impl Interval {
         Self { low: value - error, high: value + error }
     }
 
+    /// The numbers between two, of which either may be the larger, and within `error` of them.
+    pub(super) fn between(a: f64, b: f64, error: f64) -> Self {
+        Self { low: a.min(b) - error, high: a.max(b) + error }
+    }
+
+    /// The largest magnitude.
+    pub(super) fn size(self) -> f64 {
+        self.high.abs().max(self.low.abs())
+    }
+
     /// Whether a number lies in the interval.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {

@@ -330,18 +330,8 @@ pub(super) fn legal_depth(distance: f32, t: f32) -> Interval {
     Interval::around(sum, PAD * U * sum.abs() + 2.0 * FLUSH)
 }
 
-/// The legal colours for the normal that the device wrote.
-pub(super) fn legal_color(
-    shading: Shading,
-    color: [f32; 3],
-    normal: DVec3,
-    direction: [Interval; 3],
-) -> [Interval; 3] {
-    legal_color_near(shading, color, (normal, 0.0), direction)
-}
-
 /// The legal colours for a normal that is at most `off` from this one.
-pub(super) fn legal_color_near(
+pub(super) fn legal_color(
     shading: Shading,
     color: [f32; 3],
     (normal, off): (DVec3, f64),

@@ -12,8 +12,8 @@ use pinhole::verify::run_file::{
     self, Extras, LitSamples, Provenance, Run, RunFile, RunFileError, ShownPicture, write_with,
 };
 use pinhole::verify::{
-    Checker, LitCertificate, LitRecording, Outcome, PathRecording, Recording, Rendered,
-    RequestedCamera, TracedPixel, TracedRay,
+    Checker, LitCertificate, LitRecording, Outcome, Recording, Rendered, RequestedCamera,
+    TracedPixel, TracedRay,
 };
 use pinhole::{
     Appearance, Colors, Film, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading,
@@ -131,9 +131,9 @@ fn with_numbers(bytes: &[u8], name: &str, at: usize, numbers: &[u8]) -> Vec<u8> 
     signed(altered)
 }
 
-fn kept(recording: &PathRecording) -> LitSamples {
+fn kept(recording: &LitRecording) -> LitSamples {
     let mut samples = LitSamples::new(Box::new(Cursor::new(Vec::new())));
-    samples.add(LitRecording::Paths(recording)).unwrap();
+    samples.add(recording).unwrap();
     samples
 }
 
@@ -143,7 +143,7 @@ fn written_with(scene: &Scene, picture: &Recording, extras: Extras<'_>) -> Vec<u
     bytes
 }
 
-fn with_light(scene: &Scene, picture: &Recording, made: &PathRecording) -> Vec<u8> {
+fn with_light(scene: &Scene, picture: &Recording, made: &LitRecording) -> Vec<u8> {
     let samples = kept(made);
     written_with(scene, picture, Extras { light: Some(&samples), ..Extras::default() })
 }
@@ -161,25 +161,22 @@ fn replayed(bytes: &[u8]) -> Result<Option<LitCertificate>, RunFileError> {
 
 /// Two samples that an adapter took, and the picture by one ray for each pixel: `pinhole verify light.toml --paths 2
 /// --save light.run` in `tests/cpu/run_file_light`. Whenever the format has another version, they are recorded again.
-fn recorded() -> (Scene, Recording, PathRecording) {
+fn recorded() -> (Scene, Recording, LitRecording) {
     let mut source = Cursor::new(include_bytes!("run_file_light/light.run"));
     let file = RunFile::open(&mut source).unwrap();
     let Run { scene, recording, .. } = file.run().unwrap();
     let run = file.run().unwrap();
-    let mut made: Option<PathRecording> = None;
-    let mut add = |one: LitRecording<'_>| {
-        let LitRecording::Paths(one) = one else { panic!("it is of paths") };
-        match &mut made {
-            Some(made) => made.samples.extend(one.samples.clone()),
-            None => made = Some(one.clone()),
-        }
+    let mut made: Option<LitRecording> = None;
+    let mut add = |one: &LitRecording| match &mut made {
+        Some(made) => made.samples.extend(one.samples.clone()),
+        None => made = Some(one.clone()),
     };
     assert!(file.light(&run, &mut add).unwrap());
     (scene, recording, made.unwrap())
 }
 
 /// The samples of a recording in a rectangle alone.
-fn cut(made: &PathRecording, [x, y, width, height]: [u32; 4]) -> PathRecording {
+fn cut(made: &LitRecording, [x, y, width, height]: [u32; 4]) -> LitRecording {
     let mut cut = made.clone();
     let whole = made.given.size[0];
     let indices: Vec<usize> = (y..y + height)
@@ -195,7 +192,7 @@ fn cut(made: &PathRecording, [x, y, width, height]: [u32; 4]) -> PathRecording {
         only(&mut sample.film.after, &indices);
         for surface in &mut sample.surfaces {
             only(&mut surface.hits, &indices);
-            only(&mut surface.scattered, &indices);
+            only(&mut surface.states, &indices);
             only(&mut surface.open, &indices);
         }
     }
@@ -212,7 +209,7 @@ fn small_lit() -> (Scene, Recording, Vec<u8>) {
 #[track_caller]
 fn contradicts(bytes: &[u8], words: &str) {
     let error = replayed(bytes).unwrap_err();
-    let RunFileError::Contents { message } = &error else { panic!("{error}") };
+    let RunFileError::Contents(message) = &error else { panic!("{error}") };
     assert!(message.contains(words), "{message} lacks {words}");
     assert_eq!(error.to_string().lines().count(), 1, "{error}");
 }
@@ -282,7 +279,7 @@ fn other_files_and_other_versions() {
         let other = format!("\"pinhole_run\":\"{version}\"");
         let error =
             run_file::read(&with_header(&bytes, "\"pinhole_run\":\"5\"", &other)).unwrap_err();
-        assert_eq!(error, RunFileError::Version { found: version.to_owned() });
+        assert_eq!(error, RunFileError::Version(version.to_owned()));
         let words = "this program reads version 5; record it again with `verify --save`";
         assert_eq!(error.to_string(), format!("run file of version {version}; {words}"));
     }
@@ -358,20 +355,20 @@ fn what_scenes_cameras_and_settings_refuse() {
 fn what_is_saved_is_judged_as_before() {
     let (scene, picture, mut made) = recorded();
     let checker = Checker::new(&scene).unwrap();
-    let legal = checker.certify_paths(&made);
+    let legal = checker.certify_lit(&made);
     assert!(legal.violation_count == 0 && legal.stages().checked > 1000, "{legal}");
     let bytes = with_light(&scene, &picture, &made);
     assert_eq!(replayed(&bytes).unwrap(), Some(legal));
     // What the device did wrong is kept, in rays that go on and in those that have ended.
     let surfaces = &mut made.samples[1].surfaces;
-    surfaces[0].scattered[40].slots[3][1] ^= 1 << 20;
-    surfaces.last_mut().unwrap().scattered[7].slots[4][0] ^= 1;
-    let wrong = checker.certify_paths(&made);
+    surfaces[0].states[40].slots[3][1] ^= 1 << 20;
+    surfaces.last_mut().unwrap().states[7].slots[4][0] ^= 1;
+    let wrong = checker.certify_lit(&made);
     assert_eq!((wrong.outcome(), wrong.violation_count >= 2), (Outcome::Violated, true));
     assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(wrong));
     // And so is what it was given.
     made.given.lighting.zenith[1] += 0.1;
-    let other = checker.certify_paths(&made);
+    let other = checker.certify_lit(&made);
     assert!(other.upload.is_some());
     assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(other));
 }
@@ -381,23 +378,23 @@ fn rectangles_differ_and_pictures_do_not() {
     let (scene, picture, made) = recorded();
     let part = |samples: std::ops::Range<usize>| {
         let samples = made.samples[samples].to_vec();
-        PathRecording { given: made.given.clone(), samples }
+        LitRecording { given: made.given.clone(), samples }
     };
     let mut samples = LitSamples::new(Box::new(Cursor::new(Vec::new())));
-    samples.add(LitRecording::Paths(&part(0..1))).unwrap();
+    samples.add(&part(0..1)).unwrap();
     // One pixel of the second sample.
     let mut other = cut(&part(1..2), [3, 2, 1, 1]);
-    samples.add(LitRecording::Paths(&other)).unwrap();
+    samples.add(&other).unwrap();
     let bytes =
         written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
     let certificate = replayed(&bytes).unwrap().unwrap();
     assert_eq!((certificate.paths, certificate.violation_count), (109, 0), "{certificate}");
     // Lists that do not have the size of the rectangle, and samples of another picture.
     other.given.size = [2, 1];
-    assert!(samples.add(LitRecording::Paths(&other)).is_err());
+    assert!(samples.add(&other).is_err());
     let mut other = part(1..2);
     other.given.settings.sampling.seed += 1;
-    let error = samples.add(LitRecording::Paths(&other)).unwrap_err();
+    let error = samples.add(&other).unwrap_err();
     assert!(error.to_string().contains("different pictures"), "{error}");
     // Another camera than that of the picture.
     let mut other = part(0..1);

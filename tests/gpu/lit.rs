@@ -13,8 +13,8 @@ use pinhole::render::{Integrator, PrimarySettings, Studio};
 use pinhole::scene::material::Material;
 use pinhole::verify::run_file::{Extras, LitSamples, Provenance, RunFile, write_with};
 use pinhole::verify::{
-    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PathRecording, Recording,
-    Rendered, StudioRecording, TracedPixel,
+    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, Recording, Rendered,
+    TracedPixel,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
@@ -73,51 +73,26 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-/// All recorded samples of a picture.
-pub(crate) enum Samples {
-    Paths(PathRecording),
-    Studio(StudioRecording),
-}
-
-impl Samples {
-    fn as_ref(&self) -> LitRecording<'_> {
-        match self {
-            Self::Paths(paths) => LitRecording::Paths(paths),
-            Self::Studio(studio) => LitRecording::Studio(studio),
-        }
-    }
-
-    fn given(&mut self) -> &mut LitInputs {
-        match self {
-            Self::Paths(paths) => &mut paths.given,
-            Self::Studio(studio) => &mut studio.given,
-        }
-    }
-}
-
 /// The structures that a device chooses.
 fn chosen(device: &Headless, view: &View) -> Structures {
     view.planned(device, AccelChoice::Auto)
 }
 
 /// Records some samples: of studios the first, one in between, and the last of a picture of many.
-fn record(device: &Headless, view: &View, structures: &Structures) -> Result<Samples, GpuError> {
+fn record(
+    device: &Headless,
+    view: &View,
+    structures: &Structures,
+) -> Result<LitRecording, GpuError> {
     let buffers = device.upload(&view.scene, structures).wait()?;
     let samples = match view.settings.integrator {
         Integrator::Studio(_) => &[0, 37, 63][..],
         _ => &[0, 1],
     };
     let mut all = None;
-    let each = &mut |one: LitRecording<'_>| match (&mut all, one) {
-        (None, LitRecording::Paths(one)) => all = Some(Samples::Paths(one.clone())),
-        (None, LitRecording::Studio(one)) => all = Some(Samples::Studio(one.clone())),
-        (Some(Samples::Paths(all)), LitRecording::Paths(one)) => {
-            all.samples.extend_from_slice(&one.samples);
-        }
-        (Some(Samples::Studio(all)), LitRecording::Studio(one)) => {
-            all.samples.extend_from_slice(&one.samples);
-        }
-        _ => panic!("paths and studios"),
+    let each = &mut |one: &LitRecording| match &mut all {
+        None => all = Some(one.clone()),
+        Some(LitRecording { samples, .. }) => samples.extend_from_slice(&one.samples),
     };
     let go_on = &mut |_: &_| Decision::GoOn;
     device
@@ -132,13 +107,13 @@ fn record(device: &Headless, view: &View, structures: &Structures) -> Result<Sam
     Ok(all.unwrap())
 }
 
-fn certify(view: &View, samples: &Samples) -> LitCertificate {
-    let certificate = Checker::new(&view.scene).unwrap().certify_lit(samples.as_ref());
-    replay(&view.scene, samples.as_ref(), &certificate);
+fn certify(view: &View, samples: &LitRecording) -> LitCertificate {
+    let certificate = Checker::new(&view.scene).unwrap().certify_lit(samples);
+    replay(&view.scene, samples, &certificate);
     certificate
 }
 
-fn recorded(device: &Headless, view: &View) -> Result<Samples, GpuError> {
+fn recorded(device: &Headless, view: &View) -> Result<LitRecording, GpuError> {
     record(device, view, &chosen(device, view))
 }
 
@@ -237,12 +212,9 @@ fn input_fault_is_found(suite: &str, change: Change) -> Result<(), Failed> {
         change(&mut given);
     }
     let mut samples = recorded(headless()?, &given)?;
-    samples.given().settings = view.settings.clone();
-    match (change, &mut samples) {
-        (Change::View(_), _) => {}
-        (Change::Paths(change), Samples::Paths(paths)) => change(paths),
-        (Change::Studio(change), Samples::Studio(studio)) => change(studio),
-        _ => return Err("another kind of recording".into()),
+    samples.given.settings = view.settings.clone();
+    if let Change::Recording(change) = change {
+        change(&mut samples);
     }
     is_violated(&certify(&view, &samples))
 }
@@ -253,12 +225,12 @@ fn part_of_a_large_film() -> Result<(), Failed> {
     let camera = Box::new(OrthographicCamera::new(pose, [5.0, 4.5])?);
     let view = View { camera, film: Film::new(300, 270)?, ..lit_scenes::view("paths", "matt") };
     let mut samples = recorded(headless()?, &view)?;
-    let given = samples.given();
+    let given = &mut samples.given;
     if given.origin != [38, 23] || given.size != [224, 224] {
         return Err(format!("{:?}, {:?}", given.origin, given.size).into());
     }
     is_legal(&certify(&view, &samples))?;
-    samples.given().origin[0] += 1;
+    samples.given.origin[0] += 1;
     is_violated(&certify(&view, &samples))
 }
 
@@ -266,7 +238,7 @@ fn stops_when_told(headless: &'static Headless) {
     let view = lit_scenes::view("paths", "matt");
     let buffers = headless.upload(&view.scene, &chosen(headless, &view)).wait().unwrap();
     let stop = &mut |_: &_| Decision::Stop;
-    let each = &mut |_: LitRecording<'_>| {};
+    let each = &mut |_: &LitRecording| {};
     let stopped = headless
         .record_lit(&buffers, &view.seen(), &view.settings, (LitPart::Middle, &[0]), (each, stop))
         .wait();
@@ -289,12 +261,7 @@ fn nothing(given: &LitInputs) -> Recording {
 }
 
 /// Asserts that a recording leads to the same certificate, to the bit, after it was saved.
-fn replay(scene: &Scene, recording: LitRecording<'_>, certificate: &LitCertificate) {
-    let given = match recording {
-        LitRecording::Paths(paths) => &paths.given,
-        LitRecording::Studio(studio) => &studio.given,
-        _ => panic!("another kind of recording"),
-    };
+fn replay(scene: &Scene, recording: &LitRecording, certificate: &LitCertificate) {
     let mut samples = LitSamples::new(Box::new(Cursor::new(Vec::new())));
     if samples.add(recording).is_err() {
         // Lists of another size cannot be saved, and are not legal.
@@ -303,7 +270,8 @@ fn replay(scene: &Scene, recording: LitRecording<'_>, certificate: &LitCertifica
     }
     let extras = Extras { light: Some(&samples), ..Extras::default() };
     let mut bytes = Vec::new();
-    write_with(scene, &nothing(given), &Provenance::default(), extras, &mut bytes).unwrap();
+    write_with(scene, &nothing(&recording.given), &Provenance::default(), extras, &mut bytes)
+        .unwrap();
     let mut source = Cursor::new(&bytes);
     let file = RunFile::open(&mut source).unwrap();
     let run = file.run().unwrap();
@@ -319,8 +287,7 @@ enum Change {
     /// Before the device renders the scene.
     View(fn(&mut View)),
     /// After the recording.
-    Paths(fn(&mut PathRecording)),
-    Studio(fn(&mut StudioRecording)),
+    Recording(fn(&mut LitRecording)),
 }
 
 /// The suite, the name and the change of a fault.
@@ -330,12 +297,12 @@ fn given(suite: &'static str, name: &'static str, change: fn(&mut View)) -> Inpu
     (suite, name, Change::View(change))
 }
 
-fn of_paths(name: &'static str, change: fn(&mut PathRecording)) -> Input {
-    ("paths", name, Change::Paths(change))
+fn of_paths(name: &'static str, change: fn(&mut LitRecording)) -> Input {
+    ("paths", name, Change::Recording(change))
 }
 
-fn of_studio(name: &'static str, change: fn(&mut StudioRecording)) -> Input {
-    ("studio", name, Change::Studio(change))
+fn of_studio(name: &'static str, change: fn(&mut LitRecording)) -> Input {
+    ("studio", name, Change::Recording(change))
 }
 
 /// A scene with all kinds of inputs that can be changed.
@@ -430,7 +397,7 @@ fn inputs() -> Vec<Input> {
         of_paths("a_bit_of_an_ended_path", |recording| {
             let surfaces = &mut recording.samples[0].surfaces;
             let last = surfaces.len() - 1;
-            surfaces[last].scattered[0].slots[4][1] ^= 1;
+            surfaces[last].states[0].slots[4][1] ^= 1;
         }),
         of_paths("a_camera_elsewhere", |recording| recording.given.uploaded.origin[1] += 1e-5),
         given("studio", "ambient_light_a_thousandth_brighter", |view| {

@@ -1,14 +1,13 @@
 //! `pinhole verify`: checks whether a picture is legal that an adapter renders now, or that was recorded before.
 
-use std::path::Path;
+use std::fmt::Display;
 
 use anyhow::{Context, anyhow};
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
 use crate::progress::{self, answer};
-use crate::threads;
-use crate::verify::output::{Recorded, VerifyOutputs};
+use crate::verify::output::Recorded;
 use crate::verify::report::{Report, open_pixels};
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
@@ -25,7 +24,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         return picture::run(args, picture, scene);
     }
     let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
-        (Some(path), _) => replayed(path, args)?,
+        (Some(path), _) => output::replay(path, args)?,
         #[cfg(feature = "gpu")]
         (None, Some(path)) => record::recorded(path, args)?,
         #[cfg(not(feature = "gpu"))]
@@ -59,14 +58,6 @@ fn worse(first: Result<(), Failure>, second: Result<(), Failure>) -> Result<(), 
     }
 }
 
-/// Reads a saved recording, and checks its light.
-fn replayed(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
-    let outputs = VerifyOutputs::new(args)?;
-    outputs.check_not_inputs(&[path.to_path_buf()])?;
-    threads::start()?;
-    Ok(output::replay(path, outputs)?)
-}
-
 fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     if let Some(error) = &certificate.upload {
         return Err(Failure::CheckFailed(anyhow!("the picture is not legal: {error}")));
@@ -75,14 +66,18 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
         let (count, all) = (certificate.undecided(), certificate.verdicts.len());
         return Err(undecided(&format!("{count} of {all} pixels have several legal answers")));
     }
-    match certificate.violations.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::CheckFailed(anyhow!(
-            "the picture is not legal: {} of {} pixels; the first is {first}",
-            certificate.count(Verdict::Violation),
-            certificate.verdicts.len()
-        ))),
-    }
+    let count = format!(
+        "{} of {} pixels",
+        certificate.count(Verdict::Violation),
+        certificate.verdicts.len()
+    );
+    none_illegal("the picture is", &count, certificate.violations.first())
+}
+
+/// The failure of a check that found something illegal, if it did.
+fn none_illegal(what: &str, count: &str, first: Option<&impl Display>) -> Result<(), Failure> {
+    let Some(first) = first else { return Ok(()) };
+    Err(Failure::CheckFailed(anyhow!("{what} not legal: {count}; the first is {first}")))
 }
 
 /// The failure of a check that says too little.
@@ -103,14 +98,9 @@ fn verdict_of_light(certificate: &LitCertificate) -> Result<(), Failure> {
             stages.undecided, stages.checked
         )));
     }
-    match certificate.violations.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::CheckFailed(anyhow!(
-            "{what} not legal: {} of {} stages; the first is {first}",
-            certificate.violation_count,
-            certificate.stages().checked
-        ))),
-    }
+    let count =
+        format!("{} of {} stages", certificate.violation_count, certificate.stages().checked);
+    none_illegal(what, &count, certificate.violations.first())
 }
 
 fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> {
@@ -119,10 +109,6 @@ fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> 
         let what = format!("the bounds of {vague} of {pixels} denoised pixels say little");
         return Err(undecided(&what));
     }
-    match certificate.violations.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::CheckFailed(anyhow!(
-            "the denoised picture is not legal: {violation_count} of {pixels} pixels; the first is {first}"
-        ))),
-    }
+    let count = format!("{violation_count} of {pixels} pixels");
+    none_illegal("the denoised picture is", &count, certificate.violations.first())
 }

@@ -7,13 +7,12 @@ use anyhow::{Context, Result};
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
-#[cfg(feature = "gpu")]
-use crate::output;
 use crate::output::{
     NewFolder, check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
 use crate::progress;
 use crate::read_file::open_seekable;
+use crate::threads;
 use crate::verify::page::page;
 use crate::verify::report::{self, Report};
 use pinhole::image::Image;
@@ -44,27 +43,11 @@ pub(crate) struct Kept {
     pub(crate) shown: Option<ShownPicture>,
 }
 
-impl Kept {
-    /// Nothing yet. If a run file is written, samples will be kept in a temporary file beside it.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn beside(save: Option<&Path>) -> Result<Self> {
-        let spool = save.map(output::temporary).transpose()?;
-        let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
-        Ok(Self { samples, ..Self::default() })
-    }
-
-    /// What a run file holds of it.
-    pub(crate) fn extras(&self) -> Extras<'_> {
-        Extras {
-            light: self.samples.as_ref(),
-            denoised: self.denoised.as_ref().map(|[noisy, quiet]| [noisy, quiet]),
-            shown: self.shown.as_ref(),
-        }
-    }
-}
-
 /// Reads a run file and judges the light in it, sample by sample.
-pub(crate) fn replay(path: &Path, outputs: VerifyOutputs) -> Result<Recorded> {
+pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
+    let outputs = VerifyOutputs::new(args)?;
+    outputs.check_not_inputs(&[path.to_path_buf()])?;
+    threads::start()?;
     progress::stage(format!("reading {}", path.display()));
     let mut source = open_seekable(path)?;
     let of_file = || path.display().to_string();
@@ -120,7 +103,6 @@ impl VerifyOutputs {
         self.json.iter().chain(&self.save).chain(&self.page)
     }
 
-    /// Refuses to overwrite an input.
     pub(crate) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
         check_not_inputs(self.paths(), inputs)
     }
@@ -129,50 +111,48 @@ impl VerifyOutputs {
         &self,
         run: &Run,
         certificate: &Certificate,
-        report: &Report,
+        report: &Report<'_>,
         kept: &Kept,
     ) -> Result<()> {
+        let write = || {
+            let mut files = Vec::new();
+            if let Some(path) = &self.json {
+                progress::stage("writing");
+                let json = serde_json::to_string_pretty(report)
+                    .context("the report cannot be written as JSON")?
+                    + "\n";
+                files.push((path, unnamed(path, json.as_bytes())?));
+            }
+            if let Some(path) = &self.page {
+                progress::stage("drawing the report");
+                let page = page(
+                    run,
+                    certificate,
+                    report,
+                    kept.shown.as_ref(),
+                    self.run.as_deref().map(Path::display),
+                )?;
+                files.push((path, unnamed(path, page.as_bytes())?));
+            }
+            if let Some(path) = &self.save {
+                progress::stage("writing the run");
+                let extras = Extras {
+                    light: kept.samples.as_ref(),
+                    denoised: kept.denoised.as_ref().map(|[noisy, quiet]| [noisy, quiet]),
+                    shown: kept.shown.as_ref(),
+                };
+                let Run { scene, recording, provenance } = run;
+                let file = unnamed_with(path, |file| {
+                    let file = file.as_file_mut() as &mut dyn Write;
+                    run_file::write_with(scene, recording, provenance, extras, file)
+                })?;
+                files.push((path, file));
+            }
+            name_all(files)
+        };
         match &self.folder {
-            Some(folder) => folder.with(|| self.write_files(run, certificate, report, kept)),
-            None => self.write_files(run, certificate, report, kept),
+            Some(folder) => folder.with(write),
+            None => write(),
         }
-    }
-
-    fn write_files(
-        &self,
-        run: &Run,
-        certificate: &Certificate,
-        report: &Report,
-        kept: &Kept,
-    ) -> Result<()> {
-        let mut files = Vec::new();
-        if let Some(path) = &self.json {
-            progress::stage("writing");
-            let json = serde_json::to_string_pretty(report)
-                .context("the report cannot be written as JSON")?
-                + "\n";
-            files.push((path, unnamed(path, json.as_bytes())?));
-        }
-        if let Some(path) = &self.page {
-            progress::stage("drawing the report");
-            let page = page(
-                run,
-                certificate,
-                report,
-                kept.shown.as_ref(),
-                self.run.as_deref().map(Path::display),
-            )?;
-            files.push((path, unnamed(path, page.as_bytes())?));
-        }
-        if let Some(path) = &self.save {
-            progress::stage("writing the run");
-            let Run { scene, recording, provenance } = run;
-            let file = unnamed_with(path, |file| {
-                let file = file.as_file_mut() as &mut dyn Write;
-                run_file::write_with(scene, recording, provenance, kept.extras(), file)
-            })?;
-            files.push((path, file));
-        }
-        name_all(files)
     }
 }

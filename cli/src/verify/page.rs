@@ -13,7 +13,7 @@ use pinhole::LinearRgb;
 use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;
 use pinhole::verify::run_file::{Run, ShownPicture};
-use pinhole::verify::{Certificate, Verdict};
+use pinhole::verify::{Certificate, TracedPixel, Verdict};
 use pinhole::write::png;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -21,7 +21,7 @@ const TEMPLATE: &str = include_str!("page.html");
 /// What the script of the page reads.
 #[derive(Serialize)]
 struct Page<'a> {
-    report: &'a Report,
+    report: &'a Report<'a>,
     verdict: String,
     /// Version of the program that checks.
     checked_by: &'static str,
@@ -52,29 +52,42 @@ struct Drawn {
 pub(crate) fn page(
     run: &Run,
     certificate: &Certificate,
-    report: &Report,
+    report: &Report<'_>,
     lit: Option<&ShownPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {
-    let pictures = Pictures::new(run, certificate);
-    let whole = Window::whole(certificate.size);
-    let is_judged = !certificate.verdicts.is_empty();
-    let color = |verdict: &Verdict| (verdict.name(), css(verdict_color(*verdict)));
+    let blocks = Blocks::new(certificate.size);
+    let verdicts = &certificate.verdicts[..];
+    let image = &run.recording.image;
+    let (color, depth) = (image.color(), image.depth().unwrap_or_default());
+    let depths = depths(depth, verdicts);
+    let light = |lit: &ShownPicture| {
+        blocks.drawn(|block| mean(block.map(|i| LinearRgb::from_srgb8(lit.srgb[i]).to_array())))
+    };
+    let css = |verdict: &Verdict| {
+        let [r, g, b] = verdict_color(*verdict);
+        (verdict.name(), format!("#{r:02x}{g:02x}{b:02x}"))
+    };
     let page = Page {
         report,
         verdict: report.verdict(),
         checked_by: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),
         pictures: Drawn {
-            color: pictures.color(whole)?,
-            depth: pictures.depth_colors(whole)?,
-            verdicts: is_judged.then(|| pictures.mask(whole)).transpose()?,
-            light: lit.map(|lit| drawn(lit, whole)).transpose()?,
+            color: blocks.drawn(|block| mean(block.map(|i| color[i])))?,
+            // The smallest depth of each block.
+            depth: blocks.drawn(|block| {
+                depth_color(block.map(|i| depth[i]).fold(f32::INFINITY, f32::min), depths)
+            })?,
+            verdicts: (!verdicts.is_empty())
+                .then(|| blocks.drawn(|block| mask_color(block, verdicts, &run.recording.pixels)))
+                .transpose()?,
+            light: lit.map(light).transpose()?,
         },
-        colors: Verdict::ALL.iter().map(color).collect(),
-        depths: pictures.depths,
+        colors: Verdict::ALL.iter().map(css).collect(),
+        depths,
         shown_samples: lit.map(|lit| lit.samples),
-        step: whole.step,
+        step: blocks.step,
     };
     let json = serde_json::to_string(&page).context("the page of the report cannot be made")?;
     Ok(TEMPLATE.replacen("{{data}}", &in_a_script(&json), 1))
@@ -83,24 +96,6 @@ pub(crate) fn page(
 /// The same JSON without any `<`, so that no text in it can end the element `script`.
 fn in_a_script(json: &str) -> String {
     json.replace('<', "\\u003c")
-}
-
-/// Draws the mean colour of each block of pixels.
-pub(crate) fn drawn(
-    ShownPicture { size, srgb, .. }: &ShownPicture,
-    window: Window,
-) -> Result<String> {
-    let width = size[0] as usize;
-    encoded(window, |pixels| {
-        let mut sum = [0.0; 3];
-        let mut count = 0.0;
-        for i in pixels.indices(width) {
-            let color = LinearRgb::from_srgb8(srgb[i]).to_array();
-            (0..3).for_each(|channel| sum[channel] += f64::from(color[channel]));
-            count += 1.0;
-        }
-        to_srgb8(sum.map(|sum| (sum / count) as f32))
-    })
 }
 
 /// Longest side of a picture in the report, in pixels.
@@ -114,7 +109,7 @@ const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
 /// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in
 /// greyscale and for people with red-green colour blindness (after Okabe and Ito).
-pub(crate) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
+const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     match verdict {
         Verdict::Decided => [0xe4, 0xeb, 0xef],
         Verdict::Silhouette => [0x00, 0x72, 0xb2],
@@ -123,148 +118,91 @@ pub(crate) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     }
 }
 
-/// Formats a colour as `#rrggbb`.
-pub(crate) fn css([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
+/// A picture of the film at a reduced size: `step` × `step` pixels of the film become one pixel.
+struct Blocks {
+    size: [u32; 2],
+    step: u32,
 }
 
-/// A part of the film, drawn at a reduced size: `step` × `step` pixels of the film become one pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Window {
-    pub(crate) size: [u32; 2],
-    pub(crate) step: u32,
-}
-
-impl Window {
-    /// Makes a window of the whole film, reduced in size if it is large.
-    pub(crate) fn whole(size: [u32; 2]) -> Self {
-        let step = size[0].max(size[1]).div_ceil(LONGEST);
-        Self { size, step }
+impl Blocks {
+    fn new(size: [u32; 2]) -> Self {
+        Self { size, step: size[0].max(size[1]).div_ceil(LONGEST) }
     }
 
-    /// Returns the width and height of the drawn picture.
-    pub(crate) fn shown(&self) -> [u32; 2] {
+    fn shown(&self) -> [u32; 2] {
         self.size.map(|side| side.div_ceil(self.step))
     }
-}
 
-/// Draws parts of a picture.
-pub(crate) struct Pictures<'a> {
-    run: &'a Run,
-    verdicts: &'a [Verdict],
-    width: usize,
-    /// The smallest and the largest depth, if any sphere is hit.
-    pub(crate) depths: Option<[f32; 2]>,
-}
-
-impl<'a> Pictures<'a> {
-    pub(crate) fn new(run: &'a Run, certificate: &'a Certificate) -> Self {
-        let verdicts = &certificate.verdicts[..];
-        let width = run.recording.film.width() as usize;
-        let mut pictures = Self { run, verdicts, width, depths: None };
-        // Wrong depths are left out, because they would spoil the scale.
-        let is_wrong = |i: usize| verdicts.get(i) == Some(&Verdict::Violation);
-        let depths = pictures.depth().iter().enumerate();
-        let depths = depths.filter(|(i, depth)| depth.is_finite() && !is_wrong(*i));
-        pictures.depths = depths.fold(None, |range, (_, depth)| {
-            let [least, greatest] = range.unwrap_or([*depth; 2]);
-            Some([depth.min(least), depth.max(greatest)])
-        });
-        pictures
-    }
-
-    fn depth(&self) -> &'a [f32] {
-        self.run.recording.image.depth().unwrap_or_default()
-    }
-
-    /// Draws the mean colour of each block of pixels.
-    pub(crate) fn color(&self, window: Window) -> Result<String> {
-        let color = self.run.recording.image.color();
-        encoded(window, |pixels| {
-            let mut sum = [0.0; 3];
-            let mut count = 0.0;
-            for i in pixels.indices(self.width) {
-                (0..3).for_each(|channel| sum[channel] += f64::from(color[i][channel]));
-                count += 1.0;
-            }
-            to_srgb8(sum.map(|sum| (sum / count) as f32))
-        })
-    }
-
-    /// Draws the smallest depth of each block of pixels.
-    pub(crate) fn depth_colors(&self, window: Window) -> Result<String> {
-        let depth = self.depth();
-        let [least, greatest] = self.depths.unwrap_or([0.0; 2]);
-        encoded(window, |pixels| {
-            let found = pixels.indices(self.width).map(|i| depth[i]);
-            let nearest = found.fold(f32::INFINITY, f32::min);
-            if nearest.is_finite() {
-                let range = f64::from(greatest) - f64::from(least);
-                let part = (f64::from(nearest) - f64::from(least)) / range.max(f64::MIN_POSITIVE);
-                depth_color(part)
-            } else {
-                MISS
-            }
-        })
-    }
-
-    /// Draws the worst verdict of each block of pixels, so that no violation is lost where the size is reduced.
-    pub(crate) fn mask(&self, window: Window) -> Result<String> {
-        let pixels = &self.run.recording.pixels;
-        encoded(window, |block| {
-            let judged = block.indices(self.width).filter_map(|i| {
-                let verdict = self.verdicts.get(i)?;
-                let rank = Verdict::ALL.iter().position(|of| of == verdict);
-                Some((rank, *verdict, pixels.get(i)?.id != NO_ID))
-            });
-            match judged.max_by_key(|(rank, _, is_hit)| (*rank, *is_hit)) {
-                Some((_, Verdict::Decided, true)) => DECIDED_HIT,
-                Some((_, verdict, _)) => verdict_color(verdict),
-                None => MISS,
-            }
-        })
+    /// Draws a picture, as the data URI of a PNG. `color` gets the indices of the film's pixels in a block.
+    fn drawn(
+        &self,
+        color: impl Fn(&mut dyn Iterator<Item = usize>) -> [u8; 3] + Sync,
+    ) -> Result<String> {
+        let [width, height] = self.shown();
+        let range = |axis: usize, index: u32| {
+            let start = index * self.step;
+            start..(start + self.step).min(self.size[axis])
+        };
+        let row = |j: u32| -> Vec<[u8; 3]> {
+            let at = |i: u32, j: u32| j as usize * self.size[0] as usize + i as usize;
+            let block = |i: u32| range(1, j).flat_map(move |j| range(0, i).map(move |i| at(i, j)));
+            (0..width).map(|i| color(&mut block(i))).collect()
+        };
+        let rgb = (0..height).into_par_iter().map(row).collect::<Vec<_>>().concat();
+        let png = png::encode_rgb8([width, height], rgb.as_flattened())?;
+        Ok(format!("data:image/png;base64,{}", data_encoding::BASE64.encode(&png)))
     }
 }
 
-/// Returns the colour of a depth from 0 (nearest, bright) to 1 (farthest, dark).
-fn depth_color(part: f64) -> [u8; 3] {
+/// The mean of linear colours.
+fn mean(colors: impl Iterator<Item = [f32; 3]>) -> [u8; 3] {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for color in colors {
+        (0..3).for_each(|channel| sum[channel] += f64::from(color[channel]));
+        count += 1.0;
+    }
+    to_srgb8(sum.map(|sum| (sum / count) as f32))
+}
+
+/// The smallest and the largest depth, if any sphere is hit. Wrong depths are left out, because they would spoil the
+/// scale.
+fn depths(depth: &[f32], verdicts: &[Verdict]) -> Option<[f32; 2]> {
+    let is_wrong = |i: usize| verdicts.get(i) == Some(&Verdict::Violation);
+    let depths = depth.iter().enumerate();
+    let depths = depths.filter(|(i, depth)| depth.is_finite() && !is_wrong(*i));
+    depths.fold(None, |range, (_, depth)| {
+        let [least, greatest] = range.unwrap_or([*depth; 2]);
+        Some([depth.min(least), depth.max(greatest)])
+    })
+}
+
+/// The colour of a depth, from the nearest, which is bright, to the farthest, which is dark.
+fn depth_color(depth: f32, depths: Option<[f32; 2]>) -> [u8; 3] {
+    if !depth.is_finite() {
+        return MISS;
+    }
+    let [least, greatest] = depths.unwrap_or([0.0; 2]).map(f64::from);
+    let part = (f64::from(depth) - least) / (greatest - least).max(f64::MIN_POSITIVE);
     let color = colorous::VIRIDIS.eval_continuous(1.0 - part.clamp(0.0, 1.0));
     [color.r, color.g, color.b]
 }
 
-/// The pixels of the film that become one pixel.
-pub(crate) struct Block {
-    columns: std::ops::Range<u32>,
-    rows: std::ops::Range<u32>,
-}
-
-impl Block {
-    pub(crate) fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
-        let columns = self.columns.clone();
-        let in_row = move |row| columns.clone().map(move |i| row as usize * width + i as usize);
-        self.rows.clone().flat_map(in_row)
+/// The colour of the worst verdict of a block, so that no violation is lost where the size is reduced.
+fn mask_color(
+    block: &mut dyn Iterator<Item = usize>,
+    verdicts: &[Verdict],
+    pixels: &[TracedPixel],
+) -> [u8; 3] {
+    let judged = block.filter_map(|i| {
+        let verdict = verdicts.get(i)?;
+        let rank = Verdict::ALL.iter().position(|of| of == verdict);
+        Some((rank, *verdict, pixels.get(i)?.id != NO_ID))
+    });
+    match judged.max_by_key(|(rank, _, is_hit)| (*rank, *is_hit)) {
+        Some((_, Verdict::Decided, true)) => DECIDED_HIT,
+        Some((_, verdict, _)) => verdict_color(verdict),
+        None => MISS,
     }
-}
-
-/// Draws a window with a colour for each block, as the data URI of a PNG.
-pub(crate) fn encoded(
-    window: Window,
-    color: impl Fn(Block) -> [u8; 3] + Sync + Send,
-) -> Result<String> {
-    let Window { size, step } = window;
-    let [width, height] = window.shown();
-    let range = |axis: usize, index: u32| {
-        let start = index * step;
-        start..(start + step).min(size[axis])
-    };
-    let row = |j: usize| -> Vec<[u8; 3]> {
-        // The height is a u32, so its rows are too.
-        let rows = range(1, j as u32);
-        (0..width).map(|i| color(Block { columns: range(0, i), rows: rows.clone() })).collect()
-    };
-    let rgb = (0..height as usize).into_par_iter().map(row).collect::<Vec<_>>().concat();
-    let png = png::encode_rgb8([width, height], rgb.as_flattened())?;
-    Ok(format!("data:image/png;base64,{}", data_encoding::BASE64.encode(&png)))
 }
 
 #[cfg(test)]
@@ -288,8 +226,8 @@ mod tests {
             ([4096, 4096], 2, [2048, 2048]),
             ([4097, 1], 3, [1366, 1]),
         ] {
-            let window = Window::whole(size);
-            assert_eq!((window.step, window.shown()), (step, shown), "{size:?}");
+            let blocks = Blocks::new(size);
+            assert_eq!((blocks.step, blocks.shown()), (step, shown), "{size:?}");
         }
     }
 }

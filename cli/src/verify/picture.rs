@@ -7,7 +7,7 @@ use clap::Parser;
 use serde::Serialize;
 
 use crate::args::VerifyArgs;
-use crate::certified::{self, Judged, Written};
+use crate::certified::{self, Written};
 use crate::failure::Failure;
 use crate::input::read;
 use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
@@ -18,7 +18,8 @@ use crate::render_args::{RenderCommand, RenderLine};
 use crate::threads;
 use crate::verify::report::command_line;
 use pinhole::image::encoding::Encoding;
-use pinhole::load::picture::{self, FileSamples, PictureFile};
+use pinhole::load::picture::{self, FileSamples};
+use pinhole::verify::Outcome;
 use pinhole::verify::picture_certificate::PictureCertificate;
 
 /// The file of `--json`.
@@ -35,21 +36,24 @@ struct Report<'a> {
     undecided: u64,
     violated: u64,
     violation: Option<String>,
-    outcome: &'static str,
+    outcome: Outcome,
     command: String,
 }
 
 pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Failure> {
     args.json.as_deref().map_or(Ok(()), check_writable)?;
     threads::start()?;
-    let file = picture::read(&read(path)?).with_context(|| path.display().to_string())?;
-    let certificate = certificate_of(path, &file)?;
+    let of_picture = || path.display().to_string();
+    let file = picture::read(&read(path)?).with_context(of_picture)?;
+    let text = file.certificate.as_deref().ok_or_else(|| {
+        anyhow!("{}: the picture has no certificate; render it with --certify", path.display())
+    })?;
+    let certificate = PictureCertificate::from_text(text).with_context(of_picture)?;
     let written = Written {
         size: file.size,
         samples: file.samples,
         per_pixel: certificate.samples_per_pixel,
     };
-    let of_picture = || path.display().to_string();
     certified::check_samples(&certificate, &written).with_context(of_picture)?;
     let (job, flags) = job(path, scene, &certificate, &written.samples)?;
     let mut input = job.source.load()?;
@@ -66,17 +70,28 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     let table = format!("{:<12}{flags}\n{}", "rendered by", judged.table());
     answer(table.as_bytes()).context("standard output: cannot be written")?;
     if let Some(json) = &args.json {
-        let text = report(path, &certificate, &written, &judged)?;
+        let ([width, height], [proved, undecided, violated]) = (written.size, judged.counts());
+        let report = Report {
+            version: env!("CARGO_PKG_VERSION"),
+            picture: path.display().to_string(),
+            width,
+            height,
+            adapter: &certificate.adapter,
+            samples_per_pixel: written.per_pixel,
+            judged_by: judged.by().name(),
+            proved,
+            undecided,
+            violated,
+            violation: judged.violation(),
+            outcome: judged.outcome(),
+            command: command_line(),
+        };
+        let text = serde_json::to_string_pretty(&report)
+            .context("the report cannot be written as JSON")?
+            + "\n";
         name_all(vec![(json, unnamed(json, text.as_bytes())?)])?;
     }
     judged.verdict()
-}
-
-fn certificate_of(path: &Path, file: &PictureFile) -> Result<PictureCertificate> {
-    let text = file.certificate.as_deref().ok_or_else(|| {
-        anyhow!("{}: the picture has no certificate; render it with --certify", path.display())
-    })?;
-    PictureCertificate::from_text(text).with_context(|| path.display().to_string())
 }
 
 /// The job that the certificate says, for this scene, and its command line.
@@ -126,31 +141,4 @@ fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result
         encoding.bits().count(),
         if encoding.transparent() { "with it" } else { "without it" }
     ))
-}
-
-fn report(
-    path: &Path,
-    certificate: &PictureCertificate,
-    written: &Written,
-    judged: &Judged,
-) -> Result<String> {
-    let [proved, undecided, violated] = judged.counts();
-    let [width, height] = written.size;
-    let report = Report {
-        version: env!("CARGO_PKG_VERSION"),
-        picture: path.display().to_string(),
-        width,
-        height,
-        adapter: &certificate.adapter,
-        samples_per_pixel: written.per_pixel,
-        judged_by: judged.by().name(),
-        proved,
-        undecided,
-        violated,
-        violation: judged.violation(),
-        outcome: judged.outcome().name(),
-        command: command_line(),
-    };
-    let json = serde_json::to_string_pretty(&report);
-    Ok(json.context("the report cannot be written as JSON")? + "\n")
 }

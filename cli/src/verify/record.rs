@@ -15,7 +15,7 @@ use crate::verify::output::{Kept, Recorded, VerifyOutputs};
 use crate::verify::report::{self, command_line};
 use crate::views::Views;
 use crate::with_scene::{upload, with_structures};
-use crate::{interrupt, memory, render, self_test, threads};
+use crate::{interrupt, memory, output, render, self_test, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::camera::film::{Film, FilmError};
@@ -44,15 +44,14 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
         );
     }
     let is_lit = !input.settings.integrator.is_primary();
-    if !is_lit && args.paths.is_some() {
-        return Err(Failure::usage(
-            "--paths needs a scene with the integrator `studio` or `path`; remove --paths",
-        ));
-    }
-    if !is_lit && args.tile_seed.is_some() {
-        return Err(Failure::usage(
-            "--tile-seed needs a scene with the integrator `studio` or `path`; remove --tile-seed",
-        ));
+    for (flag, is_given) in
+        [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())]
+    {
+        if is_given && !is_lit {
+            return Err(Failure::usage(format!(
+                "{flag} needs a scene with the integrator `studio` or `path`; remove {flag}"
+            )));
+        }
     }
     // Of each sample the middle is recorded, and a part elsewhere.
     let most = run_file::MAX_SAMPLES / 2;
@@ -82,7 +81,10 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
     let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
     let provenance = provenance(&headless, structure);
     let chosen = (args.paths.unwrap_or(1), args.tile_seed);
-    let mut kept = Kept::beside(args.save.as_deref().filter(|_| is_lit))?;
+    // Samples are kept in a temporary file beside the run file.
+    let spool = args.save.as_deref().filter(|_| is_lit).map(output::temporary).transpose()?;
+    let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
+    let mut kept = Kept { samples, ..Kept::default() };
     let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
     let light = is_lit.then(certify).transpose()?;
     if input.settings.is_denoised {
@@ -147,7 +149,7 @@ pub(crate) fn certify_light(
         let recording = "recording light";
         progress::stage(recording);
         let recorded = interrupt::on_device(|| {
-            let each = &mut |recorded: LitRecording<'_>| {
+            let each = &mut |recorded: &LitRecording| {
                 interrupt::driver_rests(true);
                 progress::stage("checking light");
                 certificate.join(checker.certify_lit(recorded));

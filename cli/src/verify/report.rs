@@ -13,14 +13,14 @@ use pinhole::verify::denoised::{self, DenoiseCertificate};
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome,
-    Recording, StageCounts, Verdict, Violation,
+    Recording, StageCounts, UploadError, Verdict, Violation,
 };
 
 /// The JSON document.
 #[derive(Serialize)]
-pub(crate) struct Report {
+pub(crate) struct Report<'a> {
     pub(crate) version: String,
-    pub(crate) adapter: Adapter,
+    pub(crate) adapter: Adapter<'a>,
     pub(crate) scene: Scene,
     pub(crate) picture: Picture,
     pub(crate) counts: BTreeMap<&'static str, usize>,
@@ -29,34 +29,32 @@ pub(crate) struct Report {
     pub(crate) worst_normal: f64,
     /// Number of pixels in which `render` gives other values than the recording; `None` if that is not known.
     pub(crate) rendered_otherwise: Option<usize>,
-    pub(crate) upload: Option<String>,
-    pub(crate) violations: Vec<Listed>,
+    pub(crate) upload: &'a Option<UploadError>,
+    pub(crate) violations: &'a [Violation],
     /// The check of the light paths, for a scene with the integrator `path`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) paths: Option<LightReport>,
+    pub(crate) paths: Option<LightReport<'a>>,
     /// The check of the light of a studio, for a scene with the integrator `studio`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) studio: Option<LightReport>,
+    pub(crate) studio: Option<LightReport<'a>>,
     /// The check of the denoiser, for a scene whose picture is denoised.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) denoiser: Option<DenoiserReport>,
+    pub(crate) denoiser: Option<DenoiserReport<'a>>,
     /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
     pub(crate) biased: Vec<String>,
-    pub(crate) outcome: &'static str,
+    pub(crate) outcome: Outcome,
     pub(crate) legal: bool,
     pub(crate) command: String,
-    /// The certificate as a table of text.
     #[serde(skip)]
-    table: String,
-    /// The first pixels with several legal answers.
+    certificate: &'a Certificate,
     pub(crate) open: Vec<OpenPixel>,
 }
 
 #[derive(Serialize)]
-pub(crate) struct Adapter {
+pub(crate) struct Adapter<'a> {
     #[serde(flatten)]
     pub(crate) adapter: AdapterReport,
-    pub(crate) limits: BTreeMap<String, u64>,
+    pub(crate) limits: &'a BTreeMap<String, u64>,
 }
 
 #[derive(Serialize)]
@@ -75,12 +73,12 @@ pub(crate) struct Picture {
     pub(crate) structure: String,
 }
 
-impl Report {
+impl<'a> Report<'a> {
     pub(crate) fn new(
-        run: &Run,
-        certificate: &Certificate,
-        light: Option<&LitCertificate>,
-        denoiser: Option<&DenoiseCertificate>,
+        run: &'a Run,
+        certificate: &'a Certificate,
+        light: Option<&'a LitCertificate>,
+        denoiser: Option<&'a DenoiseCertificate>,
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
@@ -91,7 +89,7 @@ impl Report {
             version: one_line(&provenance.version),
             adapter: Adapter {
                 adapter: AdapterReport::of_run(provenance),
-                limits: provenance.limits.clone(),
+                limits: &provenance.limits,
             },
             scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
             picture: Picture {
@@ -107,32 +105,33 @@ impl Report {
             worst_depth: certificate.worst_depth,
             worst_normal: certificate.worst_normal,
             rendered_otherwise: certificate.rendered_otherwise,
-            upload: certificate.upload.as_ref().map(ToString::to_string),
-            violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
-            paths: light.filter(|light| !light.is_studio).map(LightReport::from),
-            studio: light.filter(|light| light.is_studio).map(LightReport::from),
-            denoiser: denoiser.map(DenoiserReport::from),
+            upload: &certificate.upload,
+            violations: listed(&certificate.violations),
+            paths: light.filter(|light| !light.is_studio).map(LightReport::new),
+            studio: light.filter(|light| light.is_studio).map(LightReport::new),
+            denoiser: denoiser
+                .map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
                 .flat_map(Deviations::biased)
                 .map(ToString::to_string)
                 .collect(),
-            outcome: outcome.name(),
+            outcome,
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
-            table: certificate.to_string(),
+            certificate,
             open: Vec::new(),
         }
     }
 
     /// The check of light, if there was one.
-    pub(crate) fn light(&self) -> Option<&LightReport> {
+    pub(crate) fn light(&self) -> Option<&LightReport<'a>> {
         self.paths.as_ref().or(self.studio.as_ref())
     }
 
     pub(crate) fn verdict(&self) -> String {
-        match (self.legal, &self.upload, self.count(Verdict::Violation)) {
+        match (self.legal, self.upload, self.certificate.count(Verdict::Violation)) {
             (true, ..) => match self.light() {
                 Some(light) => format!(
                     "legal: every pixel by one ray, and {}, are as a conforming device may have made them",
@@ -140,7 +139,7 @@ impl Report {
                 ),
                 None => "legal: every pixel is as a conforming device may have made it".to_owned(),
             },
-            (false, ..) if self.outcome == Outcome::Undecided.name() => {
+            (false, ..) if self.outcome == Outcome::Undecided => {
                 "undecided: no violation was found, but too many answers could be others".to_owned()
             }
             (false, Some(_), _) => {
@@ -158,24 +157,19 @@ impl Report {
         }
     }
 
-    pub(crate) fn count(&self, verdict: Verdict) -> usize {
-        self.counts.get(verdict.name()).copied().unwrap_or_default()
-    }
-
     /// Returns the report as text. Each entry that comes from a run file has a line of its own.
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
         let adapter = one_line(&self.adapter.adapter.line());
-        let line = |line: String| line + "\n";
         let light = self.light().map_or(String::new(), LightReport::lines);
-        let denoiser = self.denoiser.as_ref().map_or(String::new(), |found| line(found.line()));
+        let denoiser = self.denoiser.as_ref().map_or(String::new(), DenoiserReport::line);
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
              structure: {structure}\n{}\n{light}{denoiser}{}\n",
             16 * spheres,
-            self.table,
+            self.certificate,
             self.verdict()
         )
     }
@@ -193,161 +187,84 @@ const LINES: usize = 3;
 
 /// The object `paths` or `studio` of the JSON document.
 #[derive(Serialize)]
-pub(crate) struct LightReport {
+pub(crate) struct LightReport<'a> {
     /// Number of paths, or of samples of a studio.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) paths: Option<u64>,
+    paths: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) samples: Option<u64>,
-    pub(crate) stages: BTreeMap<&'static str, Counts>,
+    samples: Option<u64>,
+    stages: BTreeMap<&'static str, StageCounts>,
     /// First column and row, width and height of the parts of the film in which samples were checked.
-    pub(crate) rectangles: Vec<[u32; 4]>,
-    pub(crate) judged: Judged,
-    pub(crate) upload: Option<String>,
-    pub(crate) violation_count: u64,
-    pub(crate) violations: Vec<ListedStage>,
-    pub(crate) outcome: &'static str,
-    pub(crate) legal: bool,
-    /// The certificate as one line of text.
+    rectangles: &'a [[u32; 4]],
+    judged: Judged,
+    upload: &'a Option<UploadError>,
+    violation_count: u64,
+    violations: &'a [LitViolation],
+    outcome: Outcome,
+    legal: bool,
     #[serde(skip)]
-    pub(crate) line: String,
+    certificate: &'a LitCertificate,
     /// The first stages with several legal results, and those of which the check says little.
-    pub(crate) open: Vec<ListedOpen>,
+    open: &'a [LitOpen],
 }
 
-impl LightReport {
+impl<'a> LightReport<'a> {
+    fn new(certificate: &'a LitCertificate) -> Self {
+        let LitCertificate { paths, is_studio, violation_count, .. } = *certificate;
+        let share = certificate.share();
+        Self {
+            paths: (!is_studio).then_some(paths),
+            samples: is_studio.then_some(paths),
+            stages: certificate.named().into_iter().collect(),
+            rectangles: &certificate.rectangles,
+            judged: Judged { share, fraction: share.fraction() },
+            upload: &certificate.upload,
+            violation_count,
+            violations: listed(&certificate.violations),
+            outcome: certificate.outcome(),
+            legal: certificate.is_legal(),
+            certificate,
+            open: &certificate.open,
+        }
+    }
+
     /// Lines of text about the counts, and about the first open searches.
-    pub(crate) fn lines(&self) -> String {
+    fn lines(&self) -> String {
         let open = self.open.iter().filter(|open| !open.legal.is_empty());
-        let lines = open.take(LINES).map(|open| format!("open: {}\n", open.line));
-        std::iter::once(format!("{}\n", self.line)).chain(lines).collect()
+        let lines = open.take(LINES).map(|open| format!("open: {open}\n"));
+        std::iter::once(format!("{}\n", self.certificate)).chain(lines).collect()
     }
 
     /// Whether nothing is known to be wrong.
-    pub(crate) fn is_without_fault(&self) -> bool {
+    fn is_without_fault(&self) -> bool {
         self.violation_count == 0 && self.upload.is_none()
     }
 }
 
 /// How much of the picture was judged.
 #[derive(Serialize)]
-pub(crate) struct Judged {
-    samples: u64,
-    of_samples: u64,
-    pixels: u64,
-    of_pixels: u64,
+struct Judged {
+    #[serde(flatten)]
+    share: LitShare,
     fraction: f64,
 }
 
-impl From<LitShare> for Judged {
-    fn from(share: LitShare) -> Self {
-        let LitShare { samples, of_samples, pixels, of_pixels, .. } = share;
-        Self { samples, of_samples, pixels, of_pixels, fraction: share.fraction() }
-    }
-}
-
 impl Judged {
-    /// The share in words.
-    pub(crate) fn words(&self) -> String {
-        let Self { samples, of_samples, pixels, of_pixels, fraction } = self;
+    fn words(&self) -> String {
+        let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
         // Rounded down, so that nothing but all of them is called 100 %.
-        let percent = (fraction * 1e6).floor() / 1e4;
+        let percent = (self.fraction * 1e6).floor() / 1e4;
         format!(
             "{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)"
         )
     }
 }
 
-/// A stage that is open, or of which the check says little.
-#[derive(Serialize)]
-pub(crate) struct ListedOpen {
-    pub(crate) pixel: [u32; 2],
-    pub(crate) sample: u32,
-    pub(crate) surface: u32,
-    pub(crate) stage: &'static str,
-    pub(crate) is_undecided: bool,
-    /// Of an open search, up to four legal answers.
-    pub(crate) legal: Vec<String>,
-    /// The same as one line of text.
-    #[serde(skip)]
-    pub(crate) line: String,
-}
-
-impl From<&LitOpen> for ListedOpen {
-    fn from(open: &LitOpen) -> Self {
-        let LitOpen { pixel, sample, surface, stage, is_undecided, ref legal, .. } = *open;
-        let (stage, legal, line) = (stage.name(), legal.clone(), open.to_string());
-        Self { pixel, sample, surface, stage, is_undecided, legal, line }
-    }
-}
-
-#[derive(Serialize)]
-pub(crate) struct Counts {
-    pub(crate) checked: u64,
-    pub(crate) decided: u64,
-    pub(crate) open: u64,
-    pub(crate) undecided: u64,
-}
-
-#[derive(Serialize)]
-pub(crate) struct ListedStage {
-    pub(crate) pixel: [u32; 2],
-    pub(crate) sample: u32,
-    pub(crate) surface: u32,
-    pub(crate) stage: &'static str,
-    pub(crate) message: String,
-}
-
-impl From<StageCounts> for Counts {
-    fn from(StageCounts { checked, decided, open, undecided, .. }: StageCounts) -> Self {
-        Self { checked, decided, open, undecided }
-    }
-}
-
-impl From<&LitViolation> for ListedStage {
-    fn from(violation: &LitViolation) -> Self {
-        let LitViolation { pixel, sample, surface, stage, message, .. } = violation;
-        let (stage, message) = (stage.name(), message.clone());
-        Self { pixel: *pixel, sample: *sample, surface: *surface, stage, message }
-    }
-}
-
-impl From<&LitCertificate> for LightReport {
-    fn from(certificate: &LitCertificate) -> Self {
-        let LitCertificate { paths, is_studio, .. } = *certificate;
-        let stages = certificate.named();
-        Self {
-            paths: (!is_studio).then_some(paths),
-            samples: is_studio.then_some(paths),
-            stages: stages.into_iter().map(|(name, counts)| (name, counts.into())).collect(),
-            rectangles: certificate.rectangles.clone(),
-            judged: certificate.share().into(),
-            open: certificate.open.iter().map(ListedOpen::from).collect(),
-            upload: certificate.upload.as_ref().map(ToString::to_string),
-            violation_count: certificate.violation_count,
-            violations: certificate.violations.iter().take(LISTED).map(ListedStage::from).collect(),
-            outcome: certificate.outcome().name(),
-            legal: certificate.is_legal(),
-            line: certificate.to_string(),
-        }
-    }
-}
-
 /// The largest number of violations in the JSON document.
-pub(crate) const LISTED: usize = 100;
+const LISTED: usize = 100;
 
-/// A violation with its message.
-#[derive(Serialize)]
-pub(crate) struct Listed {
-    pub(crate) pixel: [u32; 2],
-    pub(crate) stage: &'static str,
-    pub(crate) message: String,
-}
-
-impl From<&Violation> for Listed {
-    fn from(violation: &Violation) -> Self {
-        Self { pixel: violation.pixel, stage: violation.stage, message: violation.message.clone() }
-    }
+fn listed<T>(violations: &[T]) -> &[T] {
+    &violations[..violations.len().min(LISTED)]
 }
 
 /// The largest number of pixels with each verdict.
@@ -357,7 +274,7 @@ const SHOWN: usize = 3;
 #[derive(Serialize)]
 pub(crate) struct OpenPixel {
     pub(crate) pixel: [u32; 2],
-    pub(crate) verdict: &'static str,
+    pub(crate) verdict: Verdict,
     /// The answer that was found, and the legal ones.
     pub(crate) message: String,
 }
@@ -379,7 +296,7 @@ pub(crate) fn open_pixels(
             let message = legal.message(pixel.id, pixel.t);
             // The sides of a film are u32.
             let pixel = [(index % width) as u32, (index / width) as u32];
-            Some(OpenPixel { pixel, verdict: verdict.name(), message })
+            Some(OpenPixel { pixel, verdict, message })
         })
     };
     of(Verdict::Tie).chain(of(Verdict::Silhouette)).collect()
@@ -387,35 +304,18 @@ pub(crate) fn open_pixels(
 
 /// The object `denoiser` of the JSON document.
 #[derive(Serialize)]
-pub(crate) struct DenoiserReport {
-    pixels: u64,
-    undecided: u64,
-    violation_count: u64,
-    violations: Vec<String>,
-    outcome: &'static str,
+pub(crate) struct DenoiserReport<'a> {
+    #[serde(flatten)]
+    certificate: &'a DenoiseCertificate,
+    outcome: Outcome,
 }
 
-impl From<&DenoiseCertificate> for DenoiserReport {
-    fn from(certificate: &DenoiseCertificate) -> Self {
-        let DenoiseCertificate { pixels, undecided, violation_count, ref violations, .. } =
-            *certificate;
-        Self {
-            pixels,
-            undecided,
-            violation_count,
-            violations: violations.iter().take(LISTED).map(ToString::to_string).collect(),
-            outcome: certificate.outcome().name(),
-        }
-    }
-}
-
-impl DenoiserReport {
-    /// The report as one line of text.
-    pub(crate) fn line(&self) -> String {
-        let Self { pixels, undecided, violation_count, .. } = self;
+impl DenoiserReport<'_> {
+    fn line(&self) -> String {
+        let DenoiseCertificate { pixels, undecided, violation_count, .. } = self.certificate;
         let legal = pixels - undecided - violation_count;
         format!(
-            "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations"
+            "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n"
         )
     }
 }

@@ -8,7 +8,7 @@ use crate::camera::film::Film;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
-use crate::gpu::headless::lit_states::{Keep, Keeper, LONGEST_SIDE, Reader, longest_side};
+use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, longest_side};
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::lit::records::LightingParameters;
@@ -18,13 +18,10 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 use crate::light::SkyLight;
 use crate::render::RenderSettings;
-use crate::verify::{
-    LitInputs, LitRecording, RecordedFilm, RecordedSurface, StudioSurface, UploadedLighting,
-    UploadedSky,
-};
+use crate::verify::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
 
 /// Callback with the recording of each sample.
-pub type EachSample<'a> = dyn FnMut(LitRecording<'_>) + 'a;
+pub type EachSample<'a> = dyn FnMut(&LitRecording) + 'a;
 
 impl Headless {
     /// Takes some samples of a lit picture one by one and records the state of every path, or of every ray of a studio,
@@ -59,19 +56,14 @@ impl Headless {
         let key = attempt.key(scenes.key(lighting, &self.device.limits()));
         self.with_lit_passes(key, async |passes: &LitPasses| {
             let is_first = Cell::new(true);
-            let mut each = |recording: LitRecording<'_>| {
+            let mut each = |recording: &LitRecording| {
                 is_first.set(false);
                 each(recording);
             };
             loop {
                 let work = LitWork { headless: self, passes, scenes, lighting, attempt };
-                let done = if is_studio {
-                    let keeper = Keeper::<StudioSurface>::new(given.clone());
-                    work.record(tile, samples, keeper, &mut each, watch).await
-                } else {
-                    let keeper = Keeper::<RecordedSurface>::new(given.clone());
-                    work.record(tile, samples, keeper, &mut each, watch).await
-                };
+                let keeper = Keeper::new(given.clone());
+                let done = work.record(tile, samples, keeper, &mut each, watch).await;
                 match (done, attempt.easier(lighting)) {
                     (Err(GpuError::Steps), Some(easier)) if is_first.get() => attempt = easier,
                     (done, _) => return done,
@@ -83,17 +75,14 @@ impl Headless {
 }
 
 impl LitWork<'_> {
-    async fn record<S: Default>(
+    async fn record(
         &self,
         tile: Tile,
         samples: &[u32],
-        mut keeper: Keeper<S>,
+        mut keeper: Keeper,
         each: &mut EachSample<'_>,
         watch: &mut Watch<'_>,
-    ) -> Result<(), GpuError>
-    where
-        Keeper<S>: Keep,
-    {
+    ) -> Result<(), GpuError> {
         let Self { headless, passes, scenes, lighting, .. } = *self;
         let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
         let frame = &self.frame(sizes, std::iter::once(tile)).await?;
@@ -287,7 +276,7 @@ mod lit_inputs_tests {
     use super::*;
     use crate::accel::{AccelChoice, AccelPlan};
     use crate::gpu::scene::scene_summary::SceneSummary;
-    use crate::verify::{Checker, PathRecording};
+    use crate::verify::Checker;
 
     /// The checker accepts the numbers that the host computes for a device from random scenes.
     #[test]
@@ -306,14 +295,14 @@ mod lit_inputs_tests {
             let lighting = LightingData::new(&random.settings, &summary, view.camera);
             let part = [[0; 2], [view.film.width(), view.film.height()]];
             let given = inputs_in([&space; 2], &view, &random.settings, &lighting, part);
-            let mut recording = PathRecording { given, samples: Vec::new() };
-            let certificate = checker.certify_paths(&recording);
+            let mut recording = LitRecording { given, samples: Vec::new() };
+            let certificate = checker.certify_lit(&recording);
             assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);
             // The checker rejects a roughness of more than 1, which shows that it can fail.
             if seed % 8 == 0 {
                 let material = recording.given.lighting.material_first as usize;
                 recording.given.tables[material][2] = 1.001_f32.to_bits();
-                let certificate = checker.certify_paths(&recording);
+                let certificate = checker.certify_lit(&recording);
                 assert!(certificate.upload.is_some(), "seed {seed}: {}", random.name);
             }
         }

@@ -7,8 +7,8 @@ use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::lit::{LightingData, LitFrame, Mode, Moment};
 use crate::verify::{
-    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSurface,
-    RectangleRecording, RectangleSample, StudioLight, StudioSurface,
+    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface,
+    StudioLight,
 };
 
 /// Maximum side in pixels of the rectangle that is recorded. A sample of a path of eight surfaces then takes 130 MB of
@@ -149,101 +149,67 @@ pub(super) fn longest_side(lighting: &LightingData) -> u32 {
     (pixels.isqrt() as u32 / 8 * 8).clamp(8, LONGEST_SIDE)
 }
 
+/// Flag of a ray that passes on, `PATH_ALIVE` in `shaders/path/state.wgsl`.
+const ALIVE: u32 = crate::light::codes::path::ALIVE;
+
 /// Keeps what is recorded of a sample.
-pub(super) struct Keeper<S> {
-    recording: RectangleRecording<S>,
-    sample: RectangleSample<S>,
+pub(super) struct Keeper {
+    recording: LitRecording,
+    sample: RecordedSample,
     /// Whether all surfaces of a studio were recorded that rays pass through.
     is_over: bool,
     /// The hidden lights or directions of a studio that are not yet added up.
     hidden: Option<Vec<u32>>,
 }
 
-impl<S: Default> Keeper<S> {
+impl Keeper {
     pub(super) fn new(given: LitInputs) -> Self {
-        let recording = RectangleRecording { given, samples: Vec::new() };
-        Self { recording, sample: RectangleSample::default(), is_over: false, hidden: None }
+        let recording = LitRecording { given, samples: Vec::new() };
+        Self { recording, sample: RecordedSample::default(), is_over: false, hidden: None }
     }
 
     /// Begins the sample with this index.
     pub(super) fn begin(&mut self, sample: u32) {
         self.recording.samples.clear();
-        self.sample = RectangleSample { sample, ..RectangleSample::default() };
+        self.sample = RecordedSample { sample, ..RecordedSample::default() };
         (self.is_over, self.hidden) = (false, None);
     }
 
-    /// Keeps the sums of the pixels, and ends the sample.
-    pub(super) fn end(&mut self, film: RecordedFilm) {
-        self.sample.film = film;
-        self.recording.samples.push(std::mem::take(&mut self.sample));
+    /// Whether the states after a pass are kept. Once every ray of a studio has ended, no state changes any more.
+    pub(super) fn wants(&mut self, moment: Moment) -> bool {
+        if let (true, Moment::Extended, Some(before)) =
+            (self.recording.given.is_studio(), moment, self.sample.surfaces.last())
+        {
+            self.is_over |= before.states.iter().all(|state| state.slots[0][3] & ALIVE == 0);
+        }
+        !self.is_over
     }
-}
-
-/// What is kept of a sample, along paths or in a studio.
-pub(super) trait Keep {
-    /// Whether the states after a pass are kept.
-    fn wants(&mut self, moment: Moment) -> bool;
 
     /// Keeps the states after a pass.
-    fn keep(&mut self, moment: Moment, states: &States<'_>);
-
-    /// The recording of the sample.
-    fn recording(&self) -> LitRecording<'_>;
-}
-
-impl Keep for Keeper<RecordedSurface> {
-    fn wants(&mut self, _: Moment) -> bool {
-        true
-    }
-
-    fn keep(&mut self, moment: Moment, states: &States<'_>) {
+    pub(super) fn keep(&mut self, moment: Moment, states: &States<'_>) {
         match (moment, self.sample.surfaces.last_mut()) {
             (Moment::Extended, _) => {
                 let hits = states.hits();
                 self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
             }
             (Moment::Shaded, Some(surface)) => {
-                surface.open = states.last_words(PathState::PENDING);
-                surface.scattered = states.all();
+                surface.states = states.all();
+                if !self.recording.given.is_studio() {
+                    surface.open = states.last_words(PathState::PENDING);
+                }
             }
             (Moment::Occluded, Some(surface)) => {
                 surface.open = states.last_words(PathState::PENDING);
             }
-            _ => self.sample.start = states.all(),
-        }
-    }
-
-    fn recording(&self) -> LitRecording<'_> {
-        LitRecording::Paths(&self.recording)
-    }
-}
-
-/// Flag of a ray that passes on, `PATH_ALIVE` in `shaders/path/state.wgsl`.
-const ALIVE: u32 = crate::light::codes::path::ALIVE;
-
-impl Keep for Keeper<StudioSurface> {
-    /// Once every ray has ended, no state changes any more.
-    fn wants(&mut self, moment: Moment) -> bool {
-        if let (Moment::Extended, Some(before)) = (moment, self.sample.surfaces.last()) {
-            self.is_over |= before.shaded.iter().all(|state| state.slots[0][3] & ALIVE == 0);
-        }
-        !self.is_over
-    }
-
-    fn keep(&mut self, moment: Moment, states: &States<'_>) {
-        let hidden = states.last_words(PathState::NORMAL);
-        match (moment, self.sample.surfaces.last_mut()) {
-            (Moment::Extended, _) => {
-                let hits = states.hits();
-                self.sample.surfaces.push(StudioSurface { hits, ..StudioSurface::default() });
+            (Moment::Shadowed | Moment::Searched, _) => {
+                self.hidden = Some(states.last_words(PathState::NORMAL));
             }
-            (Moment::Shadowed | Moment::Searched, _) => self.hidden = Some(hidden),
-            (Moment::Shaded, Some(surface)) => surface.shaded = states.all(),
             (Moment::Illuminated | Moment::Gathered, Some(surface)) => {
+                let left = states.last_words(PathState::NORMAL);
                 let light = StudioLight {
-                    hidden: self.hidden.take().unwrap_or_else(|| vec![0; hidden.len()]),
+                    hidden: self.hidden.take().unwrap_or_else(|| vec![0; left.len()]),
                     radiance: states.slot(PathState::RADIANCE),
-                    left: hidden,
+                    left,
                 };
                 match moment {
                     Moment::Illuminated => surface.lights.push(light),
@@ -254,7 +220,14 @@ impl Keep for Keeper<StudioSurface> {
         }
     }
 
-    fn recording(&self) -> LitRecording<'_> {
-        LitRecording::Studio(&self.recording)
+    /// Keeps the sums of the pixels, and ends the sample.
+    pub(super) fn end(&mut self, film: RecordedFilm) {
+        self.sample.film = film;
+        self.recording.samples.push(std::mem::take(&mut self.sample));
+    }
+
+    /// The recording of the sample.
+    pub(super) fn recording(&self) -> &LitRecording {
+        &self.recording
     }
 }

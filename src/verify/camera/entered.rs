@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::verify::camera::{CameraModel, CameraRay, around};
-use crate::verify::certificate::{AXES, Mismatch};
+use crate::verify::certificate::{AXES, Mismatch, legal_is};
 use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
@@ -16,7 +16,7 @@ impl CameraModel {
     /// A ray's entry and exit at the scene's box, for all origins within their error bounds and all directions within
     /// `turned`, each axis by itself.
     fn slabs(&self, ray: &CameraRay, direction: DVec3, turned: DVec3) -> BoxCrossing {
-        let mut crossing = BoxCrossing::default();
+        let mut crossing = BoxCrossing::UNBOUNDED;
         for axis in 0..3 {
             let (d, error) = (direction[axis], turned[axis]);
             let least = (d.abs() - error).max(SMALLEST_COMPONENT);
@@ -31,8 +31,7 @@ impl CameraModel {
                     let moved = ray.origin_error[axis] * (1.0 + 5.0 * U) + U * away.abs();
                     let error = moved / least + (DIVIDE + 3.0 * U) * away.abs() / least;
                     let [one, other] = inverses.map(|inverse| away * inverse);
-                    let error = PAD * error + FLUSH / least + FLUSH;
-                    Interval { low: one.min(other) - error, high: one.max(other) + error }
+                    Interval::between(one, other, PAD * error + FLUSH / least + FLUSH)
                 };
                 Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis]))
             };
@@ -51,16 +50,6 @@ impl CameraModel {
 pub(crate) struct BoxCrossing {
     pub(crate) enter: Interval,
     pub(crate) leave: Interval,
-}
-
-impl Default for BoxCrossing {
-    /// The crossing of an unbounded box.
-    fn default() -> Self {
-        Self {
-            enter: Interval { low: 0.0, high: 0.0 },
-            leave: Interval { low: f64::INFINITY, high: f64::INFINITY },
-        }
-    }
 }
 
 /// Where a ray crosses the nearer and the farther of two parallel planes.
@@ -86,6 +75,12 @@ impl Crossed {
 }
 
 impl BoxCrossing {
+    /// The crossing of an unbounded box.
+    pub(crate) const UNBOUNDED: Self = Self {
+        enter: Interval { low: 0.0, high: 0.0 },
+        leave: Interval { low: f64::INFINITY, high: f64::INFINITY },
+    };
+
     /// Intersects the crossing with the slab between two parallel planes.
     pub(crate) fn cut(&mut self, Crossed { near, far }: Crossed) {
         self.enter.low = self.enter.low.max(near.low);
@@ -131,19 +126,10 @@ impl EnteredRay {
         let mut enter = self.enter;
         for (axis, name) in AXES.iter().enumerate() {
             let found = ray.origin[axis];
-            let legal = self.origin(axis, enter);
-            if !legal.contains(found.into()) {
-                let message = format!("the origin's {name} is {found:?}; legal is {legal}");
-                return Err(Mismatch::new("camera", message));
-            }
+            legal_is("camera", ("the origin's ", name), found, self.origin(axis, enter))?;
             enter = enter.intersection(self.enter_by(axis, found.into()));
         }
-        let (found, legal) = (ray.distance, self.distance(enter));
-        if !legal.contains(found.into()) {
-            let message = format!("the origin's distance is {found:?}; legal is {legal}");
-            return Err(Mismatch::new("camera", message));
-        }
-        Ok(())
+        legal_is("camera", ("the origin's ", "distance"), ray.distance, self.distance(enter))
     }
 
     /// The numbers of a legal ray, with their names and bounds.
@@ -173,9 +159,8 @@ impl EnteredRay {
 
     fn origin(&self, axis: usize, enter: Interval) -> Interval {
         let (d, start) = (self.recorded_direction[axis], self.exact.line.origin[axis]);
-        let (a, b) = (start + enter.low * d, start + enter.high * d);
-        let error = self.origin_error(axis);
-        Interval { low: a.min(b) - error, high: a.max(b) + error }
+        let ends = [enter.low, enter.high].map(|enter| start + enter * d);
+        Interval::between(ends[0], ends[1], self.origin_error(axis))
     }
 
     /// The distances of entry that agree with a component of the ray's start.
@@ -186,8 +171,7 @@ impl EnteredRay {
             return self.enter;
         }
         let away = found - self.exact.line.origin[axis];
-        let (a, b) = ((away - error) / d, (away + error) / d);
-        Interval { low: a.min(b), high: a.max(b) }
+        Interval::between((away - error) / d, (away + error) / d, 0.0)
     }
 
     fn distance(&self, enter: Interval) -> Interval {

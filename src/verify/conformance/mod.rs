@@ -114,23 +114,14 @@ pub use answers::{
     Finding, OF_GIVEN_RAYS, Rays, Reason,
 };
 
+use std::ops::Range;
+
 use answers::{KEPT, refused};
 use pixel::PixelCheck;
 
-use super::certificate::Outcome;
+use super::certificate::{CHUNK, Outcome};
 use super::checker::Checker;
 use crate::parallel::{map_parts, ranges};
-
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 12;
-
-/// The results for a range of pixels.
-struct Part {
-    outcomes: Vec<Outcome>,
-    least: Vec<f32>,
-    /// The indices of the pixels with the largest k, the worst first.
-    worst: Vec<usize>,
-}
 
 impl Checker<'_> {
     /// Judges the answers of any renderer to exact rays. `at_most` is the limit of k; without it, the limit is
@@ -168,9 +159,10 @@ impl Checker<'_> {
         };
         let mut worst = Vec::new();
         for part in map_parts(ranges(answers.ids.len(), CHUNK), |range| judge(&check, range)) {
-            found.outcomes.extend(part.outcomes);
-            found.least.extend(part.least);
-            worst.extend(part.worst);
+            let (judged, worst_of_part) = part;
+            found.outcomes.extend(judged.iter().map(|(outcome, _)| *outcome));
+            found.least.extend(judged.iter().map(|(_, least)| *least));
+            worst.extend(worst_of_part);
         }
         keep_worst(&mut worst, |index| found.least[*index]);
         let explain =
@@ -180,22 +172,18 @@ impl Checker<'_> {
     }
 }
 
-fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>) -> Part {
-    let (start, count) = (range.start, range.len());
-    let mut part = Part {
-        outcomes: Vec::with_capacity(count),
-        least: Vec::with_capacity(count),
-        worst: range.clone().collect(),
-    };
-    let mut others = Vec::new();
-    for index in range {
+/// The outcomes and the least k of a range of pixels, and the indices of those with the largest k, the worst first.
+fn judge(check: &PixelCheck<'_>, range: Range<usize>) -> (Vec<(Outcome, f32)>, Vec<usize>) {
+    let (start, mut others) = (range.start, Vec::new());
+    let judged = |index| {
         let (outcome, least) = check.judge(index, &mut others);
-        part.outcomes.push(outcome);
-        part.least.push(least as f32);
-    }
-    part.worst.retain(|index| part.least[index - start] > 0.0);
-    keep_worst(&mut part.worst, |index| part.least[index - start]);
-    part
+        (outcome, least as f32)
+    };
+    let all: Vec<_> = range.clone().map(judged).collect();
+    let least = |index: &usize| all[index - start].1;
+    let mut worst: Vec<usize> = range.filter(|index| least(index) > 0.0).collect();
+    keep_worst(&mut worst, least);
+    (all, worst)
 }
 
 /// Sorts pixels by their k, the largest first, and then by their index, and keeps the first.

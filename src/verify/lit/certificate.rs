@@ -8,6 +8,7 @@ use crate::verify::recording::UploadError;
 
 /// A stage of a sample, along a path or in a studio: a kernel, or a part of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum LitStage {
     /// The camera ray of a sample.
@@ -73,6 +74,7 @@ pub(crate) struct Address {
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct LitViolation {
     /// Column and row in the film, from the top left.
@@ -88,7 +90,6 @@ pub struct LitViolation {
 }
 
 impl fmt::Display for LitViolation {
-    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], sample, surface, stage, message } = self;
         let stage = stage.name();
@@ -101,6 +102,7 @@ pub(super) const OPEN_KEPT: usize = 32;
 
 /// A stage of which several results are legal, or whose bounds are so wide that its check says little.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct LitOpen {
     /// Column and row in the film, from the top left.
@@ -130,6 +132,7 @@ impl fmt::Display for LitOpen {
 /// The number of stages that were judged, by verdict. A stage counts once for each sample
 /// that passes through it; in a studio, a search counts once for each light and each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct StageCounts {
     /// All stages that were judged.
@@ -173,6 +176,7 @@ pub struct LitCertificate {
 
 /// How much of a lit picture was judged: so many samples of so many of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct LitShare {
     /// The number of samples that were judged of each of the pixels.

@@ -8,82 +8,68 @@ use crate::camera::sampling::{pair, pixel_seed, unit};
 use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
 use crate::verify::camera::{CameraModel, Location};
-use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::{Address, LitStage};
-use crate::verify::lit::judge::{Expected, Judged, Mismatch, along_choices};
+use crate::verify::lit::judge::{Expected, Judged, Mismatch, Name, along_choices};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, RecordedFilm, flag, slot};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-const ORIGIN: (LitStage, &str) = (LitStage::Start, "the ray's origin");
-const DIRECTION: (LitStage, &str) = (LitStage::Start, "the ray's direction");
-const DISTANCE: (LitStage, &str) = (LitStage::Start, "the ray's distance from the camera");
-const FLAGS: (LitStage, &str) = (LitStage::Start, "the path's flags");
-const NOTHING: (LitStage, &str) = (LitStage::Start, "the initial state");
+const ORIGIN: Name = (LitStage::Start, "the ray's origin");
+const DIRECTION: Name = (LitStage::Start, "the ray's direction");
+const DISTANCE: Name = (LitStage::Start, "the ray's distance from the camera");
+const FLAGS: Name = (LitStage::Start, "the path's flags");
+const NOTHING: Name = (LitStage::Start, "the initial state");
 
 /// Judges the state of a path before anything is traced.
 pub(crate) fn judge_start(
     inputs: &LitInputs,
     model: &CameraModel,
-    address: Address,
+    Address { pixel, sample, .. }: Address,
     found: &PathState,
 ) -> Result<Judged, Mismatch> {
     along_choices(|choices| {
         let mut expected = Expected::default();
-        check_start(inputs, model, address, found, &mut expected, choices)?;
+        let lighting = &inputs.lighting;
+        let seed = pixel_seed(pixel, lighting.seed);
+        let location = location(&inputs.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
+        let ray = model.ray_through_lens(location, DVec2::from(pair(seed, sample, 1).map(unit)));
+        let is_seen = choices.decide(match (ray.may_be_seen, ray.may_be_unseen) {
+            (true, true) => None,
+            (is_seen, _) => Some(is_seen),
+        });
+        let alive = if is_seen { flag::ALIVE } else { 0 };
+        expected.bits(FLAGS, found.flags(), alive | flag::FULL)?;
+        let around = |exact: DVec3, error: DVec3| {
+            Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])))
+        };
+        let size =
+            inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
+        let origin = around(ray.line.origin, ray.origin_error);
+        expected.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
+        let direction = around(ray.line.direction, ray.direction_error);
+        expected.vector(DIRECTION, found.vector(slot::DIRECTION), direction)?;
+        let distance = Number::around(ray.distance, ray.distance_error);
+        expected.number(DISTANCE, found.number(slot::FIRST), distance)?;
+
+        let is_shown = !is_seen && lighting.flags & flag::TRANSPARENT == 0;
+        let radiance = if is_shown { lighting.background } else { [0.0; 3] };
+        let one = 1.0_f32.to_bits();
+        let mut slots = [[0; 4]; PathState::SLOTS];
+        slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
+        let [x, y, z, _] = found.slots[slot::DIRECTION];
+        slots[slot::DIRECTION] = [x, y, z, 0];
+        slots[slot::DEPARTURE] = [NO_ID, 0, 0, NO_EMITTER];
+        slots[slot::THROUGHPUT] = [one; 4];
+        let [r, g, b] = radiance.map(f32::to_bits);
+        slots[slot::RADIANCE] = [r, g, b, 0];
+        slots[slot::SHADOW] = [0, 0, one, 0];
+        slots[slot::FIRST] = [0, 0, 0, found.bits(slot::FIRST)];
+        let legal = PathState { slots };
+        // A studio writes the other slots only once there is a surface.
+        let written = if inputs.is_studio() { slot::NORMAL } else { PathState::SLOTS };
+        (0..written).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))?;
         Ok(expected)
     })
-}
-
-/// Compares the state of a path before anything is traced.
-fn check_start(
-    inputs: &LitInputs,
-    model: &CameraModel,
-    Address { pixel, sample, .. }: Address,
-    found: &PathState,
-    expected: &mut Expected,
-    choices: &mut Choices,
-) -> Result<(), Mismatch> {
-    let lighting = &inputs.lighting;
-    let seed = pixel_seed(pixel, lighting.seed);
-    let location = location(&inputs.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
-    let ray = model.ray_through_lens(location, DVec2::from(pair(seed, sample, 1).map(unit)));
-    let is_seen = choices.decide(match (ray.may_be_seen, ray.may_be_unseen) {
-        (true, true) => None,
-        (is_seen, _) => Some(is_seen),
-    });
-    let alive = if is_seen { flag::ALIVE } else { 0 };
-    expected.bits(FLAGS, found.flags(), alive | flag::FULL)?;
-    let around = |exact: DVec3, error: DVec3| {
-        Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])))
-    };
-    let size =
-        inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
-    let origin = around(ray.line.origin, ray.origin_error);
-    expected.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
-    let direction = around(ray.line.direction, ray.direction_error);
-    expected.vector(DIRECTION, found.vector(slot::DIRECTION), direction)?;
-    let distance = Number::around(ray.distance, ray.distance_error);
-    expected.number(DISTANCE, found.number(slot::FIRST), distance)?;
-
-    let is_shown = !is_seen && lighting.flags & flag::TRANSPARENT == 0;
-    let radiance = if is_shown { lighting.background } else { [0.0; 3] };
-    let one = 1.0_f32.to_bits();
-    let mut slots = [[0; 4]; PathState::SLOTS];
-    slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
-    let [x, y, z, _] = found.slots[slot::DIRECTION];
-    slots[slot::DIRECTION] = [x, y, z, 0];
-    slots[slot::DEPARTURE] = [NO_ID, 0, 0, NO_EMITTER];
-    slots[slot::THROUGHPUT] = [one; 4];
-    let [r, g, b] = radiance.map(f32::to_bits);
-    slots[slot::RADIANCE] = [r, g, b, 0];
-    slots[slot::SHADOW] = [0, 0, one, 0];
-    slots[slot::FIRST] = [0, 0, 0, found.bits(slot::FIRST)];
-    let legal = PathState { slots };
-    // A studio writes the other slots only once there is a surface.
-    let is_studio = inputs.settings.studio_parameters().is_some();
-    let written = if is_studio { slot::NORMAL } else { PathState::SLOTS };
-    (0..written).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))
 }
 
 /// The relative location of a sample, which is near the pixel's centre.
@@ -112,9 +98,6 @@ fn offset(table: &[f32], u: u32) -> Number {
     (low + (fraction * (high - low).fence()).fence()).fence()
 }
 
-/// The stage and the name of a number, for reports.
-type Name = (LitStage, &'static str);
-
 const COLOR: Name = (LitStage::Accumulate, "the sum of colors");
 const ALPHA: Name = (LitStage::Accumulate, "the sum of opacities");
 const ALBEDO: Name = (LitStage::Accumulate, "the sum of the first surfaces' colors");
@@ -134,8 +117,8 @@ pub(crate) fn check_sums(
     let Vector([r, g, b]) = color;
     for (channel, more) in [r, g, b, light.squared()].into_iter().enumerate() {
         let name = if channel < 3 { COLOR } else { SQUARE };
-        let (sum, found) = (before.value(channel), after.value[channel]);
-        let size = size_of(sum) + size_of(more);
+        let (sum, found) = (Number::recorded(before.value[channel]), after.value[channel]);
+        let size = sum.interval().size() + more.interval().size();
         expected.number_of(name, found, sum + more, size)?;
         // The sum is fenced and stored, so it is now known exactly, and with it how the kernel finds what was rounded.
         let value = Number::recorded(found);
@@ -154,13 +137,6 @@ pub(crate) fn check_sums(
     Ok(expected.into())
 }
 
-/// The largest magnitude of a number.
-fn size_of(number: Number) -> f64 {
-    let legal = number.interval();
-    legal.high.abs().max(legal.low.abs())
-}
-
-/// The sums of a pixel.
 struct Sums {
     /// Colour and squared luminance.
     value: [f32; 4],
@@ -174,9 +150,5 @@ impl Sums {
     fn new(bits: [[u32; 4]; 3]) -> Self {
         let [[r, g, b, alpha], rest, [x, y, z, square]] = bits.map(|four| four.map(f32::from_bits));
         Self { value: [r, g, b, square], rest, alpha, albedo: [x, y, z] }
-    }
-
-    fn value(&self, channel: usize) -> Number {
-        Number::recorded(self.value[channel])
     }
 }

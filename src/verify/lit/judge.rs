@@ -1,6 +1,6 @@
 //! The comparison of what a kernel wrote with what it may have written, number by number, and the verdict about a stage.
 
-use std::fmt;
+use std::fmt::Display;
 
 use crate::parallel::{map_parts, ranges};
 use crate::verify::bias::deviation;
@@ -21,29 +21,13 @@ const WIDE: f64 = 0.1;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mismatch {
     pub(crate) stage: LitStage,
-    pub(crate) what: &'static str,
-    pub(crate) answer: Answer,
+    pub(crate) message: String,
     /// The number of comparisons that succeeded before.
     pub(crate) after: u32,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Answer {
-    Number { found: f32, legal: Interval },
-    Bits { found: u32, legal: u32 },
-    Words(String),
-}
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, answer, .. } = self;
-        match answer {
-            Answer::Number { found, legal } => write!(f, "{what} is {found:?}; legal is {legal}"),
-            Answer::Bits { found, legal } => write!(f, "{what} is {found:#x}; legal is {legal:#x}"),
-            Answer::Words(words) => write!(f, "{what}: {words}"),
-        }
-    }
-}
+/// The stage and the name of a number, for reports.
+pub(crate) type Name = (LitStage, &'static str);
 
 /// Compares results with legal ones, and records whether a bound is too wide to say anything.
 #[derive(Debug, Default)]
@@ -56,19 +40,15 @@ pub(crate) struct Expected {
 }
 
 impl Expected {
-    fn mismatch(&self, stage: LitStage, what: &'static str, answer: Answer) -> Mismatch {
-        Mismatch { stage, what, answer, after: self.passed }
-    }
-
-    /// Compares integers.
     pub(crate) fn bits(
         &mut self,
-        (stage, what): (LitStage, &'static str),
+        (stage, what): Name,
         found: u32,
         legal: u32,
     ) -> Result<(), Mismatch> {
         if found != legal {
-            return Err(self.mismatch(stage, what, Answer::Bits { found, legal }));
+            let message = format!("{what} is {found:#x}; legal is {legal:#x}");
+            return Err(Mismatch { stage, message, after: self.passed });
         }
         self.passed += 1;
         Ok(())
@@ -77,13 +57,14 @@ impl Expected {
     /// Compares a number; its bound is narrow or wide relative to `scale`.
     fn within(
         &mut self,
-        (stage, what): (LitStage, &'static str),
+        (stage, what): Name,
         found: f32,
         legal: Interval,
         scale: f64,
     ) -> Result<(), Mismatch> {
         if !legal.contains(found.into()) {
-            return Err(self.mismatch(stage, what, Answer::Number { found, legal }));
+            let message = format!("{what} is {found:?}; legal is {legal}");
+            return Err(Mismatch { stage, message, after: self.passed });
         }
         self.passed += 1;
         let deviation = deviation(found.into(), legal);
@@ -92,31 +73,26 @@ impl Expected {
         Ok(())
     }
 
-    pub(crate) fn number(
-        &mut self,
-        name: (LitStage, &'static str),
-        found: f32,
-        legal: Number,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn number(&mut self, name: Name, found: f32, legal: Number) -> Result<(), Mismatch> {
         self.number_of(name, found, legal, 0.0)
     }
 
     /// Compares a number; its bound is narrow or wide relative to `size` or to itself.
     pub(crate) fn number_of(
         &mut self,
-        name: (LitStage, &'static str),
+        name: Name,
         found: f32,
         legal: Number,
         size: f64,
     ) -> Result<(), Mismatch> {
         let legal = legal.interval();
-        self.within(name, found, legal, legal.high.abs().max(legal.low.abs()).max(size))
+        self.within(name, found, legal, legal.size().max(size))
     }
 
     /// Compares a vector; its bounds are narrow or wide relative to its largest component.
     pub(crate) fn vector(
         &mut self,
-        name: (LitStage, &'static str),
+        name: Name,
         found: [f32; 3],
         legal: Vector,
     ) -> Result<(), Mismatch> {
@@ -126,24 +102,32 @@ impl Expected {
     /// Compares a vector; its bounds are narrow or wide relative to `size` or its largest component.
     pub(crate) fn vector_of(
         &mut self,
-        name: (LitStage, &'static str),
+        name: Name,
         found: [f32; 3],
         legal: Vector,
         size: f64,
     ) -> Result<(), Mismatch> {
         let legal = legal.intervals();
-        let scale =
-            legal.iter().map(|axis| axis.high.abs().max(axis.low.abs())).fold(size, f64::max);
+        let scale = legal.iter().map(|axis| axis.size()).fold(size, f64::max);
         found
             .into_iter()
             .zip(legal)
             .try_for_each(|(found, legal)| self.within(name, found, legal, scale))
     }
 
+    /// Checks that a state has not changed.
+    pub(crate) fn unchanged(
+        &mut self,
+        name: Name,
+        states: [&PathState; 2],
+    ) -> Result<(), Mismatch> {
+        (0..PathState::SLOTS).try_for_each(|slot| self.same(name, states, slot))
+    }
+
     /// Checks that a slot has not changed.
     pub(crate) fn same(
         &mut self,
-        name: (LitStage, &'static str),
+        name: Name,
         [before, after]: [&PathState; 2],
         slot: usize,
     ) -> Result<(), Mismatch> {
@@ -151,8 +135,8 @@ impl Expected {
         pairs.into_iter().try_for_each(|(found, legal)| self.bits(name, found, legal))
     }
 
-    pub(crate) fn fail(&self, stage: LitStage, what: &'static str, words: String) -> Mismatch {
-        self.mismatch(stage, what, Answer::Words(words))
+    pub(crate) fn fail(&self, (stage, what): Name, words: impl Display) -> Mismatch {
+        Mismatch { stage, message: format!("{what}: {words}"), after: self.passed }
     }
 }
 
@@ -247,7 +231,7 @@ impl LitCertificate {
             }
             Err(mismatch) => {
                 self.counts[stage as usize].checked += 1;
-                let (stage, message) = (mismatch.stage, mismatch.to_string());
+                let Mismatch { stage, message, .. } = mismatch;
                 self.violations.push(LitViolation { pixel, sample, surface, stage, message });
             }
         }
@@ -300,15 +284,6 @@ pub(crate) fn judge_pixels(
     let mut all = LitCertificate::default();
     parts.into_iter().for_each(|part| all.join(part));
     all
-}
-
-/// Checks that the state of a ray that has ended does not change.
-pub(crate) fn unchanged(
-    name: (LitStage, &'static str),
-    [before, after]: [&PathState; 2],
-) -> Result<(), Mismatch> {
-    let mut expected = Expected::default();
-    (0..PathState::SLOTS).try_for_each(|slot| expected.same(name, [before, after], slot))
 }
 
 /// A search; `alternatives` names the legal answers if there are several.

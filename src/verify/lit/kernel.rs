@@ -3,12 +3,13 @@
 
 use glam::DVec3;
 
+use crate::camera::sampling::{pair, pixel_seed};
 use crate::geometry::math::wide;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::{Address, LitStage};
-use crate::verify::lit::judge::{Expected, Mismatch};
+use crate::verify::lit::judge::{Expected, Mismatch, Name};
 use crate::verify::lit::recording::{LitInputs, PathState, UploadedLighting, flag, slot};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
@@ -47,6 +48,11 @@ pub(crate) struct Kernel<'a> {
 impl<'a> Kernel<'a> {
     pub(crate) fn lighting(&self) -> &'a UploadedLighting {
         &self.inputs.lighting
+    }
+
+    /// A pair of random numbers of the pixel.
+    pub(crate) fn numbers(&self, sample: u32, number: u32) -> [u32; 2] {
+        pair(pixel_seed(self.address.pixel, self.lighting().seed), sample, number)
     }
 
     /// An entry of the tables; zeros beyond their end.
@@ -100,7 +106,8 @@ impl Vertex {
     }
 }
 
-const POSITION: (LitStage, &str) = (LitStage::Vertex, "the point that was hit");
+const HIT: Name = (LitStage::Vertex, "the hit");
+const POSITION: Name = (LitStage::Vertex, "the point that was hit");
 
 impl Kernel<'_> {
     /// The surface that the ray hits; `None` for a miss.
@@ -191,27 +198,22 @@ impl Kernel<'_> {
         let (before, hit) = (self.before, self.hit);
         let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
         else {
-            let words = format!("there is no sphere {}", hit.id);
-            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
+            return Err(self.expected.fail(HIT, format!("there is no sphere {}", hit.id)));
         };
-        let (appearance, material_index) = (
-            self.scene.checked_appearance(),
-            self.scene.checked_appearance().material_row(hit.id) + 1,
-        );
+        let appearance = self.scene.checked_appearance();
+        let material_index = appearance.material_row(hit.id) + 1;
         let surface = appearance.surfaces()[appearance.surface_index(hit.id) as usize];
         let color = self.scene.color(hit.id).to_array();
         let opacities = [surface.opacity, appearance.alpha(hit.id)];
 
-        let entered =
-            Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
-        let Entered { line, origin, slack } = &entered;
-        let Some(test) = SphereTest::new(line, sphere, *slack) else {
-            let words = format!("sphere {} cannot be hit", hit.id);
-            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
+        let (line, origin, slack) =
+            entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let Some(test) = SphereTest::new(&line, sphere, slack) else {
+            return Err(self.expected.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
         };
         let center = Vector::recorded([x, y, z]);
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
-        let middle = (center - *origin).dot(direction);
+        let middle = (center - origin).dot(direction);
         let is_far_side = before.has(flag::INSIDE) && hit.id == before.departure().id;
         let (half, exact) = if is_far_side {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
@@ -221,14 +223,14 @@ impl Kernel<'_> {
         };
         let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::recorded(hit.t)));
         let chord = Chord { half, exact, is_behind };
-        let (normal, error) = normal_at(&test, line, chord, radius, *slack);
+        let (normal, error) = normal_at(&test, &line, chord, radius, slack);
         let mut outward = Vector::around(normal, error);
 
         let r = Number::recorded(radius);
         let far = Number::known(64.0) * (Number::recorded(hit.t) + Number::recorded(hit.distance));
         let is_on_ray = self.choices.decide(r.is_more(far));
         let position = if is_on_ray {
-            *origin + direction * Number::recorded(hit.t)
+            origin + direction * Number::recorded(hit.t)
         } else {
             center + outward * r
         };
@@ -259,7 +261,7 @@ impl Kernel<'_> {
         let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
         if !legal.contains(away.length()) {
             let words = format!("{:e} from the sphere's centre; legal is {legal}", away.length());
-            return Err(self.expected.fail(POSITION.0, POSITION.1, words));
+            return Err(self.expected.fail(POSITION, words));
         }
         let by_point = [0, 1, 2].map(|axis| {
             let (away, error) = (away[axis], error[axis]);
@@ -269,30 +271,19 @@ impl Kernel<'_> {
     }
 }
 
-/// A ray that starts where it enters the scene's box, at a known distance.
-struct Entered {
-    line: Line,
-    origin: Vector,
-    slack: Slack,
-}
-
-impl Entered {
-    fn new(origin: [f32; 3], direction: [f32; 3], distance: f32) -> Self {
-        let (start, along) = (wide(origin), wide(direction));
-        let distance = f64::from(distance);
-        let moved = start + distance * along;
-        if distance == 0.0 {
-            let line = Line::new(origin, direction);
-            return Self { line, origin: Vector::recorded(origin), slack: Slack::default() };
-        }
-        let error =
-            PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
-        let [x, y, z] = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
-        let length = error.length() + U * FLUSH;
-        Self {
-            line: Line::exact(moved, along),
-            origin: Vector([x, y, z]),
-            slack: Slack { across: length, along: length, direction: 0.0 },
-        }
+/// A ray that starts where it enters the scene's box, at a known distance: its line, its start, and how far the kernel's
+/// may be from it.
+fn entered(origin: [f32; 3], direction: [f32; 3], distance: f32) -> (Line, Vector, Slack) {
+    let (start, along) = (wide(origin), wide(direction));
+    let distance = f64::from(distance);
+    let moved = start + distance * along;
+    if distance == 0.0 {
+        return (Line::new(origin, direction), Vector::recorded(origin), Slack::default());
     }
+    let error =
+        PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
+    let origin = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
+    let length = error.length() + U * FLUSH;
+    let slack = Slack { across: length, along: length, direction: 0.0 };
+    (Line::exact(moved, along), Vector(origin), slack)
 }

@@ -48,78 +48,57 @@ impl LitInputs {
         [x, y, width, height]
     }
 
+    pub(crate) fn is_studio(&self) -> bool {
+        self.settings.studio_parameters().is_some()
+    }
+
+    /// The numbers of lists of lights and of directions of ambient light at each surface of a studio.
+    pub(crate) fn batches(&self) -> [usize; 2] {
+        let UploadedLighting { light_count, occlusion_samples, .. } = self.lighting;
+        [light_count, occlusion_samples].map(|count| count.div_ceil(BITS) as usize)
+    }
+
     /// The number of pixels in the rectangle.
     pub(crate) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }
 
-/// A recording of a rectangle of a picture, with surfaces of the integrator `path` or `studio`. The checker needs only
-/// this and the scene.
+/// A recording of samples of a rectangle of a lit picture, of paths or of rays of a studio. The checker needs only this
+/// and the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RectangleRecording<S> {
+pub struct LitRecording {
     /// What was requested, and the numbers that the device was given.
     pub given: LitInputs,
     /// The samples in the order in which they were taken.
-    pub samples: Vec<RectangleSample<S>>,
+    pub samples: Vec<RecordedSample>,
 }
 
 /// One sample of every pixel of the rectangle. Lists are row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RectangleSample<S> {
+pub struct RecordedSample {
     /// Index of the sample in its pixel.
     pub sample: u32,
-    /// The state of every path at the camera.
+    /// The state of every ray at the camera.
     pub start: Vec<PathState>,
-    /// The surfaces of the paths in the order in which they are hit, up to the one at which the last path ends.
-    pub surfaces: Vec<S>,
+    /// The surfaces in the order in which they are hit, up to the one at which the last ray ends.
+    pub surfaces: Vec<RecordedSurface>,
     /// The sums of the pixels without and with the sample.
     pub film: RecordedFilm,
 }
 
-/// A recording of paths.
-pub type PathRecording = RectangleRecording<RecordedSurface>;
-
-/// A recording of a picture of a studio.
-pub type StudioRecording = RectangleRecording<StudioSurface>;
-
-/// One sample of every path of a rectangle.
-pub type RecordedSample = RectangleSample<RecordedSurface>;
-
-/// One sample of every ray of a studio in a rectangle.
-pub type StudioSample = RectangleSample<StudioSurface>;
-
-/// A recording of samples of a lit picture.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub enum LitRecording<'a> {
-    /// Samples of the integrator `path`.
-    Paths(&'a PathRecording),
-    /// Samples of the integrator `studio`.
-    Studio(&'a StudioRecording),
-}
-
-/// The results of all paths at one surface.
+/// The results of all rays at one surface.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedSurface {
     /// The hits, as bits: distance, id, index in the structure, and distance from the ray's origin to the scene's box.
     pub hits: Vec<[u32; 4]>,
-    /// The state of every path after shading.
-    pub scattered: Vec<PathState>,
-    /// The visibility of each path's sampled light, as the bits of a number: 0 if it is occluded.
+    /// The state of every ray after shading; in a studio, once the surface is known.
+    pub states: Vec<PathState>,
+    /// The visibility of each path's sampled light, as the bits of a number: 0 if it is occluded. Empty in a studio.
     pub open: Vec<u32>,
-}
-
-/// The results of all rays of a studio at one surface.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct StudioSurface {
-    /// The hits, as those of paths.
-    pub hits: Vec<[u32; 4]>,
-    /// The state of every ray once the surface is known.
-    pub shaded: Vec<PathState>,
-    /// The lights, 32 at a time.
+    /// In a studio, the lights, 32 at a time.
     pub lights: Vec<StudioLight>,
-    /// The directions of ambient light, 32 at a time.
+    /// In a studio, the directions of ambient light, 32 at a time.
     pub ambient: Vec<StudioLight>,
 }
 
@@ -137,65 +116,30 @@ pub struct StudioLight {
 /// The number of lights, or of directions of ambient light, of a [`StudioLight`].
 pub(crate) const BITS: u32 = 32;
 
-/// The recording of a surface, along paths or in a studio.
-pub(crate) trait LitSurface: Sync {
-    fn hits(&self) -> &[[u32; 4]];
-
-    /// The states after shading.
-    fn states(&self) -> &[PathState];
-
-    /// `true` if there is all light of so many pixels.
-    fn has_light(&self, lighting: &UploadedLighting, pixels: usize) -> bool;
-}
-
-impl LitSurface for RecordedSurface {
-    fn hits(&self) -> &[[u32; 4]] {
-        &self.hits
-    }
-
-    fn states(&self) -> &[PathState] {
-        &self.scattered
-    }
-
-    fn has_light(&self, _: &UploadedLighting, pixels: usize) -> bool {
-        self.open.len() == pixels
-    }
-}
-
-impl LitSurface for StudioSurface {
-    fn hits(&self) -> &[[u32; 4]] {
-        &self.hits
-    }
-
-    fn states(&self) -> &[PathState] {
-        &self.shaded
-    }
-
-    fn has_light(&self, lighting: &UploadedLighting, pixels: usize) -> bool {
-        let are_all = |lights: &[StudioLight], count: u32| {
+impl LitRecording {
+    /// Whether every list has an element for each pixel of the rectangle, and every light and direction is in a list.
+    pub(crate) fn check_size(&self) -> Result<(), UploadError> {
+        let count = self.given.pixels();
+        let are_all = |lights: &[StudioLight], batches: usize, pixels: usize| {
             let is_whole = |StudioLight { hidden, radiance, left }: &StudioLight| {
                 [hidden.len(), radiance.len(), left.len()] == [pixels; 3]
             };
-            lights.len() as u64 == u64::from(count.div_ceil(BITS)) && lights.iter().all(is_whole)
+            lights.len() == batches && lights.iter().all(is_whole)
         };
-        are_all(&self.lights, lighting.light_count)
-            && are_all(&self.ambient, lighting.occlusion_samples)
-    }
-}
-
-impl<S> RectangleRecording<S> {
-    /// Whether every list has an element for each pixel of the rectangle, and every light and direction is in a list.
-    pub(crate) fn check_size(&self) -> Result<(), UploadError>
-    where
-        S: LitSurface,
-    {
-        let count = self.given.pixels();
         let are_whole =
-            self.samples.iter().all(|RectangleSample { start, surfaces, film, .. }| {
+            self.samples.iter().all(|RecordedSample { start, surfaces, film, .. }| {
                 let pixels = start.len();
-                let is_whole = |surface: &S| {
-                    [surface.hits().len(), surface.states().len()] == [pixels; 2]
-                        && surface.has_light(&self.given.lighting, pixels)
+                let is_whole = |surface: &RecordedSurface| {
+                    let RecordedSurface { hits, states, open, lights, ambient } = surface;
+                    let has_light = match self.given.is_studio() {
+                        true => {
+                            let [of_lights, of_ambient] = self.given.batches();
+                            are_all(lights, of_lights, pixels)
+                                && are_all(ambient, of_ambient, pixels)
+                        }
+                        false => open.len() == pixels,
+                    };
+                    [hits.len(), states.len()] == [pixels; 2] && has_light
                 };
                 pixels as u64 == count
                     && [film.before.len(), film.after.len()] == [pixels; 2]

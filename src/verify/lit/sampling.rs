@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 
 use crate::camera::sampling::unit;
 use crate::light::codes::lamp::{DIRECTIONAL, POINT};
-use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, EMISSIVE, LAMBERT};
 use crate::verify::choices::Choices;
 use crate::verify::lit::kernel::{Kernel, Vertex};
 use crate::verify::number::{Number, Vector, sin_cos_eighth};
@@ -162,30 +161,13 @@ pub(crate) const ENERGIES: u32 = crate::light::energy::ENTRIES as u32;
 /// A material in the tables of the device.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Material {
-    kind: u32,
+    /// One of the [codes](crate::light::codes::material).
+    pub(crate) kind: u32,
     pub(crate) parameter: Number,
     /// The square of the roughness.
     pub(crate) alpha: Number,
     pub(crate) energies: u32,
     pub(crate) absorption: Vector,
-}
-
-impl Material {
-    pub(crate) fn is_lambert(&self) -> bool {
-        self.kind == LAMBERT
-    }
-
-    pub(crate) fn is_metal(&self) -> bool {
-        self.kind == CONDUCTOR
-    }
-
-    pub(crate) fn is_dielectric(&self) -> bool {
-        self.kind == DIELECTRIC
-    }
-
-    pub(crate) fn is_emissive(&self) -> bool {
-        self.kind == EMISSIVE
-    }
 }
 
 /// The last index of an energy table.

@@ -5,13 +5,14 @@
 use glam::{DVec3, Vec4};
 
 use crate::image::NO_ID;
-use crate::scene::Scene;
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
+use crate::verify::checker::Checker;
 use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
 use crate::verify::lit::certificate::LitStage;
-use crate::verify::lit::judge::{Expected, Mismatch};
+use crate::verify::lit::check::LitCheck;
+use crate::verify::lit::judge::{Expected, Judged, Mismatch, Name, searched};
 use crate::verify::lit::kernel::Hit;
-use crate::verify::lit::recording::{PathState, flag, slot};
+use crate::verify::lit::recording::{NO_EMITTER, PathState, flag, slot};
 use crate::verify::number::Number;
 use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
@@ -19,45 +20,96 @@ use crate::verify::sphere::{Line, Slack};
 
 const STAGE: LitStage = LitStage::Extend;
 
-/// The data in which searches are made.
-#[derive(Clone, Copy)]
-pub(crate) struct Searched<'a> {
-    pub(crate) model: &'a CameraModel,
-    pub(crate) scene: &'a Scene,
-    pub(crate) candidates: &'a Candidates,
-}
-
-/// A ray of a path, starting where it enters the scene's box.
-struct Entry {
-    entered: EnteredRay,
-    line: Line,
-    slack: Slack,
+/// A ray that starts where it enters a box of spheres.
+pub(crate) struct Entry {
+    pub(crate) line: Line,
+    pub(crate) slack: Slack,
+    /// The distance at which the ray enters the box.
+    pub(crate) enter: Interval,
+    /// Whether the device may find that the ray hits the box, and whether it may find that it does not.
+    pub(crate) may_hit_box: bool,
+    pub(crate) may_miss_box: bool,
 }
 
 impl Entry {
-    /// `distance` is the distance from the origin to the scene's box, if it was recorded.
+    /// A ray of a path. `distance` is the distance from the origin to the scene's box, if it was recorded.
     fn new(
         model: &CameraModel,
         origin: [f32; 3],
         direction: [f32; 3],
         distance: Option<f32>,
     ) -> Self {
-        let line = Line::new(origin, direction);
-        let entered = CameraRay::exact(line).entered(model, line.direction);
-        let enter = match distance {
-            Some(distance) => Interval::around(distance.into(), 0.0),
-            None => entered.enter,
-        };
-        if enter.high == 0.0 {
-            return Self { entered, line, slack: Slack::default() };
+        let mut line = Line::new(origin, direction);
+        let EnteredRay { enter, may_hit_box, may_miss_box, .. } =
+            CameraRay::exact(line).entered(model, line.direction);
+        let mut slack = Slack::default();
+        let from = distance.map_or(enter, |distance| Interval::around(distance.into(), 0.0));
+        if from.high != 0.0 {
+            let middle = 0.5 * (from.low + from.high);
+            let along = middle * line.direction;
+            let rounded =
+                PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
+            let across = rounded.length();
+            slack = Slack { across, along: across + from.high - middle, direction: 0.0 };
+            line = Line::exact(line.origin + along, line.direction);
         }
-        let middle = 0.5 * (enter.low + enter.high);
-        let along = middle * line.direction;
-        let rounded =
-            PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
-        let across = rounded.length();
-        let slack = Slack { across, along: across + enter.high - middle, direction: 0.0 };
-        Self { entered, line: Line::exact(line.origin + along, line.direction), slack }
+        Self { line, slack, enter, may_hit_box, may_miss_box }
+    }
+
+    /// Whether spheres hide a light at a distance from the ray's origin.
+    pub(crate) fn hidden(
+        &self,
+        candidates: &Candidates,
+        distance: Number,
+        is_exempt: impl Fn(&Candidate) -> bool,
+    ) -> Hidden {
+        let Self { line, slack, enter, may_hit_box, may_miss_box } = self;
+        let rest = (distance - Number::between(enter.low, enter.high)).interval();
+        let mut found = Hidden::NEVER;
+        if !may_hit_box || rest.high <= 0.0 {
+            return found;
+        }
+        candidates.visit(line, slack.across + slack.along, rest.high, |candidate| {
+            if is_exempt(candidate) {
+                return rest.high;
+            }
+            if let Some((hit, may_miss)) = legal_hit(candidate, line, *slack) {
+                let may = hit.lowest() < rest.high;
+                let must = !may_miss && hit.highest() < rest.low;
+                found.may |= may;
+                found.must |= must;
+                if may && !must {
+                    found.doubts.add(candidate, line, may_miss);
+                }
+            }
+            // A certain answer ends the search.
+            if found.must { -1.0 } else { rest.high }
+        });
+        found.must &= !may_miss_box && rest.low > 0.0;
+        found
+    }
+}
+
+/// Whether light may be hidden, and whether it must be.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Hidden {
+    pub(crate) may: bool,
+    pub(crate) must: bool,
+    /// The spheres that may hide it and need not.
+    pub(crate) doubts: Doubts,
+}
+
+impl Hidden {
+    pub(crate) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
+    pub(crate) const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
+
+    /// The answers to several questions of which one is asked.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            may: self.may || other.may,
+            must: self.must && other.must,
+            doubts: self.doubts.and(other.doubts),
+        }
     }
 }
 
@@ -67,19 +119,15 @@ pub(crate) fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
     Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
 
-fn four(state: &PathState, which: usize) -> [f32; 4] {
-    state.slots[which].map(f32::from_bits)
-}
-
-/// Judges the nearest hit of a ray; returns whether several answers are legal. `last` is the previous hit of the path.
+/// Judges the nearest hit of a ray. `last` is the previous hit of the path.
 pub(crate) fn check_hit(
-    Searched { model, scene, candidates }: Searched<'_>,
+    LitCheck { checker: Checker { scene, candidates }, model, .. }: &LitCheck<'_>,
     state: &PathState,
     last: Option<Hit>,
     found: Hit,
-    expected: &mut Expected,
     legal: &mut LegalHits,
-) -> Result<bool, Mismatch> {
+) -> Result<Judged, Mismatch> {
+    let mut expected = Expected::default();
     let Hit { t, id, distance, .. } = found;
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
@@ -93,10 +141,10 @@ pub(crate) fn check_hit(
         legal.miss = false;
         legal.limit = far_side;
     }
-    if entry.entered.may_hit_box {
+    if entry.may_hit_box {
         let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
         legal.find_nearer(candidates, &entry.line, entry.slack, is_departed);
-        legal.miss |= entry.entered.may_miss_box && own.is_none();
+        legal.miss |= entry.may_miss_box && own.is_none();
     }
     if let Some((Hit { id, .. }, sphere)) = own
         && far_side <= legal.limit
@@ -105,13 +153,13 @@ pub(crate) fn check_hit(
         legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
     }
     let is_open = legal.count() > 1;
-    let fail = |what, words| Err(expected.fail(STAGE, what, words));
+    let fail = |what, words: String| Err(expected.fail((STAGE, what), words));
     if id == NO_ID {
         if !legal.miss {
             return fail("a miss", format!("legal is {legal}"));
         }
         return if t.to_bits() == NO_HIT.to_bits() {
-            Ok(is_open)
+            Ok(searched(is_open, || legal.alternatives()))
         } else {
             fail("the distance of a miss", format!("{t:?}; legal is {NO_HIT:?}"))
         };
@@ -119,7 +167,7 @@ pub(crate) fn check_hit(
     if !legal.allows(id, t.into()) {
         return fail("the hit", format!("sphere {id} at {t:?}; legal is {legal}"));
     }
-    let Interval { low, high } = entry.entered.enter;
+    let Interval { low, high } = entry.enter;
     let enter = match own {
         Some((last, _)) if last.id == id => {
             expected.bits((STAGE, "the hit's shape index"), found.shape_index, last.shape_index)?;
@@ -128,69 +176,44 @@ pub(crate) fn check_hit(
         _ => Number::between(low, high),
     };
     expected.number((STAGE, "where the ray enters the scene's box"), distance, enter)?;
-    Ok(is_open)
+    Ok(searched(is_open, || legal.alternatives()))
 }
 
-/// Whether a sphere may hide a light at this distance, and whether it must.
-pub(crate) fn hides(hit: &LegalHit, may_miss: bool, light: Interval) -> (bool, bool) {
-    (hit.lowest() < light.high, !may_miss && hit.highest() < light.low)
-}
+pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
 
-/// Judges the occlusion of a light; if both answers are legal, returns why. `sphere_of_light` is the emitter, if the
-/// light is one.
+/// Judges the occlusion of a light.
 pub(crate) fn check_open(
-    Searched { model, scene, candidates }: Searched<'_>,
+    LitCheck { checker: Checker { scene, candidates }, model, inputs, .. }: &LitCheck<'_>,
     state: &PathState,
-    sphere_of_light: Option<[f32; 4]>,
     open: f32,
-    expected: &mut Expected,
-) -> Result<Option<Doubts>, Mismatch> {
-    const OPEN: (LitStage, &str) = (LitStage::Occlude, "the visibility of the light");
+) -> Result<Judged, Mismatch> {
+    let mut expected = Expected::default();
     let before = state.number(slot::PENDING);
-    let [x, y, z, distance] = four(state, slot::SHADOW);
+    let [x, y, z, distance] = state.slots[slot::SHADOW].map(f32::from_bits);
     let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
-    let Interval { low, high } = entry.entered.enter;
-    let rest = (Number::recorded(distance) - Number::between(low, high)).interval();
-    let (mut may_be_hidden, mut must_be_hidden) = (false, false);
-    let mut doubts = Doubts::NONE;
-    let departure = state.departure();
-    let is_exempt = |sphere: [f32; 4]| {
-        let departed = scene.spheres().get(departure.id as usize);
-        let own = departed.is_some_and(|own| is_same(sphere, *own));
-        own || sphere_of_light.is_some_and(|own| is_same(sphere, own))
-    };
-    if entry.entered.may_hit_box && rest.high > 0.0 {
-        let moved = entry.slack.across + entry.slack.along;
-        candidates.visit(&entry.line, moved, rest.high, |candidate| {
-            if is_exempt(candidate.sphere) {
-                return rest.high;
-            }
-            if let Some((hit, may_miss)) = legal_hit(candidate, &entry.line, entry.slack) {
-                let (may, must) = hides(&hit, may_miss, rest);
-                may_be_hidden |= may;
-                must_be_hidden |= must;
-                if may && !must {
-                    doubts.add(candidate, &entry.line, may_miss);
-                }
-            }
-            // A certain answer ends the search.
-            if must_be_hidden { -1.0 } else { rest.high }
-        });
-    }
-    must_be_hidden &= !entry.entered.may_miss_box && rest.low > 0.0;
+    let departed = scene.spheres().get(state.departure().id as usize).copied();
+    let emitter = state.departure().emitter;
+    let sphere_of_light = (emitter != NO_EMITTER)
+        .then(|| inputs.emitters.get((emitter as usize).saturating_mul(3)))
+        .flatten()
+        .map(|sphere| sphere.map(f32::from_bits));
+    let exempt = [departed, sphere_of_light];
+    let hidden = entry.hidden(candidates, Number::recorded(distance), |candidate| {
+        exempt.into_iter().flatten().any(|own| is_same(candidate.sphere, own))
+    });
     let is_hidden = open == 0.0;
-    if (is_hidden && !may_be_hidden) || (!is_hidden && must_be_hidden) {
+    if (is_hidden && !hidden.may) || (!is_hidden && hidden.must) {
         let words = if is_hidden {
             "occluded, but no surface is in between"
         } else {
             "visible, but a surface is in between"
         };
-        return Err(expected.fail(LitStage::Occlude, OPEN.1, words.to_owned()));
+        return Err(expected.fail(OPEN, words));
     }
     if !is_hidden {
         expected.bits(OPEN, open.to_bits(), before.to_bits())?;
     }
-    Ok((may_be_hidden && !must_be_hidden).then_some(doubts))
+    Ok(searched(hidden.may && !hidden.must, || hidden.doubts.alternatives()))
 }
 
 /// The largest number of alternatives that are named.

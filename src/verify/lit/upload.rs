@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use glam::Vec4;
+use glam::{DVec3, Vec4};
 
 use crate::geometry::math::{unit, wide};
 use crate::image::color::{LinearRgb, luminance};
@@ -32,14 +32,16 @@ pub(crate) fn check(
     check_tables(scene, inputs)
 }
 
-/// The error for a parameter of the lighting.
 fn wrong(what: &str) -> UploadError {
     UploadError(format!("{what} on the device differs from the settings"))
 }
 
-/// The error for an entry of the tables.
 fn wrong_entry(what: &str, index: usize) -> UploadError {
     UploadError(format!("{what} {index} on the device differs from the scene and the settings"))
+}
+
+fn is_color(found: [f32; 3], asked: LinearRgb) -> bool {
+    are_near(found, asked.to_array().map(f64::from))
 }
 
 fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
@@ -73,14 +75,11 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
         });
         is_point
             && are_near(lighting.ground_normal, normal)
-            && are_near(lighting.ground_color, ground.color.to_array().map(f64::from))
+            && is_color(lighting.ground_color, ground.color)
     });
     let filter = settings.sampling.filter.offset_table();
     let all = [
-        (
-            "the background",
-            are_near(lighting.background, settings.background.to_array().map(f64::from)),
-        ),
+        ("the background", is_color(lighting.background, settings.background)),
         ("the set of flags", lighting.flags == expected_flags),
         ("the seed", lighting.seed == settings.sampling.seed),
         ("the ground", is_ground),
@@ -109,8 +108,6 @@ fn check_path(path: &PathTracing, inputs: &LitInputs) -> Result<(), UploadError>
 
 fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { lighting, .. } = inputs;
-    let is_color =
-        |found: [f32; 3], asked: LinearRgb| are_near(found, asked.to_array().map(f64::from));
     let is_occlusion = match &studio.occlusion {
         None => lighting.occlusion_samples == 0,
         Some(Occlusion { radius, samples }) => {
@@ -175,7 +172,6 @@ fn is_sky(settings: &RenderSettings, lighting: &UploadedLighting, inputs: &LitIn
     }
 }
 
-/// The tables on the device.
 struct Tables<'a> {
     words: &'a [[u32; 4]],
     lighting: &'a UploadedLighting,
@@ -240,11 +236,9 @@ fn check_lights(
         let [position, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
         let size = tables.numbers(3 * index + 1)[3];
         let is_kind = tables.words(3 * index)[3] == codes::of_light(&light);
-        let near = |color: crate::image::color::LinearRgb| {
-            are_near(power, color.to_array().map(f64::from))
-        };
+        let near = |color: LinearRgb| is_color(power, color);
         // The rounding error of f64 if large numbers cancel.
-        let is_at = |point: glam::DVec3| {
+        let is_at = |point: DVec3| {
             let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
             (0..3).all(|axis| {
                 let off = f64::from(position[axis]) - exact[axis];

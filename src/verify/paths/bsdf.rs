@@ -1,6 +1,7 @@
 //! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl` and
 //! `scatter_light.wgsl`.
 
+use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, LAMBERT};
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::sampling::{
     ENERGIES, Material, cosine_direction, ggx_lambda, mirrors_brdf, pi, reflected_density,
@@ -49,7 +50,7 @@ impl Kernel<'_> {
     ) -> Reflection {
         let none = Reflection { value: Vector::ZERO, density: Number::ZERO };
         let (along, back) = (toward.0[2].fence(), out.0[2].fence());
-        if !material.is_lambert() && !material.is_metal() {
+        if material.kind != LAMBERT && material.kind != CONDUCTOR {
             return none;
         }
         if !self.choices.decide(along.is_above_zero()) || !self.choices.decide(back.is_above_zero())
@@ -60,7 +61,7 @@ impl Kernel<'_> {
         let along = along.max(Number::ZERO);
         let [out, toward] = [(out, back.max(Number::ZERO)), (toward, along)]
             .map(|(Vector([x, y, _]), z)| Vector([x, y, z]));
-        let is_metal = material.is_metal();
+        let is_metal = material.kind == CONDUCTOR;
         let share = if is_metal { Number::ONE } else { material.parameter };
         let matt = (Number::ONE - share) * along / pi();
         if share.is_zero() {
@@ -82,7 +83,7 @@ impl Kernel<'_> {
     pub(crate) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
         let color = Vector::recorded(at.vertex.color);
         let Surface { material, out, .. } = at;
-        if material.is_dielectric() {
+        if material.kind == DIELECTRIC {
             return self.scatter_dielectric(at, lobe, u);
         }
         if self.is_matt {
@@ -90,7 +91,7 @@ impl Kernel<'_> {
             let density = direction.0[2] / pi();
             return Scattered { direction, weight: color, density };
         }
-        let is_metal = material.is_metal();
+        let is_metal = material.kind == CONDUCTOR;
         if !is_metal && lobe.is_less(material.parameter) != Some(true) {
             let direction = cosine_direction(u);
             let r = self.reflect_toward(material, color, *out, direction);

@@ -1,10 +1,10 @@
 //! The check of the shading kernel, number by number: from its input to its legal output. The WGSL twins are
 //! `shaders/path/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
 
-use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
+use crate::light::codes::material::{DIELECTRIC, EMISSIVE};
 use crate::verify::lit::certificate::{Address, LitStage};
-use crate::verify::lit::judge::Mismatch;
+use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, Vertex, unit};
 use crate::verify::lit::recording::{PathState, flag, slot};
 use crate::verify::lit::sampling::{Axes, Material, axes_around};
@@ -19,9 +19,6 @@ pub(crate) struct Surface {
     /// The direction back along the arriving ray, in the tangent frame.
     pub(crate) out: Vector,
 }
-
-/// The stage and the name of a number, for reports.
-type Name = (LitStage, &'static str);
 
 const ORIGIN: Name = (LitStage::Vertex, "the origin of the next ray");
 const DIRECTION: Name = (LitStage::Scatter, "the direction of the next ray");
@@ -40,18 +37,17 @@ const FIRST: Name = (LitStage::Vertex, "the first surface's color");
 
 impl Kernel<'_> {
     pub(crate) fn pair(&self, number: u32) -> [u32; 2] {
-        let Address { pixel, sample, surface } = self.address;
-        pair(pixel_seed(pixel, self.lighting().seed), sample, number + 8 * surface)
+        let Address { sample, surface, .. } = self.address;
+        self.numbers(sample, number + 8 * surface)
     }
 
     pub(crate) fn is_last(&self) -> bool {
         self.address.surface >= self.inputs.max_surfaces
     }
 
-    /// Follows the kernel, and compares its output.
     pub(crate) fn follow(&mut self) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
-        let radiance_so_far = self.radiance_so_far();
+        let radiance_so_far = radiance_so_far(before);
         let alpha = before.number(slot::RADIANCE);
         let through = Vector::recorded(before.vector(slot::THROUGHPUT));
         let Some(vertex) = self.vertex()? else {
@@ -77,7 +73,7 @@ impl Kernel<'_> {
             self.expected.same(FIRST, [before, after], slot::FIRST)?;
         }
         let material = self.material_of(&vertex);
-        if material.is_emissive() {
+        if material.kind == EMISSIVE {
             let density = self.density_of_hit_emitter(self.hit.id, before.vector(slot::ORIGIN));
             let weight = self.weight_of_hit_light(density);
             let light = Vector::recorded(vertex.color) * material.parameter * weight;
@@ -121,11 +117,6 @@ impl Kernel<'_> {
             Number::ZERO
         };
         self.expected.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
-    }
-
-    /// The radiance of the path so far, including the pending light if it is not occluded.
-    fn radiance_so_far(&self) -> Vector {
-        radiance_so_far(self.before)
     }
 
     pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
@@ -182,7 +173,7 @@ impl Kernel<'_> {
         self.compare_radiance(radiance_so_far, Number::recorded(before.number(slot::RADIANCE)))?;
         self.same(&[slot::FIRST])?;
         // Glass ends at its far side, even if the path passes through that side.
-        if at.is_back && self.material_of(at).is_dielectric() {
+        if at.is_back && self.material_of(at).kind == DIELECTRIC {
             self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), Vector::ZERO)?;
         } else {
             self.same(&[slot::MEDIUM])?;
@@ -226,7 +217,7 @@ impl Kernel<'_> {
         let carried = carried.map(|c| c / divisor);
         self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
 
-        let is_glass = at.material.is_dielectric();
+        let is_glass = at.material.kind == DIELECTRIC;
         let medium = if is_glass && is_behind {
             if at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
         } else {

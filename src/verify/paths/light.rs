@@ -3,9 +3,10 @@
 
 use crate::camera::sampling;
 use crate::light::codes::lamp::{DIRECTIONAL, HEAD};
+use crate::light::codes::material::DIELECTRIC;
 use crate::light::codes::sampling::{CHANCE, MULTIPLE};
 use crate::verify::lit::certificate::LitStage;
-use crate::verify::lit::judge::Mismatch;
+use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, unit};
 use crate::verify::lit::recording::{NO_EMITTER, UploadedSky, flag, slot};
 use crate::verify::lit::sampling::{Lamp, axes_around, cone_direction, cone_of_sphere, pi};
@@ -32,14 +33,14 @@ struct Emitter {
     radiance: Vector,
 }
 
-const DIRECTION: (LitStage, &str) = (LitStage::Light, "the direction towards the light");
-const DISTANCE: (LitStage, &str) = (LitStage::Light, "the distance to the light");
-const EMITTER: (LitStage, &str) = (LitStage::Light, "the sampled emitter");
+const DIRECTION: Name = (LitStage::Light, "the direction towards the light");
+const DISTANCE: Name = (LitStage::Light, "the distance to the light");
+const EMITTER: Name = (LitStage::Light, "the sampled emitter");
 
 impl Kernel<'_> {
     /// The light of lights at the eye, which reaches only surfaces that the camera sees.
     pub(crate) fn head_light(&mut self, at: &Surface, is_seen: bool) -> Vector {
-        if !is_seen || at.material.is_dielectric() {
+        if !is_seen || at.material.kind == DIELECTRIC {
             return Vector::ZERO;
         }
         let sum = (0..self.lighting().light_count)
@@ -137,12 +138,6 @@ impl Kernel<'_> {
         LightSample { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
 
-    /// The direction towards a light, narrowed to the fenced direction in the recorded state if that is legal.
-    fn narrowed_direction(&self, direction: Vector) -> Vector {
-        let recorded = Vector::recorded(self.after.vector(slot::SHADOW));
-        direction.zip(recorded, Number::narrowed)
-    }
-
     fn emitter(&self, index: u32) -> Emitter {
         let at = index.saturating_mul(3);
         let numbers = |at: u32| self.emitter_words(at).map(f32::from_bits);
@@ -200,29 +195,21 @@ impl Kernel<'_> {
         let k = cone_of_sphere(radius, length.max(radius));
         let axis = toward.fence().map(|c| c / length);
         let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
-        let direction = self.narrowed_direction(direction);
+        // Narrowed to the fenced direction in the recorded state if that is legal.
+        let recorded = Vector::recorded(self.after.vector(slot::SHADOW));
+        let direction = direction.zip(recorded, Number::narrowed);
         let middle = toward.dot(direction);
         let foot = toward - direction * middle;
         let chord = (radius.squared() - foot.squared()).max(Number::ZERO).sqrt();
         let distance = (middle - chord).max(Number::ZERO);
-        let radiance = if density.is_zero() {
-            Vector::ZERO
-        } else {
-            let divisor = density.max(Number::constant(1e-30));
-            found.radiance.map(|c| c / divisor)
-        };
+        let radiance = per_density(density, || found.radiance);
         LightSample { direction, distance, density, radiance, emitter }
     }
 
     fn sample_sky_light(&mut self, u: [u32; 2]) -> LightSample {
         let (direction, density) = self.sample_sky(u);
         let density = density / self.sources();
-        let divisor = density.max(Number::constant(1e-30));
-        let radiance = if density.is_zero() {
-            Vector::ZERO
-        } else {
-            self.sky_radiance(direction).map(|c| c / divisor)
-        };
+        let radiance = per_density(density, || self.sky_radiance(direction));
         let distance = Number::known(NO_HIT.into());
         LightSample { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
@@ -241,6 +228,15 @@ impl Kernel<'_> {
         let scattered = Number::recorded(self.before.number(slot::DIRECTION));
         scattered / (scattered + light_density).max(Number::constant(1e-30))
     }
+}
+
+/// Radiance divided by the density of its direction.
+fn per_density(density: Number, radiance: impl FnOnce() -> Vector) -> Vector {
+    if density.is_zero() {
+        return Vector::ZERO;
+    }
+    let divisor = density.max(Number::constant(1e-30));
+    radiance().map(|c| c / divisor)
 }
 
 impl Kernel<'_> {

@@ -137,7 +137,7 @@ fn text<'a>(header: &'a Metadata, key: &str) -> Option<&'a str> {
 }
 
 pub(super) fn contradiction(message: impl Into<String>) -> RunFileError {
-    RunFileError::Contents { message: message.into() }
+    RunFileError::Contents(message.into())
 }
 
 impl<'a> Container<'a> {
@@ -173,7 +173,7 @@ impl<'a> Container<'a> {
         match text(&parsed, FORMAT) {
             None => return Err(RunFileError::NotRun),
             Some(VERSION) => {}
-            Some(other) => return Err(RunFileError::Version { found: shortened(other) }),
+            Some(other) => return Err(RunFileError::Version(shortened(other))),
         }
         let (promised, arrays) = (parsed.data_len() as u64, beyond - header_length);
         if promised > arrays {
@@ -264,6 +264,15 @@ impl<'a> Container<'a> {
         Ok(items)
     }
 
+    /// The items of a list of any length; see [`Container::items`].
+    pub(super) fn list<E: Number, const N: usize>(
+        &self,
+        name: &str,
+    ) -> Result<Vec<[E; N]>, RunFileError> {
+        let count = self.shape(name)?.first().copied().unwrap_or_default();
+        self.items(name, &[count])
+    }
+
     /// The items of an array with one number each; see [`Container::items`].
     pub(super) fn numbers<E: Number>(
         &self,
@@ -336,12 +345,13 @@ pub(super) struct Array<'a> {
 
 impl<'a> Array<'a> {
     /// An array with `N` numbers for each item; `shape` is the shape of the items.
-    pub(super) fn new<T, E: Number, const N: usize>(
+    pub(super) fn new<T: Clone + 'a, E: Number, const N: usize>(
         name: &'static str,
         shape: &[usize],
-        items: &'a [T],
+        items: impl Into<Cow<'a, [T]>>,
         numbers: impl Fn(&T) -> [E; N] + 'a,
     ) -> Self {
+        let items = items.into();
         let emit = move |sink: &mut Sink<'_>| {
             items.chunks(CHUNK).try_for_each(|chunk| {
                 let chunk: Vec<[E; N]> = chunk.iter().map(&numbers).collect();
@@ -351,6 +361,16 @@ impl<'a> Array<'a> {
         let columns = (N > 1).then_some(N);
         let shape = shape.iter().copied().chain(columns).collect();
         Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
+    }
+
+    /// An array with so many items as a list has; see [`Array::new`].
+    pub(super) fn list<T: Clone + 'a, E: Number, const N: usize>(
+        name: &'static str,
+        items: impl Into<Cow<'a, [T]>>,
+        numbers: impl Fn(&T) -> [E; N] + 'a,
+    ) -> Self {
+        let items = items.into();
+        Self::new(name, &[items.len()], items, numbers)
     }
 
     /// An array whose bytes a function writes.
@@ -364,10 +384,9 @@ impl<'a> Array<'a> {
 
     /// The array of spheres, which is also the input of the scene's digest.
     pub(super) fn spheres(scene: &'a Scene) -> Self {
-        Self::new("spheres", &[scene.len()], scene.spheres(), |sphere| *sphere)
+        Self::list("spheres", scene.spheres(), |sphere| *sphere)
     }
 
-    /// The number of bytes of the array.
     pub(super) fn bytes(&self) -> usize {
         self.shape.iter().product::<usize>() * self.dtype.bitsize() / 8
     }

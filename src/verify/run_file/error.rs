@@ -22,29 +22,20 @@ pub enum RunFileError {
     },
     /// The file has another version of the format.
     #[error(
-        "run file of version {found}; this program reads version {VERSION}; record it again with `verify --save`"
+        "run file of version {0}; this program reads version {VERSION}; record it again with `verify --save`"
     )]
-    Version {
-        /// The version of the file.
-        found: String,
-    },
+    Version(String),
     /// The file cannot be read.
-    #[error("the run file cannot be read: {message}")]
-    Unreadable {
-        /// What the system says.
-        message: String,
-    },
+    #[error("the run file cannot be read: {0}")]
+    Unreadable(String),
     /// The file is not what was written.
     #[error(
         "the run file was altered after it was written: its SHA-256 digest does not match; copy it again"
     )]
     Altered,
     /// The file is unaltered, but its contents are not valid.
-    #[error("the run file contradicts itself: {message}")]
-    Contents {
-        /// What is wrong, and where.
-        message: String,
-    },
+    #[error("the run file contradicts itself: {0}")]
+    Contents(String),
     /// There is not enough memory.
     #[error("there is not enough memory for the run's {name}, which need {bytes} bytes")]
     Memory {
@@ -57,7 +48,7 @@ pub enum RunFileError {
 
 impl From<std::io::Error> for RunFileError {
     fn from(error: std::io::Error) -> Self {
-        Self::Unreadable { message: error.to_string() }
+        Self::Unreadable(error.to_string())
     }
 }
 

@@ -59,77 +59,50 @@ struct Given {
     lighting: UploadedLighting,
 }
 
-/// The arrays that are computed from a [`LitInputs`].
-pub(super) struct LitArrays<'a> {
+/// Adds the arrays and texts of what a device was given to those of a file.
+pub(super) fn add<'a>(
     given: &'a LitInputs,
-    view: [[f32; 3]; 7],
-    /// The image of the sky, and whether the device had another.
-    sky: Option<(&'a Environment, &'a UploadedSky, bool)>,
-}
-
-impl<'a> LitArrays<'a> {
-    pub(super) fn new(given: &'a LitInputs) -> Self {
-        let sky = match (&given.settings.sky.light, &given.sky) {
-            (SkyLight::Image { environment, .. }, Some(sky)) => {
-                let shares = environment.rows().iter().chain(environment.columns());
-                let is_other = sky.texels != environment.texels() || !sky.shares.iter().eq(shares);
-                Some((&**environment, sky, is_other))
-            }
-            _ => None,
-        };
-        Self { given, view: view_numbers(&given.uploaded), sky }
+    arrays: &mut Vec<Array<'a>>,
+    texts: &mut BTreeMap<String, String>,
+) -> io::Result<()> {
+    let LitInputs { settings, occluders, lighting, tables, emitters, .. } = given;
+    let mut requested = Requested { settings: settings.clone(), sky_image: None };
+    if let SkyLight::Image { strength, rotation, .. } = settings.sky.light {
+        requested.settings.sky.light = SkyLight::Constant(LinearRgb::BLACK);
+        requested.sky_image = Some(SkyImage { strength, rotation });
     }
-
-    /// Adds the arrays and texts to those of a file.
-    pub(super) fn add_to<'b>(
-        &'b self,
-        arrays: &mut Vec<Array<'b>>,
-        texts: &mut BTreeMap<String, String>,
-    ) -> io::Result<()> {
-        let LitInputs { settings, uploaded, occluders, lighting, tables, emitters, .. } =
-            self.given;
-        let mut settings = settings.clone();
-        let sky_image = match settings.sky.light {
-            SkyLight::Image { strength, rotation, .. } => {
-                settings.sky.light = SkyLight::Constant(LinearRgb::BLACK);
-                Some(SkyImage { strength, rotation })
-            }
-            SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
-        };
-        let requested = Requested { settings, sky_image };
-        let max_surfaces = self.given.max_surfaces;
-        let given = Given { max_surfaces, lighting: lighting.clone() };
-        texts.insert(SETTINGS.to_owned(), serde_json::to_string(&requested)?);
-        texts.insert(GIVEN.to_owned(), serde_json::to_string(&given)?);
-        arrays.extend([
-            Array::new("lit_view", &[7], &self.view, |vector| *vector),
-            Array::new("lit_advance", &[1], std::slice::from_ref(&uploaded.advance), |x| [*x]),
-            Array::new("occluders", &[2], occluders, |corner| *corner),
-            Array::new("tables", &[tables.len()], tables, |four| *four),
-            Array::new("emitters", &[emitters.len()], emitters, |four| *four),
-        ]);
-        if let Some((environment, uploaded, is_other)) = self.sky {
-            let shape = [environment.height(), environment.width()].map(|side| side as usize);
-            arrays.push(Array::new("sky_texels", &shape, environment.texels(), |texel| *texel));
-            if is_other {
-                let UploadedSky { texels, shares } = uploaded;
-                arrays.extend([
-                    Array::new("sky_uploaded", &[texels.len()], texels, |texel| *texel),
-                    Array::new("sky_shares", &[shares.len()], shares, |share| [*share]),
-                ]);
-            }
+    let on_device = Given { max_surfaces: given.max_surfaces, lighting: lighting.clone() };
+    texts.insert(SETTINGS.to_owned(), serde_json::to_string(&requested)?);
+    texts.insert(GIVEN.to_owned(), serde_json::to_string(&on_device)?);
+    arrays.extend(view_arrays(&given.uploaded, ["lit_view", "lit_advance"]));
+    arrays.extend([
+        Array::list("occluders", occluders, |corner| *corner),
+        Array::list("tables", tables, |four| *four),
+        Array::list("emitters", emitters, |four| *four),
+    ]);
+    if let (SkyLight::Image { environment, .. }, Some(UploadedSky { texels, shares })) =
+        (&settings.sky.light, &given.sky)
+    {
+        let shape = [environment.height(), environment.width()].map(|side| side as usize);
+        arrays.push(Array::new("sky_texels", &shape, environment.texels(), |texel| *texel));
+        let tables = environment.rows().iter().chain(environment.columns());
+        if texels != environment.texels() || !shares.iter().eq(tables) {
+            arrays.extend([
+                Array::list("sky_uploaded", texels, |texel| *texel),
+                Array::list("sky_shares", shares, |share| [*share]),
+            ]);
         }
-        let emit = |name: &str, digest: &mut Sha256| {
-            let array = arrays.iter().find(|array| array.name == name);
-            array
-                .map(|array| array.emit(&mut sink_into(digest)))
-                .transpose()
-                .map(|found| found.is_some())
-        };
-        let digest = request(texts, emit)?;
-        texts.insert(REQUEST.to_owned(), digest);
-        Ok(())
     }
+    let emit = |name: &str, digest: &mut Sha256| {
+        let array = arrays.iter().find(|array| array.name == name);
+        array
+            .map(|array| array.emit(&mut sink_into(digest)))
+            .transpose()
+            .map(|found| found.is_some())
+    };
+    let digest = request(texts, emit)?;
+    texts.insert(REQUEST.to_owned(), digest);
+    Ok(())
 }
 
 /// The digest of what was requested. `emit` adds the bytes of an array, and says whether there is one.
@@ -152,11 +125,17 @@ fn request<E>(
     Ok(hex(all))
 }
 
-/// The vectors of a view as they are stored.
-pub(super) fn view_numbers(view: &UploadedView) -> [[f32; 3]; 7] {
-    let UploadedView { origin, advance: _, right, up, forward, numbers, scene_min, scene_max } =
-        *view;
-    [origin, right, up, forward, numbers, scene_min, scene_max]
+/// The arrays of a view with these names.
+pub(super) fn view_arrays<'a>(
+    view: &UploadedView,
+    [name, advance]: [&'static str; 2],
+) -> [Array<'a>; 2] {
+    let UploadedView { origin, right, up, forward, numbers, scene_min, scene_max, .. } = *view;
+    let vectors = vec![origin, right, up, forward, numbers, scene_min, scene_max];
+    [
+        Array::list(name, vectors, |vector| *vector),
+        Array::list(advance, vec![view.advance], |advance| [*advance]),
+    ]
 }
 
 /// Reads a view from the arrays with these names.
@@ -187,18 +166,16 @@ pub(super) fn read(
             "the light is not that of this scene and these settings: `request_sha256` is not their digest",
         ));
     }
-    let length = |name| file.shape(name).map(|shape| shape.first().copied().unwrap_or_default());
     let Requested { mut settings, sky_image } = json(file, SETTINGS)?;
     if let Some(SkyImage { strength, rotation }) = sky_image {
         settings.sky.light = SkyLight::Image { environment: sky(file)?, strength, rotation };
     }
     let Given { max_surfaces, lighting } = json(file, GIVEN)?;
-    let words = |name| file.items::<u32, 4>(name, &[length(name)?]);
     let uploaded_sky = match &settings.sky.light {
         SkyLight::Image { environment, .. } => Some(if file.has("sky_uploaded") {
             UploadedSky {
-                texels: file.items("sky_uploaded", &[length("sky_uploaded")?])?,
-                shares: file.numbers("sky_shares", &[length("sky_shares")?])?,
+                texels: file.list("sky_uploaded")?,
+                shares: file.list::<f32, 1>("sky_shares")?.into_flattened(),
             }
         } else {
             let shares = environment.rows().iter().chain(environment.columns());
@@ -216,8 +193,8 @@ pub(super) fn read(
         settings,
         max_surfaces,
         lighting,
-        tables: words("tables")?,
-        emitters: words("emitters")?,
+        tables: file.list("tables")?,
+        emitters: file.list("emitters")?,
         sky: uploaded_sky,
     })
 }

@@ -4,11 +4,9 @@
 use std::cell::RefCell;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use crate::render::Integrator;
 use crate::scene::Scene;
 use crate::verify::lit::recording::{
-    BITS, LitInputs, LitRecording, LitSurface, PathState, RecordedFilm, RecordedSurface,
-    RectangleRecording, RectangleSample, StudioLight, StudioSurface, UploadedLighting,
+    LitInputs, LitRecording, PathState, RecordedFilm, RecordedSample, RecordedSurface, StudioLight,
 };
 use crate::verify::recording::Recording;
 use crate::verify::run_file::container::{Array, Container, contradiction, in_pieces};
@@ -55,44 +53,7 @@ impl LitSamples {
     /// # Errors
     /// Returns an error if the samples cannot be kept, if they are of different pictures, too many or too large, or if
     /// a list does not have the size of the rectangle.
-    pub fn add(&mut self, recording: LitRecording<'_>) -> io::Result<()> {
-        match recording {
-            LitRecording::Paths(paths) => {
-                self.add_samples(paths, 0, |samples, surfaces, [count, pixels]| {
-                    let open = surfaces.iter().flat_map(|surface| &surface.open);
-                    samples.keep("open", &[count, pixels], open.copied())
-                })
-            }
-            LitRecording::Studio(studio) => {
-                let UploadedLighting { light_count, occlusion_samples, .. } = studio.given.lighting;
-                let batches = light_count.div_ceil(BITS) + occlusion_samples.div_ceil(BITS);
-                let batches = batches as usize;
-                self.add_samples(studio, batches, |samples, surfaces, [count, pixels]| {
-                    let lights = || {
-                        surfaces
-                            .iter()
-                            .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
-                    };
-                    let batches = if count > 0 { batches } else { 0 };
-                    let shape = [count, batches, pixels];
-                    let hidden = lights().flat_map(|light| &light.hidden).copied();
-                    samples.keep("hidden", &shape, hidden)?;
-                    let radiance = lights().flat_map(|light| light.radiance.as_flattened());
-                    samples.keep("radiance", &[count, batches, pixels, 4], radiance.copied())?;
-                    samples.keep("left", &shape, lights().flat_map(|light| &light.left).copied())
-                })
-            }
-        }
-    }
-
-    /// Adds samples with so many batches of lights for each surface. `keep_light` keeps those of its surfaces, of which it
-    /// is given the number of surfaces and of pixels.
-    fn add_samples<S: LitSurface>(
-        &mut self,
-        recording: &RectangleRecording<S>,
-        batches: usize,
-        keep_light: impl Fn(&mut Self, &[S], [usize; 2]) -> io::Result<()>,
-    ) -> io::Result<()> {
+    pub fn add(&mut self, recording: &LitRecording) -> io::Result<()> {
         let given = &recording.given;
         match &mut self.given {
             Some(known) => {
@@ -104,34 +65,46 @@ impl LitSamples {
             None => self.given = Some(given.clone()),
         }
         recording.check_size().map_err(io::Error::other)?;
+        let batches = if given.is_studio() { given.batches().iter().sum() } else { 0 };
         let ([x, y], [width, height]) = (given.origin, given.size);
-        for RectangleSample { sample, start, surfaces, film } in &recording.samples {
+        for RecordedSample { sample, start, surfaces, film } in &recording.samples {
             let (count, pixels) = (surfaces.len(), start.len());
-            self.check(pixels, count, batches)?;
+            if self.count == MAX_SAMPLES {
+                let words = format!("a run file has room for {MAX_SAMPLES} samples");
+                return Err(io::Error::other(words));
+            }
+            let sizes = [pixels, count, batches].map(|size| size as u64);
+            if bytes_in_memory(sizes) > MAX_SAMPLE_BYTES {
+                return Err(io::Error::other("a sample of the light is too large for a run file"));
+            }
             self.keep("place", &[5], [*sample, x, y, width, height].into_iter())?;
             self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
             for (name, sums) in [("before", &film.before), ("after", &film.after)] {
                 self.keep(name, &[pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
             }
-            let hits = surfaces.iter().flat_map(S::hits).flatten().copied();
-            self.keep("hits", &[count, pixels, 4], hits)?;
-            let states = surfaces.iter().flat_map(|surface| words_of(surface.states()));
+            let hits = surfaces.iter().flat_map(|surface| surface.hits.as_flattened());
+            self.keep("hits", &[count, pixels, 4], hits.copied())?;
+            let states = surfaces.iter().flat_map(|surface| words_of(&surface.states));
             self.keep("states", &[count, pixels, PathState::SLOTS, 4], states)?;
-            keep_light(self, surfaces, [count, pixels])?;
+            if given.is_studio() {
+                let lights = || {
+                    surfaces
+                        .iter()
+                        .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
+                };
+                let batches = if count > 0 { batches } else { 0 };
+                let shape = [count, batches, pixels];
+                self.keep("hidden", &shape, lights().flat_map(|light| &light.hidden).copied())?;
+                let radiance = lights().flat_map(|light| light.radiance.as_flattened());
+                self.keep("radiance", &[count, batches, pixels, 4], radiance.copied())?;
+                self.keep("left", &shape, lights().flat_map(|light| &light.left).copied())?;
+            } else {
+                let open = surfaces.iter().flat_map(|surface| &surface.open);
+                self.keep("open", &[count, pixels], open.copied())?;
+            }
             self.count += 1;
         }
         Ok(())
-    }
-
-    fn check(&self, pixels: usize, surfaces: usize, batches: usize) -> io::Result<()> {
-        let bytes = bytes_in_memory([pixels, surfaces, batches].map(|count| count as u64));
-        if self.count == MAX_SAMPLES {
-            Err(io::Error::other(format!("a run file has room for {MAX_SAMPLES} samples")))
-        } else if bytes > MAX_SAMPLE_BYTES {
-            Err(io::Error::other("a sample of the light is too large for a run file"))
-        } else {
-            Ok(())
-        }
     }
 
     /// Writes an array to the end of the spool.
@@ -210,7 +183,7 @@ pub(super) fn each_sample(
     file: &Container<'_>,
     scene: &Scene,
     picture: &Recording,
-    each: &mut dyn FnMut(LitRecording<'_>),
+    each: &mut dyn FnMut(&LitRecording),
 ) -> Result<bool, RunFileError> {
     if !file.has_text(SAMPLES) {
         return Ok(false);
@@ -226,20 +199,10 @@ pub(super) fn each_sample(
     for index in 0..count {
         let sample = Sample { file, index };
         let number = sample.place(&mut given)?;
-        match given.settings.integrator {
-            Integrator::Studio(_) => {
-                let samples = vec![sample.whole(number, &given, sample.studio(&given)?)?];
-                let recording = RectangleRecording { given, samples };
-                each(LitRecording::Studio(&recording));
-                given = recording.given;
-            }
-            Integrator::Path(_) | Integrator::Primary(_) => {
-                let samples = vec![sample.whole(number, &given, sample.paths(&given)?)?];
-                let recording = RectangleRecording { given, samples };
-                each(LitRecording::Paths(&recording));
-                given = recording.given;
-            }
-        }
+        let samples = vec![sample.read(number, &given)?];
+        let recording = LitRecording { given, samples };
+        each(&recording);
+        given = recording.given;
     }
     Ok(true)
 }
@@ -274,19 +237,25 @@ impl Sample<'_, '_> {
         Ok(sample)
     }
 
+    fn words(self, array: &str, shape: &[usize]) -> Result<Vec<u32>, RunFileError> {
+        self.file.numbers(&self.name(array), shape)
+    }
+
+    fn vectors(self, array: &str, shape: &[usize]) -> Result<Vec<[u32; 4]>, RunFileError> {
+        self.file.items(&self.name(array), shape)
+    }
+
     fn states(self, array: &str, shape: &[usize]) -> Result<Vec<PathState>, RunFileError> {
         let shape = [shape, &[PathState::SLOTS]].concat();
-        let slots = self.file.items::<u32, 4>(&self.name(array), &shape)?;
+        let slots = self.vectors(array, &shape)?;
         let (all, _) = slots.as_chunks();
         Ok(all.iter().map(|slots| PathState { slots: *slots }).collect())
     }
 
     fn sums(self, array: &str, count: usize) -> Result<Vec<[[u32; 4]; 3]>, RunFileError> {
-        let sums = self.file.items::<u32, 4>(&self.name(array), &[count, 3])?;
-        Ok(sums.as_chunks().0.to_vec())
+        Ok(self.vectors(array, &[count, 3])?.as_chunks().0.to_vec())
     }
 
-    /// The numbers of surfaces and of pixels of a sample.
     fn shape(self, given: &LitInputs, batches: usize) -> Result<[usize; 2], RunFileError> {
         let shape = self.file.shape(&self.name("hits"))?;
         let surfaces = shape.first().copied().unwrap_or_default();
@@ -297,44 +266,39 @@ impl Sample<'_, '_> {
         Ok([surfaces, given.pixels() as usize])
     }
 
-    /// A sample with its surfaces.
-    fn whole<S>(
-        self,
-        sample: u32,
-        given: &LitInputs,
-        surfaces: Vec<S>,
-    ) -> Result<RectangleSample<S>, RunFileError> {
+    fn read(self, sample: u32, given: &LitInputs) -> Result<RecordedSample, RunFileError> {
         let pixels = given.pixels() as usize;
+        let surfaces = self.surfaces(given)?;
         let start = self.states("start", &[pixels])?;
         let (before, after) = (self.sums("before", pixels)?, self.sums("after", pixels)?);
-        Ok(RectangleSample { sample, start, surfaces, film: RecordedFilm { before, after } })
+        Ok(RecordedSample { sample, start, surfaces, film: RecordedFilm { before, after } })
     }
 
-    fn paths(self, given: &LitInputs) -> Result<Vec<RecordedSurface>, RunFileError> {
-        let Self { file, .. } = self;
-        let shape @ [_, pixels] = self.shape(given, 0)?;
-        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
-        let states = self.states("states", &shape)?;
-        let open = file.numbers::<u32>(&self.name("open"), &shape)?;
-        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).zip(open.chunks(pixels));
-        let surface = |((hits, scattered), open): ((&[_], &[_]), &[_])| RecordedSurface {
-            hits: hits.to_vec(),
-            scattered: scattered.to_vec(),
-            open: open.to_vec(),
+    fn surfaces(self, given: &LitInputs) -> Result<Vec<RecordedSurface>, RunFileError> {
+        let is_studio = given.is_studio();
+        let batches = match is_studio {
+            true => self.file.shape(&self.name("hidden"))?.get(1).copied().unwrap_or_default(),
+            false => 0,
         };
-        Ok(surfaces.map(surface).collect())
-    }
-
-    fn studio(self, given: &LitInputs) -> Result<Vec<StudioSurface>, RunFileError> {
-        let Self { file, .. } = self;
-        let batches = file.shape(&self.name("hidden"))?.get(1).copied().unwrap_or_default();
-        let shape @ [surfaces, pixels] = self.shape(given, batches)?;
-        let hits = file.items::<u32, 4>(&self.name("hits"), &shape)?;
+        let shape @ [count, pixels] = self.shape(given, batches)?;
+        let hits = self.vectors("hits", &shape)?;
         let states = self.states("states", &shape)?;
-        let of_lights = [surfaces, batches, pixels];
-        let hidden = file.numbers::<u32>(&self.name("hidden"), &of_lights)?;
-        let radiance = file.items::<u32, 4>(&self.name("radiance"), &of_lights)?;
-        let left = file.numbers::<u32>(&self.name("left"), &of_lights)?;
+        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).map(|(hits, states)| {
+            let (hits, states) = (hits.to_vec(), states.to_vec());
+            RecordedSurface { hits, states, ..RecordedSurface::default() }
+        });
+        let mut surfaces: Vec<_> = surfaces.collect();
+        if !is_studio {
+            let open = self.words("open", &shape)?;
+            for (surface, open) in surfaces.iter_mut().zip(open.chunks(pixels)) {
+                surface.open = open.to_vec();
+            }
+            return Ok(surfaces);
+        }
+        let of_lights = [count, batches, pixels];
+        let hidden = self.words("hidden", &of_lights)?;
+        let radiance = self.vectors("radiance", &of_lights)?;
+        let left = self.words("left", &of_lights)?;
         let lights = hidden.chunks(pixels).zip(radiance.chunks(pixels)).zip(left.chunks(pixels));
         let mut lights = lights.map(|((hidden, radiance), left)| StudioLight {
             hidden: hidden.to_vec(),
@@ -342,13 +306,11 @@ impl Sample<'_, '_> {
             left: left.to_vec(),
         });
         // The others are of ambient light.
-        let of_lights = (given.lighting.light_count.div_ceil(BITS) as usize).min(batches);
-        let surfaces = hits.chunks(pixels).zip(states.chunks(pixels)).map(|(hits, shaded)| {
-            let (hits, shaded) = (hits.to_vec(), shaded.to_vec());
-            let mut next = |count| lights.by_ref().take(count).collect();
-            let (lights, ambient) = (next(of_lights), next(batches - of_lights));
-            StudioSurface { hits, shaded, lights, ambient }
-        });
-        Ok(surfaces.collect())
+        let of_lights = given.batches()[0].min(batches);
+        for surface in &mut surfaces {
+            surface.lights = lights.by_ref().take(of_lights).collect();
+            surface.ambient = lights.by_ref().take(batches - of_lights).collect();
+        }
+        Ok(surfaces)
     }
 }

@@ -61,7 +61,7 @@ impl<'a> RunFile<'a> {
     pub fn light(
         &self,
         run: &Run,
-        each: &mut dyn FnMut(LitRecording<'_>),
+        each: &mut dyn FnMut(&LitRecording),
     ) -> Result<bool, RunFileError> {
         lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
     }
@@ -71,7 +71,24 @@ impl<'a> RunFile<'a> {
     /// # Errors
     /// Returns an error if their shapes are not valid.
     pub fn denoised(&self) -> Result<Option<[Image; 2]>, RunFileError> {
-        denoised(&self.file)
+        let Self { file } = self;
+        if !file.has("noisy_color") {
+            return Ok(None);
+        }
+        let film = film_of(file, "noisy_color", "the array `noisy_color`")?;
+        let size = [film.width(), film.height()];
+        let all = [size[1] as usize, size[0] as usize];
+        let other = || contradiction("the pictures of the denoiser have no valid size");
+        let empty = |layers: LayerSet| Image::new(size[0], size[1], layers).map_err(|_| other());
+        let (mut noisy, mut denoised) = (empty(GUIDES)?, empty(LayerSet::COLOR)?);
+        let vectors = |name| file.items::<f32, 3>(name, &all);
+        let numbers = |name| file.numbers::<f32>(name, &all);
+        noisy.set_guides(
+            [vectors("noisy_color")?, vectors("noisy_normal")?, vectors("noisy_albedo")?],
+            [numbers("noisy_depth")?, numbers("noisy_variance")?],
+        );
+        denoised.color_mut().copy_from_slice(&vectors("denoised_color")?);
+        Ok(Some([noisy, denoised]))
     }
 
     /// Reads the lit picture that people are shown; `None` if the file has none.
@@ -79,7 +96,15 @@ impl<'a> RunFile<'a> {
     /// # Errors
     /// Returns an error if its shape is not valid.
     pub fn shown(&self) -> Result<Option<ShownPicture>, RunFileError> {
-        shown(&self.file)
+        let Self { file } = self;
+        if !file.has("shown") {
+            return Ok(None);
+        }
+        let film = film_of(file, "shown", "the array `shown`")?;
+        let size = [film.width(), film.height()];
+        let srgb = file.items("shown", &[size[1] as usize, size[0] as usize])?;
+        let (samples, wanted) = (file.whole("shown_samples")?, file.whole("shown_wanted")?);
+        Ok(Some(ShownPicture { size, srgb, samples, wanted }))
     }
 }
 
@@ -94,10 +119,9 @@ pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
 
 fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
     let [origin] = file.fixed::<f64, 3, 1>("scene_origin")?;
-    let count = file.shape("spheres")?.first().copied().unwrap_or_default();
-    let spheres = file.items::<f32, 4>("spheres", &[count])?;
-    let colors = colors(file, count)?;
-    let appearance = with_surfaces(file, colors.into(), count)?;
+    let spheres = file.list::<f32, 4>("spheres")?;
+    let colors = colors(file, spheres.len())?;
+    let appearance = with_surfaces(file, colors.into(), spheres.len())?;
     let scene = Scene::from_frame(DVec3::from(origin), spheres, appearance)
         .map_err(|error| contradiction(format!("the scene: {error}")))?;
     if file.text("scene_sha256")? != scene_sha256(&scene) {
@@ -110,10 +134,11 @@ fn colors(file: &Container<'_>, spheres: usize) -> Result<Colors, RunFileError> 
     if file.has("color_rgba8") {
         return Ok(Colors::Rgba8(file.items::<u8, 4>("color_rgba8", &[spheres])?));
     }
-    let count = file.shape("palette")?.first().copied().unwrap_or_default();
-    let palette = file.items::<f32, 3>("palette", &[count])?;
-    let palette: Vec<_> =
-        palette.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
+    let palette: Vec<_> = file
+        .list::<f32, 3>("palette")?
+        .into_iter()
+        .map(|rgb| color("palette", rgb))
+        .collect::<Result<_, _>>()?;
     match palette.first() {
         Some(color) if !file.has("color_index") => Ok(Colors::One(*color)),
         None => Ok(Colors::Palette { palette, indices: Vec::new() }),
@@ -194,58 +219,43 @@ fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
 }
 
 fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, RunFileError> {
-    let traced = Rays::read(file, shape, "traced", "ray")?;
-    let shaded = Rays::read(file, shape, "shaded", "shading")?;
+    let traced = rays(file, shape, "traced", "ray")?;
+    let shaded = rays(file, shape, "shaded", "shading")?;
     let (t, ids) = (file.numbers("hit_t", shape)?, file.numbers("hit_id", shape)?);
-    let pixel = |index: usize| TracedPixel {
-        ray: traced.at(index),
+    all(t.len(), |index| TracedPixel {
+        ray: traced[index],
         t: t[index],
         id: ids[index],
-        shading_ray: shaded.at(index),
-    };
-    try_map(t.len(), pixel).map_err(|_| RunFileError::Memory {
-        name: "pixels".to_owned(),
-        bytes: (t.len() * size_of::<TracedPixel>()) as u64,
+        shading_ray: shaded[index],
     })
 }
 
-/// One ray for each pixel.
-struct Rays {
-    exist: Vec<Flag>,
-    origins: Vec<[f32; 3]>,
-    directions: Vec<[f32; 3]>,
-    distances: Vec<f32>,
+/// The ray of each pixel, if `flag` says that there is one.
+fn rays(
+    file: &Container<'_>,
+    shape: &[usize],
+    flag: &str,
+    rays: &str,
+) -> Result<Vec<Option<TracedRay>>, RunFileError> {
+    let exist = file.numbers::<Flag>(flag, shape)?;
+    if let Some(index) = exist.iter().position(|exists| exists.0 > 1) {
+        return Err(contradiction(format!(
+            "the array `{flag}` has a value other than 0 and 1 at index {index}"
+        )));
+    }
+    let origins = file.items(&format!("{rays}_origin"), shape)?;
+    let directions = file.items(&format!("{rays}_direction"), shape)?;
+    let distances = file.numbers(&format!("{rays}_distance"), shape)?;
+    all(exist.len(), |index| {
+        let (origin, direction, distance) = (origins[index], directions[index], distances[index]);
+        (exist[index].0 == 1).then_some(TracedRay { origin, direction, distance })
+    })
 }
 
-impl Rays {
-    /// Reads the arrays of rays, of which `flag` says where there are any.
-    fn read(
-        file: &Container<'_>,
-        shape: &[usize],
-        flag: &str,
-        rays: &str,
-    ) -> Result<Self, RunFileError> {
-        let exist = file.numbers::<Flag>(flag, shape)?;
-        if let Some(index) = exist.iter().position(|exists| exists.0 > 1) {
-            return Err(contradiction(format!(
-                "the array `{flag}` has a value other than 0 and 1 at index {index}"
-            )));
-        }
-        Ok(Self {
-            exist,
-            origins: file.items(&format!("{rays}_origin"), shape)?,
-            directions: file.items(&format!("{rays}_direction"), shape)?,
-            distances: file.numbers(&format!("{rays}_distance"), shape)?,
-        })
-    }
-
-    fn at(&self, index: usize) -> Option<TracedRay> {
-        (self.exist[index].0 == 1).then(|| TracedRay {
-            origin: self.origins[index],
-            direction: self.directions[index],
-            distance: self.distances[index],
-        })
-    }
+/// What `of` says of all pixels.
+fn all<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, RunFileError> {
+    let bytes = (count * size_of::<T>()) as u64;
+    try_map(count, of).map_err(|_| RunFileError::Memory { name: "pixels".to_owned(), bytes })
 }
 
 fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
@@ -283,27 +293,6 @@ fn named<T: Copy>(
         .ok_or_else(|| contradiction(format!("there is no {key} `{}`", shortened(text))))
 }
 
-/// Reads the noisy picture and the denoised one.
-fn denoised(file: &Container<'_>) -> Result<Option<[Image; 2]>, RunFileError> {
-    if !file.has("noisy_color") {
-        return Ok(None);
-    }
-    let film = film_of(file, "noisy_color", "the array `noisy_color`")?;
-    let size = [film.width(), film.height()];
-    let all = [size[1] as usize, size[0] as usize];
-    let other = || contradiction("the pictures of the denoiser have no valid size");
-    let empty = |layers: LayerSet| Image::new(size[0], size[1], layers).map_err(|_| other());
-    let (mut noisy, mut denoised) = (empty(GUIDES)?, empty(LayerSet::COLOR)?);
-    let vectors = |name| file.items::<f32, 3>(name, &all);
-    let numbers = |name| file.numbers::<f32>(name, &all);
-    noisy.set_guides(
-        [vectors("noisy_color")?, vectors("noisy_normal")?, vectors("noisy_albedo")?],
-        [numbers("noisy_depth")?, numbers("noisy_variance")?],
-    );
-    denoised.color_mut().copy_from_slice(&vectors("denoised_color")?);
-    Ok(Some([noisy, denoised]))
-}
-
 /// The film of a picture of three channels, and what that is called in errors.
 fn film_of(file: &Container<'_>, name: &str, what: &str) -> Result<Film, RunFileError> {
     let [height, width, _] = *file.shape(name)? else {
@@ -311,18 +300,6 @@ fn film_of(file: &Container<'_>, name: &str, what: &str) -> Result<Film, RunFile
     };
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     Film::new(side(width), side(height)).map_err(|error| contradiction(format!("{what}: {error}")))
-}
-
-/// Reads the lit picture that people are shown.
-fn shown(file: &Container<'_>) -> Result<Option<ShownPicture>, RunFileError> {
-    if !file.has("shown") {
-        return Ok(None);
-    }
-    let film = film_of(file, "shown", "the array `shown`")?;
-    let size = [film.width(), film.height()];
-    let srgb = file.items("shown", &[size[1] as usize, size[0] as usize])?;
-    let (samples, wanted) = (file.whole("shown_samples")?, file.whole("shown_wanted")?);
-    Ok(Some(ShownPicture { size, srgb, samples, wanted }))
 }
 
 /// The inverse of [`SurfaceProperties::bits`]; `None` if there is no such kind.
@@ -349,8 +326,7 @@ fn with_surfaces(
     if !file.has("surfaces") {
         return Ok(appearance);
     }
-    let count = file.shape("surfaces")?.first().copied().unwrap_or_default();
-    let numbers = file.items::<f32, 5>("surfaces", &[count])?;
+    let numbers = file.list::<f32, 5>("surfaces")?;
     let surfaces = (0..).zip(numbers).map(|(index, numbers): (usize, _)| {
         let no = |error: String| contradiction(format!("the surface {index}: {error}"));
         let surface = surface(numbers).ok_or_else(|| no("there is no such material".to_owned()))?;

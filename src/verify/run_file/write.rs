@@ -1,5 +1,6 @@
 //! Writing of run files.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
 use std::io::Write;
@@ -8,9 +9,8 @@ use crate::image::Image;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::{Colors, Scene};
 use crate::verify::run_file::container::{Array, Flag};
-use crate::verify::run_file::lit_inputs::{LitArrays, view_numbers};
 use crate::verify::run_file::lit_samples::{LitSamples, SAMPLES};
-use crate::verify::run_file::{LIMIT, Provenance, container, scene_sha256};
+use crate::verify::run_file::{LIMIT, Provenance, container, lit_inputs, scene_sha256};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
 /// What a run file may hold besides the picture by one ray for each pixel.
@@ -92,36 +92,17 @@ pub fn write_with(
 
     let vectors = &camera.vectors;
     let numbers = vectors.numbers.into();
-    let camera = [vectors.origin, vectors.right, vectors.up, vectors.forward, numbers];
-    let view = view_numbers(uploaded);
-    let (origin, advance) = ([scene.origin()], [uploaded.advance]);
-    let background = [primary.background];
+    let camera = vec![vectors.origin, vectors.right, vectors.up, vectors.forward, numbers];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
     let shading = |pixel: &TracedPixel| pixel.shading_ray.unwrap_or_default();
-    let colors = scene.appearance().colors();
-    let entries: Vec<u32> = match colors {
-        Colors::Scalars { values, map } => values.iter().map(|v| map.index(*v) as u32).collect(),
-        _ => Vec::new(),
-    };
-    let (palette, indices) = match colors {
-        Colors::One(color) => (Some(std::slice::from_ref(color)), None),
-        Colors::Palette { palette, indices } => (Some(&palette[..]), Some(&indices[..])),
-        Colors::Scalars { map, .. } => (Some(map.colors()), Some(&entries[..])),
-        Colors::Rgba8(_) => (None, None),
-    };
-    let indices = indices.filter(|indices| !indices.is_empty());
-    let appearance = scene.appearance();
-    let surfaces: Vec<[f32; 5]> =
-        appearance.surfaces().iter().map(|surface| surface.bits().map(f32::from_bits)).collect();
-    let given = light.and_then(LitSamples::given);
-    let lit = given.map(LitArrays::new);
     let mut arrays = vec![
-        Array::new("camera", &[5], &camera, |vector| vector.to_array()),
-        Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
+        Array::list("camera", camera, |vector| vector.to_array()),
+        Array::new("scene_origin", &[], vec![scene.origin()], |origin| origin.to_array()),
         Array::spheres(scene),
-        Array::new("background", &[], &background, |color| color.to_array()),
-        Array::new("view", &[7], &view, |vector| *vector),
-        Array::new("advance", &[1], &advance, |advance| [*advance]),
+        Array::new("background", &[], vec![primary.background], |color| color.to_array()),
+    ];
+    arrays.extend(lit_inputs::view_arrays(uploaded, ["view", "advance"]));
+    arrays.extend([
         Array::new("ray_origin", &shape, pixels, move |pixel| ray(pixel).origin),
         Array::new("ray_direction", &shape, pixels, move |pixel| ray(pixel).direction),
         Array::new("ray_distance", &shape, pixels, move |pixel| [ray(pixel).distance]),
@@ -130,23 +111,27 @@ pub fn write_with(
         Array::new("shading_distance", &shape, pixels, move |pixel| [shading(pixel).distance]),
         Array::new("hit_t", &shape, pixels, |pixel| [pixel.t]),
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
-    ];
+    ]);
     arrays.extend(layers);
     if let Rendered::Other(image) = rendered {
         let names = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
         arrays.extend(layers_of(image, shape, "rendered picture", names)?);
     }
-    arrays.extend(
-        palette.map(|palette| {
-            Array::new("palette", &[palette.len()], palette, |color| color.to_array())
-        }),
-    );
-    arrays.extend(
-        indices
-            .map(|indices| Array::new("color_index", &[indices.len()], indices, |index| [*index])),
-    );
-    if let Colors::Rgba8(colors) = colors {
-        arrays.push(Array::new("color_rgba8", &[colors.len()], colors, |color| *color));
+    let appearance = scene.appearance();
+    let (palette, indices): (_, Cow<'_, [u32]>) = match appearance.colors() {
+        Colors::One(color) => (Some(std::slice::from_ref(color)), Cow::default()),
+        Colors::Palette { palette, indices } => (Some(&palette[..]), indices.into()),
+        Colors::Scalars { values, map } => {
+            (Some(map.colors()), values.iter().map(|value| map.index(*value) as u32).collect())
+        }
+        Colors::Rgba8(colors) => {
+            arrays.push(Array::list("color_rgba8", colors, |color| *color));
+            (None, Cow::default())
+        }
+    };
+    arrays.extend(palette.map(|all| Array::list("palette", all, |color| color.to_array())));
+    if !indices.is_empty() {
+        arrays.push(Array::list("color_index", indices, |index| [*index]));
     }
     let is_traced = |pixel: &TracedPixel| [Flag(pixel.ray.is_some().into())];
     arrays.push(Array::new("traced", &shape, pixels, is_traced));
@@ -154,26 +139,43 @@ pub fn write_with(
     arrays.push(Array::new("shaded", &shape, pixels, is_shaded));
     let has_default = *appearance.surfaces() == [SurfaceProperties::default()];
     if !has_default || appearance.surface_indices().is_some() {
-        arrays.push(Array::new("surfaces", &[surfaces.len()], &surfaces, |surface| *surface));
+        let numbers = |surface: &SurfaceProperties| surface.bits().map(f32::from_bits);
+        arrays.push(Array::list("surfaces", appearance.surfaces(), numbers));
     }
-    arrays.extend(
-        appearance.surface_indices().map(|indices| {
-            Array::new("surface_index", &[indices.len()], indices, |index| [*index])
-        }),
-    );
-    if let (Some(samples), Some(given), Some(lit)) = (light, given, &lit) {
+    let indices = appearance.surface_indices();
+    arrays.extend(indices.map(|all| Array::list("surface_index", all, |index| [*index])));
+    if let Some((samples, given)) = light.and_then(|samples| Some((samples, samples.given()?))) {
         if (&given.camera, &given.film) != (&recording.camera, film) {
             return Err(io::Error::other("the light is that of another camera or film"));
         }
-        lit.add_to(&mut arrays, &mut texts)?;
+        lit_inputs::add(given, &mut arrays, &mut texts)?;
         texts.insert(SAMPLES.to_owned(), samples.count().to_string());
         arrays.extend(samples.arrays());
     }
-    if let Some(denoised) = denoised {
-        add_denoised(denoised, &mut arrays)?;
+    if let Some([noisy, denoised]) = denoised {
+        let layers = (noisy.normal(), noisy.depth(), noisy.albedo(), noisy.variance());
+        let (Some(normal), Some(depth), Some(albedo), Some(variance)) = layers else {
+            return Err(io::Error::other("the noisy picture lacks a layer"));
+        };
+        let [size, other] =
+            [noisy, denoised].map(|image| [image.height() as usize, image.width() as usize]);
+        arrays.extend([
+            Array::new("noisy_color", &size, noisy.color(), |color| *color),
+            Array::new("noisy_normal", &size, normal, |normal| *normal),
+            Array::new("noisy_depth", &size, depth, |depth| [*depth]),
+            Array::new("noisy_albedo", &size, albedo, |albedo| *albedo),
+            Array::new("noisy_variance", &size, variance, |variance| [*variance]),
+            Array::new("denoised_color", &other, denoised.color(), |color| *color),
+        ]);
     }
-    if let Some(shown) = shown {
-        add_shown(shown, &mut arrays, &mut texts)?;
+    if let Some(ShownPicture { size: [width, height], srgb, samples, wanted }) = shown {
+        if u64::from(*width) * u64::from(*height) != srgb.len() as u64 {
+            return Err(io::Error::other("the shown picture does not have the size that it names"));
+        }
+        let size = [*height as usize, *width as usize];
+        arrays.push(Array::new("shown", &size, srgb, |pixel| *pixel));
+        texts.insert("shown_samples".to_owned(), samples.to_string());
+        texts.insert("shown_wanted".to_owned(), wanted.to_string());
     }
     container::write(texts, arrays, out)
 }
@@ -199,44 +201,4 @@ fn layers_of<'a>(
         Array::new(normal, &shape, normals, |normal| *normal),
         Array::new(id, &shape, ids, |id| [*id]),
     ])
-}
-
-fn shape(image: &Image) -> [usize; 2] {
-    [image.height() as usize, image.width() as usize]
-}
-
-fn add_denoised<'a>(
-    [noisy, denoised]: [&'a Image; 2],
-    arrays: &mut Vec<Array<'a>>,
-) -> io::Result<()> {
-    let layers = (noisy.normal(), noisy.depth(), noisy.albedo(), noisy.variance());
-    let (Some(normal), Some(depth), Some(albedo), Some(variance)) = layers else {
-        return Err(io::Error::other("the noisy picture lacks a layer"));
-    };
-    let size = shape(noisy);
-    arrays.extend([
-        Array::new("noisy_color", &size, noisy.color(), |color| *color),
-        Array::new("noisy_normal", &size, normal, |normal| *normal),
-        Array::new("noisy_depth", &size, depth, |depth| [*depth]),
-        Array::new("noisy_albedo", &size, albedo, |albedo| *albedo),
-        Array::new("noisy_variance", &size, variance, |variance| [*variance]),
-        Array::new("denoised_color", &shape(denoised), denoised.color(), |color| *color),
-    ]);
-    Ok(())
-}
-
-fn add_shown<'a>(
-    shown: &'a ShownPicture,
-    arrays: &mut Vec<Array<'a>>,
-    texts: &mut BTreeMap<String, String>,
-) -> io::Result<()> {
-    let ShownPicture { size: [width, height], srgb, samples, wanted } = shown;
-    if u64::from(*width) * u64::from(*height) != srgb.len() as u64 {
-        return Err(io::Error::other("the shown picture does not have the size that it names"));
-    }
-    let size = [*height as usize, *width as usize];
-    arrays.push(Array::new("shown", &size, srgb, |pixel| *pixel));
-    texts.insert("shown_samples".to_owned(), samples.to_string());
-    texts.insert("shown_wanted".to_owned(), wanted.to_string());
-    Ok(())
 }

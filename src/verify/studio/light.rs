@@ -39,8 +39,7 @@ impl Kernel<'_> {
                 return Change::NONE;
             }
             let share = self.central_light(light) / total;
-            let (radiance, opacity) = self.caught(share);
-            return Change { radiance, opacity };
+            return self.caught(share);
         }
         if is_hidden {
             return Change::NONE;
@@ -65,8 +64,7 @@ impl Kernel<'_> {
         let hidden_count = Number::known(hidden.into());
         if self.is_caught() {
             let share = share * hidden_count * self.ambient_luminance() / total;
-            let (radiance, opacity) = self.caught(share);
-            return Change { radiance, opacity };
+            return self.caught(share);
         }
         let albedo = Vector::recorded(self.before.vector(slot::ALBEDO));
         // Both are whole numbers.
@@ -163,12 +161,12 @@ impl Kernel<'_> {
     }
 
     /// The change of radiance and opacity if a share of all light is missing on the ground.
-    pub(crate) fn caught(&self, share: Number) -> (Vector, Number) {
+    fn caught(&self, share: Number) -> Change {
         let lighting = self.lighting();
         let alpha = Number::recorded(self.before.number(slot::ALBEDO)) * share;
         if lighting.flags & flag::TRANSPARENT != 0 {
-            return (Vector::ZERO, alpha);
+            return Change { radiance: Vector::ZERO, opacity: alpha };
         }
-        (-(Vector::recorded(lighting.background) * alpha), alpha)
+        Change { radiance: -(Vector::recorded(lighting.background) * alpha), opacity: alpha }
     }
 }

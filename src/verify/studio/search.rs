@@ -7,37 +7,14 @@ use glam::DVec3;
 use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
 use crate::verify::camera::{BoxCrossing, Crossed, SMALLEST_COMPONENT};
-use crate::verify::hit::{Candidates, legal_hit};
+use crate::verify::hit::Candidates;
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::{Lamp, axes_around, cosine_direction};
-use crate::verify::lit::search::{Doubts, hides, is_same};
+use crate::verify::lit::search::{Entry, Hidden, is_same};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
-
-/// Whether light may be hidden, and whether it must be.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Hidden {
-    pub(crate) may: bool,
-    pub(crate) must: bool,
-    /// The spheres that may hide it and need not.
-    pub(crate) doubts: Doubts,
-}
-
-impl Hidden {
-    pub(crate) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
-    const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
-
-    /// The answers to several questions of which one is asked.
-    pub(crate) fn or(self, other: Self) -> Self {
-        Self {
-            may: self.may || other.may,
-            must: self.must && other.must,
-            doubts: self.doubts.and(other.doubts),
-        }
-    }
-}
 
 /// The first pair of random numbers of a surface. `shaders/studio/shadow.wgsl` has the same numbers.
 pub(crate) const PAIRS: u32 = 4096;
@@ -54,12 +31,6 @@ impl Kernel<'_> {
         let u = self.numbers(self.address.sample, number);
         let position = Vector::recorded(self.before.vector(slot::ORIGIN));
         self.lamp(light, position, u, None)
-    }
-
-    /// A pair of random numbers of the pixel.
-    fn numbers(&self, sample: u32, number: u32) -> [u32; 2] {
-        use crate::camera::sampling::{pair, pixel_seed};
-        pair(pixel_seed(self.address.pixel, self.lighting().seed), sample, number)
     }
 
     /// Whether a light is hidden from the surface; a light behind it is not searched for.
@@ -113,35 +84,15 @@ impl Kernel<'_> {
     fn is_occluded(&self, candidates: &Candidates, direction: Vector, distance: Number) -> Hidden {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
-        let Some(ray) = Aimed::new(corners, wide(state.vector(slot::ORIGIN)), direction) else {
+        let Some(ray) = Entry::aimed(corners, wide(state.vector(slot::ORIGIN)), direction) else {
             return Hidden { must: false, ..Hidden::ALWAYS };
         };
-        let rest = (distance - Number::between(ray.enter.low, ray.enter.high)).interval();
-        if !ray.may_hit_box || rest.high <= 0.0 {
-            return Hidden::NEVER;
-        }
         let departed = scene.spheres().get(state.departure().id as usize);
         let are_opaque = scene.is_opaque();
-        let mut found = Hidden::NEVER;
-        let moved = ray.slack.across + ray.slack.along;
-        candidates.visit(&ray.line, moved, rest.high, |candidate| {
+        ray.hidden(candidates, distance, |candidate| {
             let is_own = departed.is_some_and(|own| is_same(candidate.sphere, *own));
-            if is_own || !(are_opaque || scene.surface(candidate.id).opacity >= 1.0) {
-                return rest.high;
-            }
-            if let Some((hit, may_miss)) = legal_hit(candidate, &ray.line, ray.slack) {
-                let (may, must) = hides(&hit, may_miss, rest);
-                found.may |= may;
-                found.must |= must;
-                if may && !must {
-                    found.doubts.add(candidate, &ray.line, may_miss);
-                }
-            }
-            // A certain answer ends the search.
-            if found.must { -1.0 } else { rest.high }
-        });
-        found.must &= !ray.may_miss_box && rest.low > 0.0;
-        found
+            is_own || !(are_opaque || scene.surface(candidate.id).opacity >= 1.0)
+        })
     }
 }
 
@@ -151,20 +102,9 @@ const MOST_TURNED: f64 = 0.01;
 /// The largest distance of a box, above which nothing is said. All lengths are smaller.
 const MOST_DISTANT: f64 = 1e30;
 
-/// A ray that starts where it enters the box of the spheres that cast shadows.
-pub(crate) struct Aimed {
-    pub(crate) line: Line,
-    pub(crate) slack: Slack,
-    /// The distance at which the ray enters the box.
-    pub(crate) enter: Interval,
-    /// Whether the device may find that the ray hits the box, and whether it may find that it does not.
-    pub(crate) may_hit_box: bool,
-    pub(crate) may_miss_box: bool,
-}
-
-impl Aimed {
+impl Entry {
     /// All rays from a point in a direction; `None` if the direction is hardly known, or where they enter the box.
-    pub(crate) fn new([low, high]: [DVec3; 2], origin: DVec3, direction: Vector) -> Option<Self> {
+    pub(crate) fn aimed([low, high]: [DVec3; 2], origin: DVec3, direction: Vector) -> Option<Self> {
         let axes = direction.intervals();
         let middle = DVec3::from(axes.map(|axis| 0.5 * (axis.low + axis.high)));
         let half = DVec3::from(axes.map(|axis| 0.5 * (axis.high - axis.low)));
@@ -175,7 +115,7 @@ impl Aimed {
         if !is_known {
             return None;
         }
-        let mut crossing = BoxCrossing::default();
+        let mut crossing = BoxCrossing::UNBOUNDED;
         for axis in 0..3 {
             crossing.cut(slab([low[axis], high[axis]], origin[axis], axes[axis]));
         }

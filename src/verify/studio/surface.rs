@@ -2,16 +2,14 @@
 //! `shaders/studio/surface.wgsl`.
 
 use crate::image::NO_ID;
+use crate::light::codes::material::{EMISSIVE, LAMBERT};
 use crate::verify::lit::certificate::LitStage;
-use crate::verify::lit::judge::Mismatch;
+use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, Vertex};
 use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::Material;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
-
-/// The stage and the name of a number, for reports.
-type Name = (LitStage, &'static str);
 
 const FLAGS: Name = (LitStage::Surface, "the ray's flags");
 const ORIGIN: Name = (LitStage::Surface, "the origin of a ray that has ended");
@@ -28,7 +26,6 @@ const ALBEDO: Name = (LitStage::Surface, "the color times its weight");
 const LOBE: Name = (LitStage::Surface, "the specular lobe");
 const KEPT: Name = (LitStage::Surface, "an unchanged part of the ray's state");
 
-/// What a ray has met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Met {
     Nothing,
@@ -39,7 +36,6 @@ pub(crate) enum Met {
 }
 
 impl Kernel<'_> {
-    /// Follows the kernel, and compares its output.
     pub(crate) fn follow_surface(&mut self, is_last: bool) -> Result<Met, Mismatch> {
         let (before, after, lighting) = (self.before, self.after, self.lighting());
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
@@ -57,7 +53,7 @@ impl Kernel<'_> {
         };
         let material = self.material_of(&vertex);
         let is_caught = !vertex.is_sphere() && lighting.flags & flag::CATCHER != 0;
-        let is_emitter = material.is_emissive();
+        let is_emitter = material.kind == EMISSIVE;
 
         let far = Number::recorded(before.number(slot::FIRST)) + vertex.distance;
         let fade = self.faded(far);
@@ -162,7 +158,7 @@ impl Kernel<'_> {
     /// Compares the share of the lobe, the square of its roughness, and the index of its energies.
     fn compare_lobe(&mut self, material: &Material) -> Result<(), Mismatch> {
         let [share, alpha, energies, nothing] = self.after.slots[slot::LOBE];
-        let expected = if material.is_lambert() { material.parameter } else { Number::ZERO };
+        let expected = if material.kind == LAMBERT { material.parameter } else { Number::ZERO };
         self.expected.number(LOBE, f32::from_bits(share), expected)?;
         self.expected.number(LOBE, f32::from_bits(alpha), material.alpha)?;
         self.expected.bits(LOBE, energies, material.energies)?;

@@ -15,17 +15,14 @@ use std::fmt;
 
 pub use samples::{Samples, WrittenError, WrittenPicture};
 
-use samples::{LegalSample, Mapping, PictureCheck};
+use samples::{LegalSample, PictureCheck};
 
-use super::certificate::{KEPT, Outcome, Verdict, channel_name, pixel_at};
+use super::certificate::{CHUNK, KEPT, Outcome, Verdict, channel_name, pixel_at};
 use super::checker::Checker;
 use super::hit::LegalHits;
 use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::render::PrimarySettings;
-
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 12;
 
 /// A pixel that no conforming device leads to.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +98,6 @@ impl Checker<'_> {
         let size = [view.film.width(), view.film.height()];
         picture.check(size)?;
         let check = PictureCheck::new(self, view, primary);
-        let mapping = Mapping::new(picture, primary);
         let empty = || WrittenCertificate { size, verdicts: Vec::new(), violations: Vec::new() };
         let count = size[0] as usize * size[1] as usize;
         let parts = map_parts(ranges(count, CHUNK), |range| {
@@ -110,8 +106,9 @@ impl Checker<'_> {
             for index in range {
                 let pixel = pixel_at(index, size[0]);
                 let verdict = check.legal(pixel, &mut hits, &mut colors);
-                let allowed: Vec<_> = colors.iter().map(|color| mapping.samples(color)).collect();
-                let found = picture.at(index, mapping.channels());
+                let legal = |color| picture.legal(color, primary.is_transparent);
+                let allowed: Vec<_> = colors.iter().map(legal).collect();
+                let found = picture.at(index);
                 part.verdicts.push(match LegalSample::judge(&allowed, &found) {
                     None => verdict,
                     Some((channel, legal)) => {

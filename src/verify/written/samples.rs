@@ -6,13 +6,13 @@ use crate::camera::View;
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
 use crate::render::PrimarySettings;
-use crate::verify::camera::{AnyRay, CameraModel};
+use crate::verify::camera::CameraModel;
 use crate::verify::certificate::Verdict;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
 use crate::verify::recording::{RequestedCamera, UploadedView};
 use crate::verify::rounding::{Interval, PAD, U};
-use crate::verify::sphere::{LegalNormals, exactly, legal_color_near};
+use crate::verify::sphere::{LegalNormals, exactly, legal_color};
 
 /// Legal colours: those of one side of a sphere, or that of a miss.
 #[derive(Clone, Copy, Debug)]
@@ -77,19 +77,15 @@ impl<'a> PictureCheck<'a> {
             hits.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
             hits.miss |= ray.may_miss_box;
         }
-        for hit in &hits.spheres {
-            self.add_colors(&ray, hit.id, colors);
-        }
-    }
-
-    fn add_colors(&self, ray: &AnyRay, id: u32, colors: &mut Vec<LegalColor>) {
         let scene = self.checker.scene;
-        let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
-        let own = scene.color(id).to_array();
-        colors.extend(normals.crossings().map(|normal| LegalColor {
-            color: legal_color_near(self.primary.shading, own, normal, ray.direction),
-            is_hit: true,
-        }));
+        for hit in &hits.spheres {
+            let normals = LegalNormals::new(&ray.line, scene.spheres()[hit.id as usize], ray.slack);
+            let own = scene.color(hit.id).to_array();
+            colors.extend(normals.crossings().map(|normal| LegalColor {
+                color: legal_color(self.primary.shading, own, normal, ray.direction),
+                is_hit: true,
+            }));
+        }
     }
 }
 
@@ -156,25 +152,24 @@ impl WrittenPicture<'_> {
     /// Returns an error if there are too few or too many samples.
     pub fn colors(&self) -> Result<Vec<[f64; 3]>, WrittenError> {
         self.check(self.size)?;
-        let [_, channels] = self.layout();
         let white = match self.samples {
             Samples::Linear(_) => 1.0,
             Samples::Encoded(_) => f64::from(self.encoding.bits().white()),
         };
         let color = |index| {
-            let [r, g, b, _] = self.at(index, channels);
+            let [r, g, b, _] = self.at(index);
             [r, g, b].map(|sample| sample / white)
         };
         Ok((0..self.size[0] as usize * self.size[1] as usize).map(color).collect())
     }
 
     /// The samples of a pixel.
-    pub(super) fn at(&self, index: usize, channels: usize) -> [f64; 4] {
+    pub(super) fn at(&self, index: usize) -> [f64; 4] {
         let mut found = [0.0; 4];
         match self.samples {
             Samples::Linear(samples) => found = samples[index].map(f64::from),
             Samples::Encoded(bytes) => {
-                let [size, _] = self.layout();
+                let [size, channels] = self.layout();
                 let pixel = &bytes[index * size * channels..][..size * channels];
                 for (found, sample) in found.iter_mut().zip(pixel.chunks_exact(size)) {
                     *found = sample.iter().fold(0.0, |sum, byte| 256.0 * sum + f64::from(*byte));
@@ -210,25 +205,11 @@ impl LegalSample {
     }
 }
 
-/// How legal colours become legal samples.
-pub(super) struct Mapping<'a> {
-    picture: &'a WrittenPicture<'a>,
-    primary: &'a PrimarySettings,
-}
-
-impl<'a> Mapping<'a> {
-    pub(super) fn new(picture: &'a WrittenPicture<'a>, primary: &'a PrimarySettings) -> Self {
-        Self { picture, primary }
-    }
-
-    pub(super) fn channels(&self) -> usize {
-        self.picture.layout()[1]
-    }
-
-    /// The legal samples for legal colours.
-    pub(super) fn samples(&self, legal: &LegalColor) -> LegalSample {
-        let alpha = if legal.is_hit || !self.primary.is_transparent { 1.0 } else { 0.0 };
-        let WrittenPicture { samples, encoding, .. } = self.picture;
+impl WrittenPicture<'_> {
+    /// The legal samples for legal colours; misses are transparent if the picture is.
+    pub(super) fn legal(&self, legal: &LegalColor, is_transparent: bool) -> LegalSample {
+        let alpha = if legal.is_hit || !is_transparent { 1.0 } else { 0.0 };
+        let Self { samples, encoding, .. } = self;
         let mut channels = [[0.0; 2]; 4];
         let Samples::Encoded(_) = samples else {
             for (channel, color) in channels.iter_mut().zip(legal.color) {
@@ -249,7 +230,7 @@ impl<'a> Mapping<'a> {
 
     /// The least and the greatest light of a display for legal colours.
     fn displayed(&self, legal: &LegalColor) -> [[f32; 3]; 2] {
-        let encoding = self.picture.encoding;
+        let encoding = self.encoding;
         let ends = [legal.color.map(|c| down(c.low)), legal.color.map(|c| up(c.high))];
         if !legal.is_hit && (encoding.transparent() || encoding.kept_background().is_some()) {
             // The background passes through unchanged, and is black where it is transparent.

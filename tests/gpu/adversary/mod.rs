@@ -168,7 +168,7 @@ pub(crate) fn certify_lit_on(
     let buffers = upload(headless, scene, &seen, settings, choice)?;
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
-    let each = &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
+    let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
     headless
         .record_lit(&buffers, &seen, settings, (LitPart::Middle, samples), (each, &mut go_on()))
         .wait()?;

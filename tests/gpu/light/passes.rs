@@ -132,12 +132,8 @@ fn sums(headless: &'static Headless) {
         let structures = view.planned(headless, AccelChoice::Auto);
         let buffers = headless.upload(scene, &structures).wait().unwrap();
         let mut film = RecordedFilm::default();
-        let mut each = |recording: LitRecording<'_>| {
-            let one = match recording {
-                LitRecording::Paths(recording) => &recording.samples[0].film,
-                LitRecording::Studio(recording) => &recording.samples[0].film,
-                _ => panic!("{name}"),
-            };
+        let mut each = |recording: &LitRecording| {
+            let one = &recording.samples[0].film;
             assert!(film.after.is_empty() || film.after == one.before, "{name}");
             film = one.clone();
         };
