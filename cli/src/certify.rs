@@ -7,11 +7,12 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::args::{CAMERA, ViewArgs};
+use crate::args::{ViewArgs, camera_ids};
 use crate::failure::Failure;
 use crate::input::{Input, Source, read};
 use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
 use crate::progress::{self, answer, tell};
+use crate::text::json;
 use crate::threads;
 use crate::verify::report::{Scene, command_line};
 use pinhole::geometry::ray::Ray;
@@ -62,7 +63,7 @@ pub(crate) struct CertifyArgs {
     #[arg(long, value_name = "NORMAL.npy")]
     normal: Option<PathBuf>,
     /// The rays that the renderer was given, in world space [default: those of the camera]
-    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = CAMERA)]
+    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = camera_ids())]
     rays: Option<PathBuf>,
     /// The largest k that a pixel may need [default: 40, or 24 with --rays; 8 more with --normal]
     #[arg(long, value_name = "K")]
@@ -94,9 +95,7 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let input = source.with_size_of_data(ids.size).load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
+    input.notes.iter().for_each(|note| progress::notes(false)(note));
     let numbers = |path: &Option<PathBuf>| path.as_ref().map(|path| array(path, pixels::numbers));
     let depths = numbers(&args.depth).transpose()?;
     let normals = args.normal.as_ref().map(|path| array(path, pixels::vectors)).transpose()?;
@@ -115,12 +114,9 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let found = certified(args, &input, &answers, rays.as_ref())?;
     let report = Report::new(&input, &answers, rays.is_some(), &found);
     progress::clear();
-    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    answer(report.table().as_bytes())?;
     if let Some(path) = &args.json {
-        let json = serde_json::to_string_pretty(&report)
-            .context("the report cannot be written as JSON")?
-            + "\n";
-        name_all(vec![(path, unnamed(path, json.as_bytes())?)])?;
+        name_all(vec![(path, unnamed(path, json(&report)?.as_bytes())?)])?;
     }
     verdict(&found)
 }
@@ -374,26 +370,4 @@ fn table(found: &Conformance) -> String {
         text += &format!("\n       {finding}");
     }
     text + "\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::{Command, FromArgMatches as _};
-
-    #[test]
-    fn rays_exclude_all_arguments_that_describe_a_camera() {
-        let command = CertifyArgs::augment_args(Command::new("certify"));
-        let others = [
-            "path", "format", "radius", "color", "frame", "topology", "columns", "id", "depth",
-            "depth_is", "normal", "rays", "at_most", "json", "help",
-        ];
-        let ids = command.get_arguments().map(|argument| argument.get_id().as_str());
-        let of_camera: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
-        assert!(of_camera.iter().all(|id| CAMERA.contains(id)), "{of_camera:?}");
-        assert_eq!(of_camera.len(), CAMERA.len());
-        let words = ["certify", "a.npy", "--id", "b.npy", "--rays", "c.npz"];
-        let matches = command.get_matches_from(words);
-        assert!(CertifyArgs::from_arg_matches(&matches).unwrap().rays.is_some());
-    }
 }

@@ -138,7 +138,7 @@ pub(super) fn trajectory(
 fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
     let bytes = found.frame_bytes(frame).unwrap_or_default();
     let what = format!("{}: reading {bytes} bytes needs", path.display());
-    memory::check_reading(&what, bytes).map_err(Error::msg)
+    memory::check_reading(&what, bytes)
 }
 
 /// An error of reading a file, with its path in front.
@@ -156,7 +156,7 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
         let what = format!("{}: reading an array of {extra} bytes needs", path.display());
-        memory::check_reading(&what, extra).map_err(Error::msg)?;
+        memory::check_reading(&what, extra)?;
     }
     format.read(bytes, &options.to_read()).with_context(file_name)
 }

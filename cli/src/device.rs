@@ -15,7 +15,7 @@ pub(super) use crate::with_scene::{explained, explained_alone};
 use crate::{interrupt, profile};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, wgpu};
 use pinhole::verify::run_file::Provenance;
 
 /// What renders, as the flags ask for it.
@@ -225,8 +225,7 @@ pub(crate) struct AdapterReport {
 
 impl AdapterReport {
     #[cfg(feature = "gpu")]
-    pub(crate) fn of(headless: &Headless) -> Self {
-        let info = headless.adapter_info();
+    pub(crate) fn of(info: &wgpu::AdapterInfo) -> Self {
         Self {
             name: info.name.clone(),
             backend: format!("{:?}", info.backend),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
@@ -138,7 +138,7 @@ impl Outputs {
         name_all(files)?;
         if let Some(picture) = for_standard_output {
             interrupt::set_message("stopped; the picture on standard output is not complete");
-            answer(&picture).context("standard output: cannot be written")?;
+            answer(&picture)?;
         }
         Ok(())
     }

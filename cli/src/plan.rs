@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use anyhow::Context;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -13,8 +12,8 @@ use super::{render, threads};
 use crate::args::PlanArgs;
 use crate::device::{AdapterReport, WantedAdapter, explained};
 use crate::memory;
-use crate::progress::{self, answer, tell};
-use crate::text::table;
+use crate::progress::{self, answer};
+use crate::text::{json, table};
 use pinhole::accel::PlannedBuffer;
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Layer, LayerSet};
@@ -100,9 +99,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         ));
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
+    input.notes.iter().for_each(|note| progress::notes(false)(note));
     // `render` adds this layer too.
     let alpha = input.encoding.transparent().then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
@@ -116,14 +113,9 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         .map_err(|error| explained(&headless, &error));
     let problem = verdict.as_ref().err().map(Failure::message);
     let report = Report::new(&input, plan, &headless, available, problem);
-    let text = if args.json {
-        serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
-            + "\n"
-    } else {
-        report.readable()
-    };
+    let text = if args.json { json(&report)? } else { report.readable() };
     progress::clear();
-    answer(text.as_bytes()).context("standard output: cannot be written")?;
+    answer(text.as_bytes())?;
     verdict
 }
 
@@ -163,7 +155,7 @@ impl Report {
             host_bytes: plan.host_bytes,
             host_peak: plan.host_peak.what(),
             host_bytes_available,
-            adapter: AdapterReport::of(headless),
+            adapter: AdapterReport::of(headless.adapter_info()),
             limits: LimitsReport {
                 max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
                 max_buffer_size: limits.max_buffer_size,

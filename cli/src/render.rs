@@ -237,7 +237,7 @@ fn on_cpu(
     let (Input { scene, settings, .. }, film) = (input, views.film());
     let plan = SearchPlan::new(scene);
     let what = format!("a structure of {} spheres needs", scene.len());
-    memory::check_bytes(&what, plan.bytes(), "fewer spheres").map_err(anyhow::Error::msg)?;
+    memory::check_bytes(&what, plan.bytes(), "fewer spheres")?;
     progress::stage("building the structure");
     let phase = profile::phase("build");
     let structure = plan.build().context("the structure cannot be built")?;

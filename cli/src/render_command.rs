@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 
 use crate::args::Stereo;
 use crate::failure::Failure;
@@ -47,11 +47,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if quiet {
         progress::close();
     }
-    let note = |note: &dyn std::fmt::Display| {
-        if !quiet {
-            tell(format_args!("note: {note}"));
-        }
-    };
+    let note = progress::notes(quiet);
     threads::start()?;
     if args.certify || args.report.print_scene {
         let flag = if args.certify { "--certify" } else { "--print-scene" };
@@ -124,7 +120,7 @@ pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPl
          # Paths are relative to the folder in which it was written: keep it there.\n\n{}",
         write(&contents)
     );
-    answer(text.as_bytes()).context("standard output: cannot be written")
+    answer(text.as_bytes())
 }
 
 /// Returns a path as text, which is all that a scene file can name.

@@ -214,18 +214,18 @@ impl App {
             // The picture of the scene before stays until there is a new one.
             self.seen = self.seen.map(|_| (0, false));
         }
-        let is_new = |old: &News| !Arc::ptr_eq(&old.scene, &news.scene);
+        let is_new = |old: &News| !Arc::ptr_eq(&old.facts.scene, &news.facts.scene);
         if self.news.as_deref().is_none_or(is_new) {
-            let (scene, columns) = (&news.scene, &news.columns);
-            let same = |old: &News| old.scene.len() == scene.len();
+            let (scene, columns) = (&news.facts.scene, &news.facts.columns);
+            let same = |old: &News| old.facts.scene.len() == scene.len();
             let keeps = self.news.as_deref().is_some_and(same);
             let picked = self.picked.take().filter(|_| keeps);
             self.picked = picked.and_then(|old| Details::of(scene, columns, old.id));
             self.log(|| format!("shown: {} spheres", scene.len()));
         }
         if news.state == self.state.number {
-            let bounds = news.scene.bounds_to_frame();
-            let camera = ViewCamera::new(&news.camera);
+            let bounds = news.facts.scene.bounds_to_frame();
+            let camera = ViewCamera::new(&news.facts.camera);
             let length = bounds.size().length();
             self.orbit = camera.map(|camera| Orbit::new(camera, bounds.center(), length));
             self.busy = None;
@@ -268,7 +268,7 @@ impl App {
         }
         (self.player.plays, self.busy) = (false, None);
         let Some(news) = &self.news else { return };
-        let mut before = news.flags.clone();
+        let mut before = news.facts.flags.clone();
         before.remove("size");
         if before != self.state.flags {
             self.state.flags = before;
@@ -281,7 +281,8 @@ impl App {
     fn ask(&mut self, context: &egui::Context) {
         let Some(changed) = self.changed else { return };
         let request = self.state.request(!self.player.plays);
-        let is_read = self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.flags));
+        let is_read =
+            self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.facts.flags));
         if is_read && (self.is_moving() || changed.elapsed() < STILL_AFTER) {
             context.request_repaint_after(STILL_AFTER);
             return;
@@ -297,7 +298,7 @@ impl App {
         if !self.player.plays {
             return;
         }
-        let Some(line) = self.news.as_ref().and_then(|news| news.time_line.clone()) else {
+        let Some(line) = self.news.as_ref().and_then(|news| news.facts.time_line.clone()) else {
             self.player.plays = false;
             return;
         };
@@ -325,7 +326,7 @@ impl App {
         use egui::{Key, Modifiers};
         // The modifiers are those of the key's own event: a quick user has let go of them in the same frame.
         let pressed = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
-        let line = self.news.as_ref().and_then(|news| news.time_line.clone());
+        let line = self.news.as_ref().and_then(|news| news.facts.time_line.clone());
         let is_copy = |event: &egui::Event| matches!(event, egui::Event::Copy);
         if context.input(|input| input.events.iter().any(is_copy)) {
             self.copy(context);

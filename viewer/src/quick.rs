@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use eframe::{egui, wgpu};
 
-use crate::blit::{Blit, Layers};
+use crate::blit::Blit;
 use crate::worker::QuickScene;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
-use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker};
+use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker, TargetTextures};
 use pinhole::render::{Integrator, RenderSettings};
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -49,8 +49,7 @@ struct State {
 
 /// Textures of one size, and what renders into them.
 struct TargetSet {
-    size: [u32; 2],
-    layers: Layers,
+    textures: TargetTextures,
     source: Source,
     /// What draws the colors.
     group: wgpu::BindGroup,
@@ -178,7 +177,9 @@ impl Quick {
     /// Asks which sphere is at a pixel of the picture, given by parts of its width and height.
     pub(crate) fn pick(&self, [x, y]: [f64; 2]) {
         let mut state = self.state();
-        let Some(size) = state.targets.as_ref().map(|targets| targets.size) else { return };
+        let Some(size) = state.targets.as_ref().map(|targets| targets.textures.size()) else {
+            return;
+        };
         let pixel = |part: f64, side: u32| ((part * f64::from(side)) as u32).min(side - 1);
         state.pick = Some([pixel(x, size[0]), pixel(y, size[1])]);
     }
@@ -212,7 +213,7 @@ impl Quick {
 
     /// The size of the last picture.
     pub(crate) fn size(&self) -> Option<[u32; 2]> {
-        self.state().targets.as_ref().map(|targets| targets.size)
+        self.state().targets.as_ref().map(|targets| targets.textures.size())
     }
 
     /// The number of pictures so far.
@@ -268,11 +269,11 @@ impl State {
         let RenderState { device, queue, .. } = &self.render;
         let (renderer, buffers) = (&scene.renderer, &scene.buffers);
         let fits = |targets: &TargetSet| {
-            targets.size == size && matches!(targets.source, Source::Live(_)) == is_live
+            targets.textures.size() == size && matches!(targets.source, Source::Live(_)) == is_live
         };
         if !self.targets.as_ref().is_some_and(fits) {
-            let layers = Layers::new(device, size);
-            let targets = layers.targets();
+            let textures = TargetTextures::new(renderer.renderer(), device, size)?;
+            let targets = textures.targets();
             let source = match is_live {
                 true => {
                     let live = LivePicture::new(
@@ -285,8 +286,8 @@ impl State {
                     Source::Primary(Box::new(frame))
                 }
             };
-            let group = self.blit.group(device, &layers.color);
-            self.targets = Some(TargetSet { size, layers, source, group });
+            let group = self.blit.group(device, targets.color);
+            self.targets = Some(TargetSet { textures, source, group });
         }
         match self.targets.as_mut().map(|targets| &mut targets.source) {
             Some(Source::Live(live)) => {
@@ -333,10 +334,10 @@ impl State {
             });
         }
         if let (Some(pixel), Some(picker)) = (self.pick.take(), &mut self.picker) {
-            let [width, height] = targets.size;
+            let [width, height] = targets.textures.size();
             let film = Film::new(width, height).map_err(|error| error.to_string())?;
             let view = View::new(camera.as_ref(), film);
-            let recorded = picker.record(encoder, &targets.layers.targets(), &view, pixel);
+            let recorded = picker.record(encoder, &targets.textures.targets(), &view, pixel);
             recorded.map_err(|error| error.to_string())?;
             self.is_picking = true;
         }

@@ -134,8 +134,7 @@ fn of_scene(
         _ => {
             let plan = SearchPlan::new(scene);
             let what = format!("a structure of {} spheres needs", scene.len());
-            memory::check_bytes(&what, plan.bytes(), "smaller bricks")
-                .map_err(anyhow::Error::msg)?;
+            memory::check_bytes(&what, plan.bytes(), "smaller bricks")?;
             let structure = plan.build().context("the structure cannot be built")?;
             views.try_each(|view| {
                 let done = cpu::render_nearest(&structure, view, &input.settings, layers);

@@ -15,6 +15,7 @@ use crate::bricks::file::{
     extent,
 };
 use crate::memory::readable;
+use crate::text;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::scene::{Appearance, Colors, Scene, Whole};
@@ -333,7 +334,7 @@ impl Report {
 pub(crate) fn lines(path: &Path, json: bool) -> Result<String> {
     let report = Report::new(path)?;
     if json {
-        return Ok(serde_json::to_string_pretty(&report)? + "\n");
+        return text::json(&report);
     }
     let corner = |corner: [f64; 3]| corner.map(|x| x.to_string()).join(" ");
     Ok(format!(

@@ -7,13 +7,13 @@ use super::failure::Failure;
 use super::render_args::RenderArgs;
 use crate::args::Stereo;
 use crate::frames::args::FrameRange;
-pub(super) use crate::frames::args::{FramesArgs, Raw};
+use crate::frames::args::FramesArgs;
 use crate::frames::moving::WantedPath;
 pub(crate) use crate::frames::numbers::Overview;
 pub(super) use crate::frames::run::run;
 pub(crate) use crate::frames::run::{Known, Ready, ready};
 
-mod args;
+pub(super) mod args;
 mod movie;
 mod moving;
 mod numbers;

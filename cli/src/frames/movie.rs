@@ -15,7 +15,6 @@ use crate::frames::target::{Movie, Target};
 use crate::interrupt;
 use crate::output::{name_all, unnamed_with};
 use crate::picture::Outputs;
-use pinhole::annotate::Annotations;
 use pinhole::image::Image;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::write::png::samples_annotated;
@@ -39,7 +38,6 @@ pub(crate) struct Sink<'a> {
     pub(crate) target: &'a Target,
     pub(crate) outputs: &'a Outputs,
     pub(crate) encoding: &'a Encoding,
-    pub(crate) annotations: &'a Annotations,
     pub(crate) adapter: Option<&'a str>,
     pub(crate) frames_per_second: u32,
     /// How many pictures there will be.
@@ -58,8 +56,8 @@ impl Samples<'_> {
     pub(crate) fn next(&self) -> io::Result<Option<Vec<u8>>> {
         match self.pictures.recv() {
             Ok(Message::Picture { image, .. }) => {
-                let Sink { encoding, annotations, .. } = self.sink;
-                let samples = samples_annotated(&image, encoding, annotations);
+                let Sink { encoding, outputs, .. } = self.sink;
+                let samples = samples_annotated(&image, encoding, &outputs.annotations);
                 samples.map(Some).map_err(io::Error::other)
             }
             Ok(Message::End) => Ok(None),
@@ -190,16 +188,8 @@ pub(crate) fn write_video(
     let even = size.map(|side| side + side % 2);
     let [width, height] = even;
     let mut command = Command::new("ffmpeg");
-    command.args([
-        "-hide_banner",
-        "-loglevel",
-        "error",
-        "-y",
-        "-f",
-        "rawvideo",
-        "-pix_fmt",
-        "rgb24",
-    ]);
+    command.args(["-hide_banner", "-loglevel", "error", "-y"]);
+    command.args(["-f", "rawvideo", "-pix_fmt", "rgb24"]);
     command.args(["-s", &format!("{width}x{height}"), "-r", &sink.frames_per_second.to_string()]);
     command.args(["-i", "-", "-an", "-vf", "scale=out_color_matrix=bt709:out_range=tv"]);
     command.args(["-pix_fmt", "yuv420p", "-color_range", "tv", "-colorspace", "bt709"]);

@@ -7,7 +7,8 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::frames::{Raw, Wanted};
+use crate::frames::Wanted;
+use crate::frames::args::Raw;
 use crate::input::Input;
 use crate::job::manifest::Manifest;
 use crate::render::Job;

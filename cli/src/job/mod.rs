@@ -4,8 +4,6 @@
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
-use anyhow::Context;
-
 use self::folder::Folder;
 use super::failure::Failure;
 use super::threads;
@@ -38,5 +36,5 @@ fn status(args: &StatusArgs) -> Result<(), Failure> {
     let found = if args.check { folder.check() } else { folder.glance() };
     let missing = (0..found.len()).filter(|unit| found[*unit].is_err());
     let text: String = missing.map(|unit| format!("{unit}\n")).collect();
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    Ok(answer(text.as_bytes())?)
 }

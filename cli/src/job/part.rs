@@ -17,7 +17,7 @@ use crate::interrupt::{self, Deadline};
 use crate::job::args::{PartArgs, Recipe, check_same};
 use crate::job::manifest::{VERSION, parse_list};
 use crate::output::{name_all, unnamed_with};
-use crate::progress::tell;
+use crate::progress::{self, tell};
 use crate::render::{check_device, render_part};
 use crate::threads;
 use crate::views::Views;
@@ -75,14 +75,9 @@ impl Work<'_> {
         let manifest = &self.folder.manifest;
         let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path.join(PARTS), true)?;
         let Recipe { args, wanted, job } = recipe;
-        let note = |note: &dyn std::fmt::Display| {
-            if !self.quiet {
-                tell(format_args!("note: {note}"));
-            }
-        };
         let Some(wanted) = wanted else {
             let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
-            let (_, _) = job.finish(&mut input, note)?;
+            let (_, _) = job.finish(&mut input, progress::notes(self.quiet))?;
             check_same(manifest, None, &input)?;
             return self.units.iter().try_for_each(|unit| self.render(*unit, &mut input, &opened));
         };

@@ -156,11 +156,7 @@ fn found(recipe: Recipe) -> Result<Found, Failure> {
     if wanted.is_some() {
         job.source = job.source.without_bricks("a series of pictures")?;
     }
-    let note = |note: &dyn std::fmt::Display| {
-        if !args.report.quiet {
-            tell(format_args!("note: {note}"));
-        }
-    };
+    let note = progress::notes(args.report.quiet);
     let Some(wanted) = wanted else {
         let mut input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));

@@ -98,7 +98,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {
     let AdapterReport { name, backend, device_type, driver, driver_info } =
-        AdapterReport::of(headless);
+        AdapterReport::of(headless.adapter_info());
     let limits = headless.device().limits();
     let limits = [
         ("max_buffer_size", limits.max_buffer_size),
