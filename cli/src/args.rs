@@ -40,7 +40,7 @@ fn input_help() -> String {
 }
 
 /// Flags for reading the input, and for the camera.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct ViewArgs {
     /// Format of the data file, whatever its extension is
     #[arg(long, value_parser = format_parser())]
@@ -111,7 +111,6 @@ pub(crate) struct AccelArgs {
     pub(crate) accel: Option<AccelChoice>,
 }
 
-/// The values of `--accel`.
 const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
     ("auto", "The structure that suits the scene best", AccelChoice::Auto),
     ("grid", "A grid of cells, with nested grids where spheres are dense", AccelChoice::Grid),

@@ -198,7 +198,6 @@ impl UploadTimes {
     }
 }
 
-/// Traces the whole picture several times.
 fn repeat(
     headless: &Headless,
     buffers: &SceneBuffers,
@@ -270,7 +269,9 @@ impl BenchSource {
 fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
     let (name, count) = (standard.name(), standard.count());
     let film = match size {
-        Some((width, height)) => film(width, height)?,
+        Some((width, height)) => {
+            Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))?
+        }
         None => standard.film().context(name)?,
     };
     let bytes = count * BYTES_PER_SPHERE;
@@ -283,8 +284,4 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     let load = started.elapsed();
     let camera = Box::new(standard.camera().context(name)?);
     Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
-}
-
-fn film(width: u32, height: u32) -> Result<Film, Failure> {
-    Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))
 }

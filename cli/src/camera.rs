@@ -111,7 +111,6 @@ impl CameraArgs {
         Ok(flags)
     }
 
-    /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
         let kind = flags.kind();
         // Data is seen from here, with any direction up; of scene files, the real check comes later.

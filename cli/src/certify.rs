@@ -96,11 +96,24 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
     input.notes.iter().for_each(|note| progress::notes(false)(note));
-    let numbers = |path: &Option<PathBuf>| path.as_ref().map(|path| array(path, pixels::numbers));
-    let depths = numbers(&args.depth).transpose()?;
+    let depths = args.depth.as_ref().map(|path| array(path, pixels::numbers)).transpose()?;
     let normals = args.normal.as_ref().map(|path| array(path, pixels::vectors)).transpose()?;
     let rays = args.rays.as_ref().map(|path| array(path, pixels::rays)).transpose()?;
-    same_size(args, &ids, &depths, &normals, &rays)?;
+    let depths_size = args.depth.iter().zip(depths.as_ref().map(|depths| depths.size));
+    let normals_size = args.normal.iter().zip(normals.as_ref().map(|normals| normals.size));
+    let rays_size = args.rays.iter().zip(rays.as_ref().map(|rays| rays.size));
+    let mut sizes = depths_size.chain(normals_size).chain(rays_size);
+    if let Some((path, size)) = sizes.find(|(_, size)| *size != ids.size) {
+        return Err(Failure::Job(anyhow!(
+            "{}: the array is of {}x{} pixels, but {} is of {}x{}; give arrays of one picture",
+            path.display(),
+            size[0],
+            size[1],
+            args.id.display(),
+            ids.size[0],
+            ids.size[1]
+        )));
+    }
     let answers = Answers {
         size: ids.size,
         ids: &ids.values,
@@ -144,30 +157,6 @@ fn array<T>(
     progress::stage(format!("reading {}", path.display()));
     let bytes = read(path)?;
     Ok(decode(&bytes).with_context(|| path.display().to_string())?)
-}
-
-/// Refuses arrays of other sizes than that of the ids.
-fn same_size(
-    args: &CertifyArgs,
-    ids: &Pixels<u32>,
-    depths: &Option<Pixels<f64>>,
-    normals: &Option<Pixels<[f64; 3]>>,
-    rays: &Option<Pixels<Ray>>,
-) -> Result<(), Failure> {
-    let depths = args.depth.iter().zip(depths.as_ref().map(|depths| depths.size));
-    let normals = args.normal.iter().zip(normals.as_ref().map(|normals| normals.size));
-    let rays = args.rays.iter().zip(rays.as_ref().map(|rays| rays.size));
-    let [width, height] = ids.size;
-    match depths.chain(normals).chain(rays).find(|(_, size)| *size != ids.size) {
-        None => Ok(()),
-        Some((path, size)) => Err(Failure::Job(anyhow!(
-            "{}: the array is of {}x{} pixels, but {} is of {width}x{height}; give arrays of one picture",
-            path.display(),
-            size[0],
-            size[1],
-            args.id.display()
-        ))),
-    }
 }
 
 fn certified(
@@ -234,7 +223,6 @@ fn verdict(found: &Conformance) -> Result<(), Failure> {
 /// The number of pixels that the text lists.
 const LISTED: usize = 10;
 
-/// The JSON document.
 #[derive(Serialize)]
 pub(crate) struct Report {
     version: &'static str,
@@ -249,7 +237,6 @@ pub(crate) struct Report {
     worst: Vec<Listed>,
     outcome: &'static str,
     command: String,
-    /// The results as a table of text.
     #[serde(skip)]
     table: String,
 }
@@ -346,7 +333,6 @@ impl Report {
         }
     }
 
-    /// Returns the report as text.
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera } = self.picture;

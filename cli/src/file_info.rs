@@ -41,7 +41,6 @@ pub(crate) struct FileArgs {
 
 const BRICKS: read_file::Format = read_file::Format::Bricks;
 
-/// Describes the file.
 pub(crate) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failure> {
     if args.format.is_none() && read_file::Format::of(path).ok() == Some(BRICKS) {
         let text = bricks::info_lines(path, json)?;
@@ -253,7 +252,6 @@ pub(crate) struct SceneReport {
 
 impl ColumnReport {
     pub(crate) fn new(Column { name, values }: &Column) -> Self {
-        /// How many texts are shown.
         const SHOWN: usize = 6;
         let values = match values {
             ColumnValues::Numbers(numbers) => {

@@ -70,7 +70,6 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     Ok(name_all(vec![(&args.output, file)])?)
 }
 
-/// Returns a parser that accepts the names of the kinds.
 fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(Kind::ALL.iter().map(|kind| kind.name()))
 }

@@ -16,7 +16,6 @@ use crate::progress::answer;
 use crate::self_test::{SelfTested, dump};
 use crate::text;
 
-/// The end of the help.
 pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
     bounds of `verify` rely on. Exit codes: 0 done; 1 the file cannot be read, or there is no adapter, or it cannot \
     compute; 2 wrong usage; 3 it computes, but a property fails.\n\n\

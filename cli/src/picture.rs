@@ -87,7 +87,6 @@ impl Outputs {
         png::encode_annotated(image, encoding, &self.annotations)
     }
 
-    /// Returns these outputs with other names.
     pub(super) fn renamed(&self, name: impl Fn(&Path) -> PathBuf) -> Self {
         Self {
             picture: self.picture.as_deref().map(&name),

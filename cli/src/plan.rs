@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::input::{Input, Source};
 use super::light::LightFlags;
-use super::views::Views;
+use super::views::views_of;
 use super::{render, threads};
 use crate::args::PlanArgs;
 use crate::device::{AdapterReport, WantedAdapter, explained};
@@ -18,7 +18,6 @@ use pinhole::accel::PlannedBuffer;
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Layer, LayerSet};
 
-/// The JSON document.
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
@@ -106,7 +105,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let headless = adapter.open_any()?;
     progress::stage("planning");
     let choice = args.accel.accel.unwrap_or_default();
-    let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
+    let plan = render::plan(&headless, &input, &views_of(&input, input.film), layers, choice);
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

@@ -83,7 +83,6 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
     }
 }
 
-/// Removes the line.
 pub(crate) fn clear() {
     let mut line = line();
     (line.total, line.plain) = (None, None);
@@ -98,7 +97,6 @@ pub(crate) fn close() {
     line().is_closed = true;
 }
 
-/// The progress line of the program.
 static LINE: Mutex<Line> =
     Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
 

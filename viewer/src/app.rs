@@ -21,7 +21,6 @@ const LOG: &str = "PINHOLE_VIEWER_LOG";
 /// Where the window leaves the error that ends the program.
 pub(crate) type Ending = Arc<Mutex<Option<ViewError>>>;
 
-/// The window and all that it shows.
 pub(crate) struct App {
     pub(crate) state: State,
     pub(crate) worker: Worker,
@@ -52,7 +51,6 @@ pub(crate) struct App {
     logs: bool,
 }
 
-/// A still picture in the window.
 pub(crate) struct Still {
     state: u64,
     pub(crate) texture: egui::TextureHandle,
@@ -60,7 +58,6 @@ pub(crate) struct Still {
     pub(crate) total: u32,
 }
 
-/// Plays the frames of a trajectory.
 pub(crate) struct Player {
     pub(crate) plays: bool,
     pub(crate) frames_per_second: f32,
@@ -142,7 +139,6 @@ impl App {
         self.changed = Some(Instant::now());
     }
 
-    /// Moves the camera.
     pub(crate) fn fly(&mut self, motion: impl FnOnce(&mut Orbit)) {
         let Some(orbit) = &mut self.orbit else { return };
         motion(orbit);
@@ -165,7 +161,6 @@ impl App {
         }
     }
 
-    /// Shows another frame.
     pub(crate) fn go_to(&mut self, frame: usize) {
         self.hold_camera();
         self.change(|flags| flags.set("frame", &frame.to_string()));
@@ -403,7 +398,6 @@ impl eframe::App for App {
     }
 }
 
-/// The look of the window.
 pub(crate) fn dress(context: &egui::Context) {
     context.set_theme(egui::Theme::Light);
     context.all_styles_mut(|style| {

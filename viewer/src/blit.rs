@@ -98,7 +98,6 @@ impl Blit {
         })
     }
 
-    /// Draws a texture over the viewport.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, group: &wgpu::BindGroup) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[]);

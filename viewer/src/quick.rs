@@ -32,7 +32,6 @@ struct State {
     targets: Option<TargetSet>,
     camera: Option<Box<dyn Camera>>,
     picker: Option<Picker>,
-    /// A picture that is to be recorded.
     is_due: bool,
     /// A pixel that is to be picked in the picture.
     pick: Option<[u32; 2]>,
@@ -190,7 +189,6 @@ impl Quick {
         state.is_due || state.pick.is_some() || state.is_picking
     }
 
-    /// The result of a pick, if there is one.
     pub(crate) fn picked(&self) -> Option<Picked> {
         let mut state = self.state();
         match state.picker.as_mut()?.take() {
@@ -211,12 +209,10 @@ impl Quick {
         self.state().error.take()
     }
 
-    /// The size of the last picture.
     pub(crate) fn size(&self) -> Option<[u32; 2]> {
         self.state().targets.as_ref().map(|targets| targets.textures.size())
     }
 
-    /// The number of pictures so far.
     pub(crate) fn count(&self) -> u64 {
         self.state().pictures
     }

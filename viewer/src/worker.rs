@@ -27,15 +27,19 @@ pub(crate) struct Request {
     pub(crate) still: bool,
 }
 
-/// What the window is told.
 pub(crate) enum Message {
     /// The flags of a request were understood, and the file was read.
     Shown(Box<News>),
     /// A still picture, which will be followed by better ones.
-    Still { state: u64, picture: StillPicture },
+    Still {
+        state: u64,
+        picture: StillPicture,
+    },
     /// A request failed. What was shown before stays.
-    Failed { state: u64, error: ViewError },
-    /// Something that the user should know.
+    Failed {
+        state: u64,
+        error: ViewError,
+    },
     Note(String),
 }
 

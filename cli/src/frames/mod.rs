@@ -26,7 +26,6 @@ pub(super) fn is_movie(path: &Path) -> bool {
     target::movie_of(path).is_some()
 }
 
-/// Which pictures of an input are made.
 #[derive(Clone, Debug)]
 enum Pictures {
     Frames { range: FrameRange, camera_from: Option<FrameRange>, path: Option<WantedPath> },

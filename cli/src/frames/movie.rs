@@ -33,7 +33,6 @@ pub(crate) enum Message {
     End,
 }
 
-/// How the pictures are written.
 pub(crate) struct Sink<'a> {
     pub(crate) target: &'a Target,
     pub(crate) outputs: &'a Outputs,
@@ -67,7 +66,6 @@ impl Samples<'_> {
 }
 
 impl Sink<'_> {
-    /// Writes all pictures that are received.
     pub(crate) fn write(&self, pictures: &Receiver<Message>) -> Result<()> {
         let samples = Samples { pictures, sink: self };
         match self.target {

@@ -22,7 +22,6 @@ use pinhole::scene_file::{SceneFile, parse_camera_path};
 /// Most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;
 
-/// A camera path, and the file that has it.
 #[derive(Clone, Debug)]
 pub(crate) struct WantedPath {
     pub(crate) path: CameraPath,
@@ -74,7 +73,6 @@ pub(crate) struct MovingCamera {
     pub(crate) stage: Stage,
 }
 
-/// The course of a camera.
 #[expect(clippy::large_enum_variant, reason = "a job has one of them")]
 pub(crate) enum Course {
     /// Turned about an axis, at the end once around.
@@ -155,7 +153,6 @@ pub(crate) fn in_frame(failure: Failure, number: usize) -> Failure {
     }
 }
 
-/// The camera at a place of its path.
 fn moved(
     camera: &CameraParameters,
     on_path: &CameraOnPath,

@@ -19,7 +19,7 @@ use crate::render::{Job, render_joined};
 use crate::render_args::RenderArgs;
 use crate::stop_rule::StopRule;
 use crate::threads;
-use crate::views::Views;
+use crate::views::{Shot, views_of};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 
@@ -136,7 +136,6 @@ fn left(
     left
 }
 
-/// Renders all pictures and writes them.
 pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Failure> {
     let started = Instant::now();
     let Some(ready) = ready(args, wanted, job, Known::default())? else { return Ok(()) };
@@ -145,8 +144,8 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
     let done = writing.write(wanted, count, opened.adapter(), |pictures| {
         series.for_each(|number, input| {
             pictures.begin();
-            let views = Views::of(input);
-            let image = render_joined(input, &stop_rule, &views, writing.layers, &opened)?;
+            let (views, layers) = (&views_of(input, input.film), writing.layers);
+            let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &opened })?;
             Ok(pictures.send(number, image))
         })
     })?;
@@ -163,7 +162,6 @@ pub(crate) struct Written<'a> {
 }
 
 impl Written<'_> {
-    /// Shows that the next picture is at work.
     pub(crate) fn begin(&mut self) {
         self.status.show();
     }
@@ -227,7 +225,6 @@ impl Writing {
 /// Time between two lines where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(20);
 
-/// How many frames are done, and since when.
 pub(crate) struct Status {
     total: usize,
     done: usize,

@@ -29,7 +29,6 @@ pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
     }
 }
 
-/// Lists the units that are to be rendered.
 fn status(args: &StatusArgs) -> Result<(), Failure> {
     let folder = Folder::open(&args.job)?;
     threads::start()?;

@@ -19,8 +19,9 @@ use crate::job::manifest::{VERSION, parse_list};
 use crate::output::{name_all, unnamed_with};
 use crate::progress::{self, tell};
 use crate::render::{check_device, render_part};
+use crate::stop_rule::StopRule;
 use crate::threads;
-use crate::views::Views;
+use crate::views::{Shot, views_of};
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -107,10 +108,10 @@ impl Work<'_> {
         let layers = manifest.layer_set();
         let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
-            let views = Views::of(input);
-            check_device(input, &views, layers, opened)?;
-            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
-            Pictures::Depth(nearest)
+            let (views, stop_rule) = (&views_of(input, input.film), StopRule::default());
+            let shot = Shot { input, views, layers, stop_rule, opened };
+            check_device(&shot)?;
+            Pictures::Depth(nearest_of(&bricks, *first..*end, &shot)?)
         } else {
             let tile = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
             Pictures::Tile(render_part(input, tile, layers, opened)?)
