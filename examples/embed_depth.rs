@@ -15,8 +15,10 @@ use pinhole::gpu::{
     Composite, CompositeDepth, CompositeOptions, CompositePicture, Frame, Picker, Renderer,
     RendererOptions, SceneBuffers, TargetTextures, Wait, adapter, wgpu,
 };
-use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
-use wgpu::{TextureFormat, TextureUsages};
+use pinhole::{Film, RenderSettings, Scene, View};
+use wgpu::TextureFormat;
+
+mod shared;
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -29,24 +31,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let (to_view, projection) = host_matrices();
-    let drawn = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
-    let color = texture(&device, TextureFormat::Rgba8UnormSrgb, drawn);
-    let depth = texture(&device, TextureFormat::Depth32Float, drawn);
-    let [color_view, depth_view] = [&color, &depth].map(view_of);
+    let [color, depth] =
+        [TextureFormat::Rgba8UnormSrgb, TextureFormat::Depth32Float].map(|format| {
+            shared::texture(
+                &device,
+                [WIDTH, HEIGHT],
+                format,
+                wgpu::TextureUsages::RENDER_ATTACHMENT,
+            )
+        });
+    let [color_view, depth_view] = [&color, &depth]
+        .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
     let square = host_square(&device);
 
     // Pictures of spheres have data layers, because the host's depth is computed from theirs.
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
     let renderer = Renderer::new(&device, &options).wait()?;
-    let spheres: Vec<Sphere> = (0..60_u8)
-        .map(|i| {
-            let angle = f64::from(i) * 0.4;
-            let color = LinearRgb::from_srgb8([255 - 3 * i, 120, 60 + 3 * i]);
-            let height = f64::from(i) * 0.1 - 3.0;
-            Sphere::new([2.0 * angle.cos(), height, 2.0 * angle.sin()], 0.4, color)
-        })
-        .collect();
-    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?).wait()?;
+    let scene = Scene::new(&shared::helix())?;
+    let scene = SceneBuffers::new(&renderer, &device, &queue, &scene).wait()?;
     let textures = TargetTextures::new(&renderer, &device, [WIDTH, HEIGHT]).wait()?;
     let targets = textures.targets();
     let mut frame = Frame::new(&renderer, &device, &targets).wait()?;
@@ -90,14 +92,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     composite.draw(&mut pass, &picture)?;
     drop(pass);
     picker.record(&mut encoder, &targets, &view, [WIDTH / 2, HEIGHT / 2])?;
-    let readback = host_copy(&device, &mut encoder, &color);
     queue.submit([encoder.finish()]);
-
-    readback.map_async(wgpu::MapMode::Read, .., |_| {});
-    device.poll(wgpu::PollType::wait_indefinitely())?;
-    // WebGPU aligns rows to 256 bytes, and 640 pixels of 4 bytes are a multiple of that.
-    let pixels = readback.get_mapped_range(..)?.to_vec();
-    image::save_buffer(&path, &pixels, WIDTH, HEIGHT, image::ExtendedColorType::Rgba8)?;
+    shared::save(&device, &queue, &color, &path)?;
     println!("wrote {path}; in the middle: {:?}", picker.take()?.and_then(|picked| picked.hit));
     Ok(())
 }
@@ -155,47 +151,4 @@ fn host_square(device: &wgpu::Device) -> wgpu::RenderPipeline {
         multiview_mask: None,
         cache: None,
     })
-}
-
-fn texture(device: &wgpu::Device, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: WIDTH, height: HEIGHT, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
-}
-
-fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-fn host_copy(
-    device: &wgpu::Device,
-    encoder: &mut wgpu::CommandEncoder,
-    texture: &wgpu::Texture,
-) -> wgpu::Buffer {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("the host's readback"),
-        size: u64::from(WIDTH * HEIGHT * 4),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(WIDTH * 4),
-                rows_per_image: None,
-            },
-        },
-        texture.size(),
-    );
-    buffer
 }

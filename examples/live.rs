@@ -14,12 +14,14 @@ use std::time::Instant;
 use pinhole::camera::PinholeCamera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
-    DataTargets, LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions,
-    SceneBuffers, Targets, Wait, adapter, wgpu,
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers,
+    TargetTextures, Wait, adapter, wgpu,
 };
 use pinhole::load::pdb;
 use pinhole::render::{Integrator, Occlusion, Studio};
 use pinhole::{Film, LinearRgb, RenderSettings, View};
+
+mod shared;
 
 /// Number of frames in motion, and the angle between two of them in degrees.
 const FRAMES: u32 = 40;
@@ -33,26 +35,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let film = Film::new(size[0], size[1])?;
     let scene = pdb::read(&std::fs::read(&file)?, 0)?.scene(LinearRgb::WHITE)?;
 
-    // The program's device and textures.
+    // The program's device.
     let adapter = adapter::choose(None).wait()?;
     let descriptor = wgpu::DeviceDescriptor::default();
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
-    let textures = [
-        wgpu::TextureFormat::Rgba8Unorm,
-        wgpu::TextureFormat::R32Float,
-        wgpu::TextureFormat::Rgba32Float,
-        wgpu::TextureFormat::R32Uint,
-    ]
-    .map(|format| texture(&device, size, format));
-    let [color, depth, normal, id] = textures
-        .each_ref()
-        .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-    let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-    let targets = Targets { color: &color, data: Some(data) };
 
     // The renderer, the scene and the two pictures of it.
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
     let lit = LitRenderer::new(Renderer::new(&device, &options).wait()?);
+    let textures = TargetTextures::new(lit.renderer(), &device, size).wait()?;
+    let targets = textures.targets();
     let buffers = SceneBuffers::for_studio(lit.renderer(), &device, &queue, &scene).wait()?;
     let settings = settings();
     let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
@@ -79,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         device.poll(wgpu::PollType::wait_indefinitely())?;
         times.push(start.elapsed().as_secs_f64());
     }
-    save(&device, &queue, &textures[0], "live.png")?;
+    shared::save(&device, &queue, targets.color.texture(), "live.png")?;
     times.sort_by(f64::total_cmp);
     let median = times[times.len() / 2];
     println!("in motion: {:.1} ms a frame, {:.1} frames/s", 1e3 * median, 1.0 / median);
@@ -96,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             break;
         }
     }
-    save(&device, &queue, &textures[0], "still.png")?;
+    shared::save(&device, &queue, targets.color.texture(), "still.png")?;
     let samples = settings.sampling.samples;
     println!("at rest: {samples} samples in {:.2} s", start.elapsed().as_secs_f64());
     println!("wrote live.png and still.png, rendered on {}", adapter.get_info().name);
@@ -113,55 +105,4 @@ fn settings() -> RenderSettings {
         ..Studio::default()
     });
     settings
-}
-
-fn texture(
-    device: &wgpu::Device,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("target"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
-}
-
-/// Writes a texture of four bytes for each pixel to a file.
-fn save(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-    path: &str,
-) -> Result<(), Box<dyn Error>> {
-    let (width, height) = (texture.width(), texture.height());
-    // WebGPU aligns rows to 256 bytes.
-    let row = (4 * width).next_multiple_of(256);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read-back"),
-        size: u64::from(row * height),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        texture.size(),
-    );
-    queue.submit([encoder.finish()]);
-    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
-    device.poll(wgpu::PollType::wait_indefinitely())?;
-    let bytes = buffer.get_mapped_range(..)?;
-    let rows = bytes.chunks(row as usize).flat_map(|bytes| &bytes[..4 * width as usize]);
-    let pixels: Vec<u8> = rows.copied().collect();
-    image::save_buffer(path, &pixels, width, height, image::ExtendedColorType::Rgba8)?;
-    Ok(())
 }

@@ -17,14 +17,12 @@ use pinhole::image::tone::ToneCurve;
 
 pub(crate) const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
 
-/// The values of `--panel`.
 const PANELS: &[(&str, &str, Panel)] = &[
     ("auto", "Where the picture behind is mixed", Panel::Auto),
     ("always", "Everywhere", Panel::Always),
     ("never", "Nowhere", Panel::Never),
 ];
 
-/// The values of `--tone`.
 const TONES: &[(&str, &str, ToneCurve)] = &[
     ("none", "No curve: brighter light is clipped", ToneCurve::None),
     ("filmic", "A curve like that of film, for red, green and blue separately", ToneCurve::Filmic),
@@ -72,13 +70,12 @@ pub(crate) struct AnnotationArgs {
     panel: Option<Panel>,
     /// Pixels per inch at which a PNG is to be printed; changes no pixel [default: the scene's, or none]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
-    dpi: Option<f32>,
+    pub(crate) dpi: Option<f32>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AnnotationFlags {
     plan: AnnotationPlan,
-    dots_per_inch: Option<f32>,
     format: Option<PictureFormat>,
     /// Whether a flag names the column, so that the title in a scene file is that of another one.
     has_new_column: bool,
@@ -125,19 +122,7 @@ impl AnnotationFlags {
                  remove them or give -o a name that ends with .png",
             ));
         }
-        let checked = Encoding::default().with_dots_per_inch(args.dpi);
-        checked.map_err(|error| refused("dpi", &error))?;
-        if format == PictureFormat::Exr && args.dpi.is_some() {
-            return Err(Failure::usage("--dpi applies only to PNG; remove --dpi"));
-        }
-        Ok(Self { plan, dots_per_inch: args.dpi, format: Some(format), has_new_column })
-    }
-
-    /// Applies the flags to the encoding of a scene. Flags take precedence.
-    pub(crate) fn apply_to(&self, scene: Encoding) -> Encoding {
-        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
-        // Both were checked, so this does not fail.
-        scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
+        Ok(Self { plan, format: Some(format), has_new_column })
     }
 
     /// The parts of the film that a camera must leave free for the legend. `file` is what a scene file draws.
@@ -261,11 +246,21 @@ pub(crate) struct EncodingFlags {
     transparent: Option<bool>,
     exposure: Option<f32>,
     tone: Option<ToneCurve>,
+    dots_per_inch: Option<f32>,
 }
 
 impl EncodingFlags {
-    pub(crate) fn new(args: &EncodingArgs, format: PictureFormat) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        args: &EncodingArgs,
+        dots_per_inch: Option<f32>,
+        format: PictureFormat,
+    ) -> Result<Self, Failure> {
         let EncodingArgs { bits, transparent, exposure, tone } = *args;
+        let checked = Encoding::default().with_dots_per_inch(dots_per_inch);
+        checked.map_err(|error| Failure::usage(format!("--dpi: {error}")))?;
+        if format == PictureFormat::Exr && dots_per_inch.is_some() {
+            return Err(Failure::usage("--dpi applies only to PNG; remove --dpi"));
+        }
         let given = [
             ("--bits", bits.is_some()),
             ("--exposure", exposure.is_some()),
@@ -287,6 +282,7 @@ impl EncodingFlags {
             transparent,
             exposure,
             tone,
+            dots_per_inch,
         })
     }
 
@@ -296,8 +292,11 @@ impl EncodingFlags {
             .with_bits(self.bits.unwrap_or(scene.bits()))
             .with_transparent(self.transparent.unwrap_or(scene.transparent()))
             .with_tone(self.tone.unwrap_or(scene.tone()));
-        // Both exposures were checked, so this does not fail.
-        encoding.with_exposure(self.exposure.unwrap_or(scene.exposure())).unwrap_or(encoding)
+        // These were checked, so they do not fail.
+        let exposure = self.exposure.unwrap_or(scene.exposure());
+        let encoding = encoding.with_exposure(exposure).unwrap_or(encoding);
+        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
+        encoding.with_dots_per_inch(dots_per_inch).unwrap_or(encoding)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Command, Id, ValueEnum};
 
 use crate::camera::CameraArgs;
 use crate::data::format_parser;
@@ -40,7 +40,7 @@ fn input_help() -> String {
 }
 
 /// Flags for reading the input, and for the camera.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct ViewArgs {
     /// Format of the data file, whatever its extension is
     #[arg(long, value_parser = format_parser())]
@@ -111,7 +111,6 @@ pub(crate) struct AccelArgs {
     pub(crate) accel: Option<AccelChoice>,
 }
 
-/// The values of `--accel`.
 const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
     ("auto", "The structure that suits the scene best", AccelChoice::Auto),
     ("grid", "A grid of cells, with nested grids where spheres are dense", AccelChoice::Grid),
@@ -160,7 +159,7 @@ pub(crate) struct VerifyArgs {
     #[arg(long, value_name = "RUN")]
     pub(crate) save: Option<PathBuf>,
     /// Check a saved recording again; this needs no adapter
-    #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING.into_iter().chain(CAMERA).chain(["scene"]))]
+    #[arg(long, value_name = "RUN", conflicts_with_all = not_of_recordings())]
     pub(crate) replay: Option<PathBuf>,
 }
 
@@ -243,53 +242,31 @@ pub(crate) enum Backend {
     Cpu,
 }
 
+/// The ids of some arguments.
+fn ids<A: Args>() -> impl Iterator<Item = Id> {
+    let command = A::augment_args(Command::new(""));
+    command
+        .get_arguments()
+        .map(|argument| argument.get_id().clone())
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
 /// Arguments of `verify` that say nothing about a picture that was written.
-pub(crate) fn not_of_pictures() -> impl IntoIterator<Item = &'static str> {
-    RENDERING.into_iter().chain(CAMERA).filter(|id| *id != "path").chain(["report"])
+fn not_of_pictures() -> impl Iterator<Item = Id> {
+    not_of_recordings().filter(|id| *id != "path" && *id != "scene").chain(["report".into()])
 }
 
 /// Arguments that describe the camera and the size of the picture.
-pub(crate) const CAMERA: [&str; 21] = [
-    "size",
-    "camera",
-    "eye",
-    "look_at",
-    "direction",
-    "view",
-    "turn",
-    "margin",
-    "zoom",
-    "up",
-    "fov",
-    "distance",
-    "half_extent",
-    "aperture_radius",
-    "f_stop",
-    "focal_length",
-    "focus_distance",
-    "focus_on",
-    "angle",
-    "separation",
-    "convergence",
-];
+pub(crate) fn camera_ids() -> impl Iterator<Item = Id> {
+    ids::<CameraArgs>().chain(["size".into()])
+}
 
-/// The other arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay`
-/// excludes them, as it does those of the camera.
-pub(crate) const RENDERING: [&str; 13] = [
-    "path",
-    "format",
-    "radius",
-    "color",
-    "frame",
-    "topology",
-    "columns",
-    "adapter",
-    "limits",
-    "accel",
-    "paths",
-    "save",
-    "tile_seed",
-];
+/// Arguments of `verify` that a recording contains, or that do not concern it.
+fn not_of_recordings() -> impl Iterator<Item = Id> {
+    let own = ["path", "paths", "save", "tile_seed", "scene"].map(Id::from);
+    ids::<ViewArgs>().chain(ids::<AdapterArgs>()).chain(ids::<AccelArgs>()).chain(own)
+}
 
 pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and \
     color. It computes in f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \

@@ -14,6 +14,7 @@ use crate::input::{Input, Source};
 use crate::memory;
 use crate::progress::{self, answer, tell};
 use crate::read_file::parse_size;
+use crate::text::json;
 use crate::with_scene::watch_upload;
 use crate::{interrupt, threads};
 use pinhole::accel::{AccelChoice, Structure};
@@ -44,7 +45,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let headless = adapter.open_any()?;
     let mut report = BenchReport {
         version: env!("CARGO_PKG_VERSION"),
-        adapter: AdapterReport::of(&headless),
+        adapter: AdapterReport::of(headless.adapter_info()),
         reps: args.reps,
         scenes: Vec::new(),
     };
@@ -60,9 +61,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         report.scenes.push(measured);
     }
     if args.json {
-        say(&(serde_json::to_string_pretty(&report)
-            .context("the report cannot be written as JSON")?
-            + "\n"))?;
+        say(&json(&report)?)?;
     }
     Ok(())
 }
@@ -70,7 +69,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
 /// Prints a part of the report at once, because all scenes together take minutes.
 fn say(text: &str) -> Result<(), Failure> {
     progress::clear();
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    Ok(answer(text.as_bytes())?)
 }
 
 fn measure_scene(
@@ -152,7 +151,7 @@ fn measure(
     // The scene counts as it was built, and the frame as it was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
-    let clock = AdapterReport::of(headless).clock();
+    let clock = AdapterReport::of(headless.adapter_info()).clock();
     let rays = film.pixel_count();
     // The clock of a software device says nothing about the work.
     let has_clock = clock == DEVICE_CLOCK;
@@ -201,7 +200,6 @@ impl UploadTimes {
     }
 }
 
-/// Traces the whole picture several times.
 fn repeat(
     headless: &Headless,
     buffers: &SceneBuffers,
@@ -260,9 +258,7 @@ impl BenchSource {
                 let started = Instant::now();
                 let input = source.load()?;
                 let load = started.elapsed();
-                for note in &input.notes {
-                    tell(format_args!("note: {note}"));
-                }
+                input.notes.iter().for_each(|note| progress::notes(false)(note));
                 let name = one_line(&path.display().to_string());
                 let Input { scene, camera, film, .. } = input;
                 let scene = Arc::unwrap_or_clone(scene);
@@ -275,12 +271,13 @@ impl BenchSource {
 fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
     let (name, count) = (standard.name(), standard.count());
     let film = match size {
-        Some((width, height)) => film(width, height)?,
+        Some((width, height)) => {
+            Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))?
+        }
         None => standard.film().context(name)?,
     };
     let bytes = count * BYTES_PER_SPHERE;
-    memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
-        .map_err(anyhow::Error::msg)?;
+    memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")?;
     tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
     progress::stage(format!("generating {name}"));
     let started = Instant::now();
@@ -289,8 +286,4 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     let load = started.elapsed();
     let camera = Box::new(standard.camera().context(name)?);
     Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
-}
-
-fn film(width: u32, height: u32) -> Result<Film, Failure> {
-    Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))
 }

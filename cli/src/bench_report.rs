@@ -20,7 +20,6 @@ pub(crate) struct BenchScene {
     pub(crate) load: Duration,
 }
 
-/// The JSON document.
 #[derive(Serialize)]
 pub(super) struct BenchReport {
     pub(super) version: &'static str,
@@ -42,7 +41,6 @@ pub(super) struct SceneReport {
     note: Option<String>,
 }
 
-/// The measurements of one structure.
 #[derive(Serialize)]
 pub(super) struct RunReport {
     pub(super) choice: String,
@@ -66,7 +64,6 @@ pub(super) struct RunReport {
     /// Memory on the device for the scene and the frame.
     pub(super) device_bytes: u64,
     pub(super) device_bytes_per_sphere: Option<f64>,
-    /// Largest memory use of the process so far.
     pub(super) peak_memory_bytes: Option<u64>,
 }
 

@@ -111,7 +111,6 @@ impl CameraArgs {
         Ok(flags)
     }
 
-    /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
         let kind = flags.kind();
         // Data is seen from here, with any direction up; of scene files, the real check comes later.
@@ -243,8 +242,39 @@ impl CameraFlags {
             let direction = turned(direction, up, turn);
             table.insert("direction".to_owned(), list(direction.to_array()));
         }
-        let document =
-            toml::Table::from_iter([(self.kind().to_owned(), toml::Value::Table(table))]);
+        CameraTable { kind: self.kind().to_owned(), table }.parameters()
+    }
+}
+
+/// A camera of any kind, as the table of this kind in a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CameraTable {
+    pub(super) kind: String,
+    pub(super) table: toml::Table,
+}
+
+impl CameraTable {
+    pub(super) fn new(parameters: &CameraParameters) -> Option<Self> {
+        let toml::Value::Table(document) = toml::Value::try_from(parameters).ok()? else {
+            return None;
+        };
+        let (kind, toml::Value::Table(table)) = document.into_iter().next()? else { return None };
+        Some(Self { kind, table })
+    }
+
+    pub(super) fn vector(&self, key: &str) -> Option<DVec3> {
+        let numbers = self.table.get(key)?.as_array()?;
+        let numbers: Vec<f64> = numbers.iter().filter_map(toml::Value::as_float).collect();
+        <[f64; 3]>::try_from(numbers).ok().map(DVec3::from)
+    }
+
+    pub(super) fn set(&mut self, key: &str, value: impl Into<toml::Value>) {
+        self.table.insert(key.to_owned(), value.into());
+    }
+
+    /// The parameters of the camera, or why it has none, in words.
+    pub(super) fn parameters(self) -> Result<CameraParameters, String> {
+        let document = toml::Table::from_iter([(self.kind, toml::Value::Table(self.table))]);
         CameraParameters::deserialize(toml::Value::Table(document))
             .map_err(|error| error.message().to_owned())
     }
@@ -265,7 +295,7 @@ fn kinds() -> PossibleValuesParser {
 }
 
 /// Converts numbers to a TOML array.
-fn list<const N: usize>(numbers: [f64; N]) -> toml::Value {
+pub(super) fn list<const N: usize>(numbers: [f64; N]) -> toml::Value {
     numbers.to_vec().into()
 }
 

@@ -8,7 +8,6 @@ use super::device::Opened;
 use super::failure::Failure;
 use super::input::Input;
 use super::render_args::RenderLine;
-use super::views::Views;
 use super::{progress, render};
 use pinhole::image::denoise;
 use pinhole::image::encoding::Encoding;
@@ -49,7 +48,6 @@ const OTHER_SEED: u32 = 0x9e37_79b9;
 pub(super) struct Written {
     pub(super) size: [u32; 2],
     pub(super) samples: FileSamples,
-    /// The number of samples of each pixel.
     pub(super) per_pixel: u32,
 }
 
@@ -97,7 +95,6 @@ impl Written {
         }
     }
 
-    /// The picture for the checker.
     fn picture<'a>(&'a self, encoding: &'a Encoding) -> WrittenPicture<'a> {
         let samples = match &self.samples {
             FileSamples::Encoded { bytes, .. } => Samples::Encoded(bytes),
@@ -124,7 +121,6 @@ pub(super) fn check(input: &Input, has_annotations: bool) -> Result<(), Failure>
     Err(Failure::usage(format!("--certify: {refusal}")))
 }
 
-/// Judges the samples of a picture.
 pub(super) fn judge(
     input: &mut Input,
     encoding: &Encoding,
@@ -163,9 +159,7 @@ pub(super) fn means_of_light(
     let per_pixel = image.samples().and_then(|samples| samples.first().copied()).unwrap_or(1);
     let reference = other_estimate(input, per_pixel, |input| {
         let film = input.film;
-        match render::render_part(input, film, layers, &Opened::Cpu)? {
-            Views::One(image) | Views::Two([image, _]) => Ok(colors(&image)),
-        }
+        Ok(colors(&render::render_part(input, film, layers, &Opened::Cpu)?[0]))
     })?;
     means(input, (per_pixel, 0), &colors(image), &reference)
 }
@@ -184,7 +178,6 @@ fn other_estimate(
     reference
 }
 
-/// Compares the means of two pictures.
 fn means(
     input: &Input,
     (samples, reach): (u32, u32),
@@ -240,7 +233,6 @@ impl Judged {
         }
     }
 
-    /// What is counted.
     fn unit(&self) -> &'static str {
         match self {
             Self::Intervals(_) => "pixels",
@@ -248,7 +240,6 @@ impl Judged {
         }
     }
 
-    /// The table on standard output.
     pub(super) fn table(&self) -> String {
         let counts = self.counts();
         let all = counts.iter().sum::<u64>().max(1) as f64;
@@ -287,7 +278,6 @@ impl Judged {
     }
 }
 
-/// The certificate of a picture that was judged.
 pub(super) fn certificate(
     input: &Input,
     written: &Written,

@@ -7,11 +7,12 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::args::{CAMERA, ViewArgs};
+use crate::args::{ViewArgs, camera_ids};
 use crate::failure::Failure;
 use crate::input::{Input, Source, read};
 use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
 use crate::progress::{self, answer, tell};
+use crate::text::json;
 use crate::threads;
 use crate::verify::report::{Scene, command_line};
 use pinhole::geometry::ray::Ray;
@@ -62,7 +63,7 @@ pub(crate) struct CertifyArgs {
     #[arg(long, value_name = "NORMAL.npy")]
     normal: Option<PathBuf>,
     /// The rays that the renderer was given, in world space [default: those of the camera]
-    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = CAMERA)]
+    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = camera_ids())]
     rays: Option<PathBuf>,
     /// The largest k that a pixel may need [default: 40, or 24 with --rays; 8 more with --normal]
     #[arg(long, value_name = "K")]
@@ -94,14 +95,25 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let input = source.with_size_of_data(ids.size).load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
-    let numbers = |path: &Option<PathBuf>| path.as_ref().map(|path| array(path, pixels::numbers));
-    let depths = numbers(&args.depth).transpose()?;
+    input.notes.iter().for_each(|note| progress::notes(false)(note));
+    let depths = args.depth.as_ref().map(|path| array(path, pixels::numbers)).transpose()?;
     let normals = args.normal.as_ref().map(|path| array(path, pixels::vectors)).transpose()?;
     let rays = args.rays.as_ref().map(|path| array(path, pixels::rays)).transpose()?;
-    same_size(args, &ids, &depths, &normals, &rays)?;
+    let depths_size = args.depth.iter().zip(depths.as_ref().map(|depths| depths.size));
+    let normals_size = args.normal.iter().zip(normals.as_ref().map(|normals| normals.size));
+    let rays_size = args.rays.iter().zip(rays.as_ref().map(|rays| rays.size));
+    let mut sizes = depths_size.chain(normals_size).chain(rays_size);
+    if let Some((path, size)) = sizes.find(|(_, size)| *size != ids.size) {
+        return Err(Failure::Job(anyhow!(
+            "{}: the array is of {}x{} pixels, but {} is of {}x{}; give arrays of one picture",
+            path.display(),
+            size[0],
+            size[1],
+            args.id.display(),
+            ids.size[0],
+            ids.size[1]
+        )));
+    }
     let answers = Answers {
         size: ids.size,
         ids: &ids.values,
@@ -115,12 +127,9 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let found = certified(args, &input, &answers, rays.as_ref())?;
     let report = Report::new(&input, &answers, rays.is_some(), &found);
     progress::clear();
-    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    answer(report.table().as_bytes())?;
     if let Some(path) = &args.json {
-        let json = serde_json::to_string_pretty(&report)
-            .context("the report cannot be written as JSON")?
-            + "\n";
-        name_all(vec![(path, unnamed(path, json.as_bytes())?)])?;
+        name_all(vec![(path, unnamed(path, json(&report)?.as_bytes())?)])?;
     }
     verdict(&found)
 }
@@ -148,30 +157,6 @@ fn array<T>(
     progress::stage(format!("reading {}", path.display()));
     let bytes = read(path)?;
     Ok(decode(&bytes).with_context(|| path.display().to_string())?)
-}
-
-/// Refuses arrays of other sizes than that of the ids.
-fn same_size(
-    args: &CertifyArgs,
-    ids: &Pixels<u32>,
-    depths: &Option<Pixels<f64>>,
-    normals: &Option<Pixels<[f64; 3]>>,
-    rays: &Option<Pixels<Ray>>,
-) -> Result<(), Failure> {
-    let depths = args.depth.iter().zip(depths.as_ref().map(|depths| depths.size));
-    let normals = args.normal.iter().zip(normals.as_ref().map(|normals| normals.size));
-    let rays = args.rays.iter().zip(rays.as_ref().map(|rays| rays.size));
-    let [width, height] = ids.size;
-    match depths.chain(normals).chain(rays).find(|(_, size)| *size != ids.size) {
-        None => Ok(()),
-        Some((path, size)) => Err(Failure::Job(anyhow!(
-            "{}: the array is of {}x{} pixels, but {} is of {width}x{height}; give arrays of one picture",
-            path.display(),
-            size[0],
-            size[1],
-            args.id.display()
-        ))),
-    }
 }
 
 fn certified(
@@ -238,7 +223,6 @@ fn verdict(found: &Conformance) -> Result<(), Failure> {
 /// The number of pixels that the text lists.
 const LISTED: usize = 10;
 
-/// The JSON document.
 #[derive(Serialize)]
 pub(crate) struct Report {
     version: &'static str,
@@ -253,7 +237,6 @@ pub(crate) struct Report {
     worst: Vec<Listed>,
     outcome: &'static str,
     command: String,
-    /// The results as a table of text.
     #[serde(skip)]
     table: String,
 }
@@ -350,7 +333,6 @@ impl Report {
         }
     }
 
-    /// Returns the report as text.
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera } = self.picture;
@@ -374,26 +356,4 @@ fn table(found: &Conformance) -> String {
         text += &format!("\n       {finding}");
     }
     text + "\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::{Command, FromArgMatches as _};
-
-    #[test]
-    fn rays_exclude_all_arguments_that_describe_a_camera() {
-        let command = CertifyArgs::augment_args(Command::new("certify"));
-        let others = [
-            "path", "format", "radius", "color", "frame", "topology", "columns", "id", "depth",
-            "depth_is", "normal", "rays", "at_most", "json", "help",
-        ];
-        let ids = command.get_arguments().map(|argument| argument.get_id().as_str());
-        let of_camera: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
-        assert!(of_camera.iter().all(|id| CAMERA.contains(id)), "{of_camera:?}");
-        assert_eq!(of_camera.len(), CAMERA.len());
-        let words = ["certify", "a.npy", "--id", "b.npy", "--rays", "c.npz"];
-        let matches = command.get_matches_from(words);
-        assert!(CertifyArgs::from_arg_matches(&matches).unwrap().rays.is_some());
-    }
 }

@@ -58,17 +58,30 @@ mod tests {
     use clap::CommandFactory;
 
     use super::*;
-    use crate::args::{CAMERA, RENDERING};
 
+    /// What a recording or given rays contain is not asked for beside them; and no flag is forgotten.
     #[test]
-    fn replay_excludes_all_arguments_that_describe_the_picture() {
+    fn recordings_and_rays_exclude_all_arguments_that_they_contain() {
         let arguments = Arguments::command();
-        let verify = arguments.find_subcommand("verify").unwrap();
-        let others = ["json", "report", "replay", "scene", "help"];
-        let ids = verify.get_arguments().map(|argument| argument.get_id().as_str());
-        let rendering: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
-        let excluded: Vec<_> = RENDERING.into_iter().chain(CAMERA).collect();
-        assert!(rendering.iter().all(|id| excluded.contains(id)), "{rendering:?}");
-        assert_eq!(rendering.len(), excluded.len());
+        for (command, argument, others) in [
+            ("verify", "replay", &["json", "report", "replay", "help"][..]),
+            (
+                "certify",
+                "rays",
+                &[
+                    "path", "format", "radius", "color", "frame", "topology", "columns", "id",
+                    "depth", "depth_is", "normal", "rays", "at_most", "json", "help",
+                ],
+            ),
+        ] {
+            let command = arguments.find_subcommand(command).unwrap();
+            let argument = command.get_arguments().find(|one| one.get_id() == argument).unwrap();
+            let excluded = command.get_arg_conflicts_with(argument);
+            for one in command.get_arguments() {
+                let is_excluded = excluded.iter().any(|other| other.get_id() == one.get_id());
+                let is_other = others.contains(&one.get_id().as_str());
+                assert!(is_excluded != is_other, "{}", one.get_id());
+            }
+        }
     }
 }

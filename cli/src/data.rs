@@ -18,17 +18,13 @@ use pinhole::load::{
 pub(super) struct DataOptions {
     /// Frame of a trajectory, from 0.
     pub(super) frame: Option<usize>,
-    /// Radius of all spheres.
     pub(super) radius: Option<f64>,
-    /// Colour of all spheres.
     pub(super) color: Option<LinearRgb>,
     /// File that says what the spheres of a trajectory are.
     pub(super) topology: Option<PathBuf>,
-    /// Names of the columns of a table.
     pub(super) columns: Vec<String>,
 }
 
-/// Parses the name of a format on the command line.
 pub(super) fn format_parser() -> impl TypedValueParser<Value = &'static Format> {
     let value = |format: &Format| PossibleValue::new(format.name).help(format.about);
     PossibleValuesParser::new(FORMATS.iter().map(value))
@@ -36,7 +32,6 @@ pub(super) fn format_parser() -> impl TypedValueParser<Value = &'static Format> 
 }
 
 impl DataOptions {
-    /// Returns the options for the library's reader.
     fn to_read(&self) -> Options {
         let mut options = Options::default();
         (options.frame, options.radius) = (self.frame, self.radius);
@@ -138,7 +133,7 @@ pub(super) fn trajectory(
 fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
     let bytes = found.frame_bytes(frame).unwrap_or_default();
     let what = format!("{}: reading {bytes} bytes needs", path.display());
-    memory::check_reading(&what, bytes).map_err(Error::msg)
+    memory::check_reading(&what, bytes)
 }
 
 /// An error of reading a file, with its path in front.
@@ -156,7 +151,7 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
         let what = format!("{}: reading an array of {extra} bytes needs", path.display());
-        memory::check_reading(&what, extra).map_err(Error::msg)?;
+        memory::check_reading(&what, extra)?;
     }
     format.read(bytes, &options.to_read()).with_context(file_name)
 }

@@ -66,21 +66,17 @@ impl ColorFlags {
         let refused = |flag: &str, error: &dyn std::fmt::Display| {
             Failure::usage(format!("--{flag}: {error}"))
         };
+        let [radius, emission] =
+            [&args.radius_by, &args.emission_by].map(|text| text.as_deref().map(with_factor));
         let map = args.cmap.as_deref().map(str::parse).transpose();
         let limits = args.range.as_deref().map(str::parse).transpose();
         let missing = args.missing_color.as_deref().map(LinearRgb::from_css).transpose();
         Ok(Self {
             mapping: Mapping {
                 color: args.color_by.as_deref().map(ColorBy::column),
-                radius: args.radius_by.as_deref().map(|text| {
-                    let (column, factor) = with_factor(text);
-                    RadiusBy { column, factor }
-                }),
+                radius: radius.map(|(column, factor)| RadiusBy { column, factor }),
                 opacity: args.opacity_by.clone(),
-                emission: args.emission_by.as_deref().map(|text| {
-                    let (column, factor) = with_factor(text);
-                    EmissionBy { column, factor }
-                }),
+                emission: emission.map(|(column, factor)| EmissionBy { column, factor }),
             },
             map: map.map_err(|error| refused("cmap", &error))?,
             is_reversed: args.cmap_reverse,

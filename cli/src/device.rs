@@ -15,18 +15,15 @@ pub(super) use crate::with_scene::{explained, explained_alone};
 use crate::{interrupt, profile};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, Wait};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, Wait, wgpu};
 use pinhole::verify::run_file::Provenance;
 
 /// What renders, as the flags ask for it.
 pub(crate) enum Device {
-    /// The CPU reference.
     Cpu,
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
     Adapter {
-        /// The adapter that the flags ask for.
         wanted: WantedAdapter,
-        /// The acceleration structure.
         choice: AccelChoice,
         /// Whether the CPU reference renders if there is no adapter.
         or_cpu: bool,
@@ -68,17 +65,13 @@ impl Device {
 
 /// What renders, opened and ready.
 pub(crate) enum Opened {
-    /// The CPU reference.
     Cpu,
     /// The CPU reference, used because there is no adapter.
     #[cfg(feature = "gpu")]
     CpuInstead,
-    /// The device of an adapter.
     #[cfg(feature = "gpu")]
     Device {
-        /// The open device.
         headless: Box<Headless>,
-        /// The acceleration structure.
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
         warning: Option<String>,
@@ -90,9 +83,7 @@ impl Opened {
         match self {
             #[cfg(feature = "gpu")]
             Self::Device { headless, .. } => Some(&headless.adapter_info().name),
-            #[cfg(feature = "gpu")]
-            Self::CpuInstead => None,
-            Self::Cpu => None,
+            _ => None,
         }
     }
 }
@@ -225,8 +216,7 @@ pub(crate) struct AdapterReport {
 
 impl AdapterReport {
     #[cfg(feature = "gpu")]
-    pub(crate) fn of(headless: &Headless) -> Self {
-        let info = headless.adapter_info();
+    pub(crate) fn of(info: &wgpu::AdapterInfo) -> Self {
         Self {
             name: info.name.clone(),
             backend: format!("{:?}", info.backend),
@@ -236,7 +226,6 @@ impl AdapterReport {
         }
     }
 
-    /// Describes the adapter that rendered a saved run.
     pub(crate) fn of_run(provenance: &Provenance) -> Self {
         let Provenance { adapter, backend, device_type, driver, driver_info, .. } = provenance;
         Self {
@@ -254,7 +243,6 @@ impl AdapterReport {
         if self.device_type == "Cpu" { HOST_CLOCK } else { DEVICE_CLOCK }
     }
 
-    /// Describes the adapter on one line.
     pub(crate) fn line(&self) -> String {
         let Self { name, backend, device_type, driver, driver_info } = self;
         format!("{name} ({backend}, {device_type}), driver: {driver} {driver_info}")

@@ -125,7 +125,6 @@ pub(crate) fn unknown_message(error: &clap::Error, arguments: &[String]) -> Opti
     Some(format!("error: unexpected argument '{flag}' found; {hint}"))
 }
 
-/// Whether a flag says what the columns of data mean.
 fn is_of_columns(flag: &str, program: &Command) -> bool {
     let render = program.find_subcommand("render");
     let of_columns = |arg: &&clap::Arg| arg.get_help_heading() == Some(data_flags::HEADING);

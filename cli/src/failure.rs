@@ -27,9 +27,7 @@ pub(super) const NOTHING_WRITTEN: &str = "stopped; nothing was written";
 /// A failure: one line for the user, and an exit code.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The arguments are wrong.
     Usage(anyhow::Error),
-    /// The job could not be done.
     Job(anyhow::Error),
     /// The job was done, and its check found a violation.
     CheckFailed(anyhow::Error),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::data::{self, DataOptions, as_usage, format_parser};
 use crate::failure::Failure;
 use crate::input::{self, Source};
 use crate::progress::answer;
-use crate::{bricks, read_file};
+use crate::{bricks, read_file, text};
 use pinhole::LinearRgb;
 use pinhole::internals::text::one_line;
 use pinhole::load::{Column, ColumnValues, Format, Loaded};
@@ -41,20 +41,14 @@ pub(crate) struct FileArgs {
 
 const BRICKS: read_file::Format = read_file::Format::Bricks;
 
-/// Describes the file.
 pub(crate) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failure> {
     if args.format.is_none() && read_file::Format::of(path).ok() == Some(BRICKS) {
         let text = bricks::info_lines(path, json)?;
-        return Ok(answer(text.as_bytes()).context("standard output: cannot be written")?);
+        return Ok(answer(text.as_bytes())?);
     }
     let report = report(args, path)?;
-    let text = if json {
-        serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
-            + "\n"
-    } else {
-        readable(&report)
-    };
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    let text = if json { text::json(&report)? } else { readable(&report) };
+    Ok(answer(text.as_bytes())?)
 }
 
 fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
@@ -73,7 +67,7 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     match format {
         read_file::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
         // Files of bricks have a report of their own.
-        read_file::Format::Scene | BRICKS => of_scene(path, args),
+        read_file::Format::Scene | BRICKS => of_scene(path, &options),
     }
 }
 
@@ -148,14 +142,8 @@ fn with_spheres(path: &Path, kind: Kind, loaded: &Loaded) -> Report {
     }
 }
 
-fn of_scene(path: &Path, args: &FileArgs) -> Result<Report, Failure> {
-    let given = [
-        ("--frame", args.frame.is_some()),
-        ("--radius", args.radius.is_some()),
-        ("--topology", args.topology.is_some()),
-        ("--columns", !args.columns.is_empty()),
-    ];
-    if let Some((flag, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+fn of_scene(path: &Path, options: &DataOptions) -> Result<Report, Failure> {
+    if let Some(flag) = options.given() {
         return Err(Failure::usage(format!(
             "{}: {flag} applies to data files, but this is a scene file; remove {flag}",
             path.display()
@@ -264,7 +252,6 @@ pub(crate) struct SceneReport {
 
 impl ColumnReport {
     pub(crate) fn new(Column { name, values }: &Column) -> Self {
-        /// How many texts are shown.
         const SHOWN: usize = 6;
         let values = match values {
             ColumnValues::Numbers(numbers) => {

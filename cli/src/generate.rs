@@ -7,18 +7,20 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use tempfile::NamedTempFile;
 
 use crate::args::DemoArgs;
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::input::Source;
-use crate::output::{self, SpheresFormat};
+use crate::input::{Source, extension};
+use crate::output::{check_writable, name_all, unnamed_with};
 use crate::picture::Outputs;
 use crate::progress::{self, tell};
 use crate::render::render;
 use crate::{memory, threads};
 use pinhole::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
 use pinhole::image::LayerSet;
+use pinhole::write::{npy, raw};
 
 #[derive(Debug, Args)]
 pub(crate) struct GenerateArgs {
@@ -45,19 +47,29 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("-n {count}: {}", GenerateError::TooMany { count })));
     }
     let path: &Path = &args.output;
-    let format = SpheresFormat::of(path)?;
+    let write: fn(&[[f32; 4]], &mut NamedTempFile) -> std::io::Result<()> =
+        match extension(path).as_deref() {
+            Some("npy") => |spheres, file| npy::write_spheres(spheres, file),
+            Some("bin") => |spheres, file| raw::write_spheres(spheres, file),
+            _ => {
+                return Err(Failure::usage(format!(
+                    "{}: spheres are written as .npy or .bin; change the extension",
+                    path.display()
+                )));
+            }
+        };
+    check_writable(path)?;
     let bytes = count * BYTES_PER_SPHERE;
-    memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")
-        .map_err(anyhow::Error::msg)?;
+    memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")?;
     tell(format_args!("{}: {count} spheres, {bytes} bytes", path.display()));
     threads::start()?;
     progress::stage("generating spheres");
     let spheres = kind.spheres(count, args.seed).map_err(|error| Failure::Job(error.into()))?;
     progress::stage("writing");
-    Ok(output::write_spheres(path, format, &spheres)?)
+    let file = unnamed_with(path, |file| write(&spheres, file))?;
+    Ok(name_all(vec![(&args.output, file)])?)
 }
 
-/// Returns a parser that accepts the names of the kinds.
 fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(Kind::ALL.iter().map(|kind| kind.name()))
 }

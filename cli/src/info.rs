@@ -3,19 +3,19 @@
 #[cfg(feature = "gpu")]
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::failure::Failure;
+use crate::device::AdapterReport;
 #[cfg(feature = "gpu")]
 use crate::device::WantedAdapter;
 use crate::file_info::{self, FileArgs};
 use crate::progress::answer;
 #[cfg(feature = "gpu")]
 use crate::self_test::{SelfTested, dump};
+use crate::text;
 
-/// The end of the help.
 pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
     bounds of `verify` rely on. Exit codes: 0 done; 1 the file cannot be read, or there is no adapter, or it cannot \
     compute; 2 wrong usage; 3 it computes, but a property fails.\n\n\
@@ -57,7 +57,7 @@ pub(super) struct InfoArgs {
 struct Info {
     version: &'static str,
     /// The adapters, best first; `render` uses the one that is `chosen`.
-    adapters: Vec<AdapterReport>,
+    adapters: Vec<ListedAdapter>,
     /// Why no adapter is chosen, with the message of `render`.
     problem: Option<String>,
     #[cfg(feature = "gpu")]
@@ -65,38 +65,25 @@ struct Info {
     self_test: Option<SelfTested>,
 }
 
+/// An adapter, with the limits that bound the size of pictures and scenes, and the optional features that are of interest
+/// for ray tracing.
 #[derive(Serialize)]
-struct AdapterReport {
-    name: String,
-    backend: String,
-    device_type: String,
-    driver: String,
-    driver_info: String,
+struct ListedAdapter {
+    #[serde(flatten)]
+    adapter: AdapterReport,
     chosen: bool,
-    limits: Limits,
-    features: Features,
+    #[serde(serialize_with = "named")]
+    limits: [(&'static str, u64); 8],
+    #[serde(serialize_with = "named")]
+    features: [(&'static str, bool); 4],
 }
 
-/// The limits that bound the size of pictures and scenes.
-#[derive(Serialize)]
-struct Limits {
-    max_texture_dimension_2d: u64,
-    max_buffer_size: u64,
-    max_storage_buffer_binding_size: u64,
-    max_storage_buffers_per_shader_stage: u64,
-    max_storage_textures_per_shader_stage: u64,
-    max_compute_workgroups_per_dimension: u64,
-    max_compute_invocations_per_workgroup: u64,
-    max_compute_workgroup_storage_size: u64,
-}
-
-/// The optional features that are of interest for ray tracing.
-#[derive(Serialize)]
-struct Features {
-    timestamp_query: bool,
-    subgroup: bool,
-    shader_f64: bool,
-    ray_query: bool,
+/// Writes values with names as the object that has them.
+fn named<S: Serializer, T: Serialize, const N: usize>(
+    values: &[(&'static str, T); N],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(values.iter().map(|(name, value)| (name, value)))
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
@@ -125,18 +112,14 @@ fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
         print(&Info { self_test: Some(tested), ..info() }, true)?;
     } else {
         let text = format!("pinhole {VERSION}\n\n{}", tested.readable());
-        answer(text.as_bytes()).context("standard output: cannot be written")?;
+        answer(text.as_bytes())?;
     }
     verdict
 }
 
 fn print(info: &Info, json: bool) -> Result<(), Failure> {
-    let text = if json {
-        serde_json::to_string_pretty(info).context("the report cannot be written as JSON")? + "\n"
-    } else {
-        readable(info)
-    };
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    let text = if json { text::json(info)? } else { readable(info) };
+    Ok(answer(text.as_bytes())?)
 }
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -162,44 +145,46 @@ fn info() -> Info {
 }
 
 #[cfg(feature = "gpu")]
-fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport {
-    use pinhole::gpu::wgpu;
+fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> ListedAdapter {
+    use pinhole::gpu::wgpu::Features;
 
-    let info = adapter.get_info();
     let limits = adapter.limits();
     let features = adapter.features();
-    let has = |feature| features.contains(feature);
-    AdapterReport {
-        name: info.name,
-        backend: format!("{:?}", info.backend),
-        device_type: format!("{:?}", info.device_type),
-        driver: info.driver,
-        driver_info: info.driver_info,
+    ListedAdapter {
+        adapter: AdapterReport::of(&adapter.get_info()),
         chosen,
-        limits: Limits {
-            max_texture_dimension_2d: limits.max_texture_dimension_2d.into(),
-            max_buffer_size: limits.max_buffer_size,
-            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-            max_storage_buffers_per_shader_stage: limits
-                .max_storage_buffers_per_shader_stage
-                .into(),
-            max_storage_textures_per_shader_stage: limits
-                .max_storage_textures_per_shader_stage
-                .into(),
-            max_compute_workgroups_per_dimension: limits
-                .max_compute_workgroups_per_dimension
-                .into(),
-            max_compute_invocations_per_workgroup: limits
-                .max_compute_invocations_per_workgroup
-                .into(),
-            max_compute_workgroup_storage_size: limits.max_compute_workgroup_storage_size.into(),
-        },
-        features: Features {
-            timestamp_query: has(wgpu::Features::TIMESTAMP_QUERY),
-            subgroup: has(wgpu::Features::SUBGROUP),
-            shader_f64: has(wgpu::Features::SHADER_F64),
-            ray_query: has(wgpu::Features::EXPERIMENTAL_RAY_QUERY),
-        },
+        limits: [
+            ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
+            ("max_buffer_size", limits.max_buffer_size),
+            ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+            (
+                "max_storage_buffers_per_shader_stage",
+                limits.max_storage_buffers_per_shader_stage.into(),
+            ),
+            (
+                "max_storage_textures_per_shader_stage",
+                limits.max_storage_textures_per_shader_stage.into(),
+            ),
+            (
+                "max_compute_workgroups_per_dimension",
+                limits.max_compute_workgroups_per_dimension.into(),
+            ),
+            (
+                "max_compute_invocations_per_workgroup",
+                limits.max_compute_invocations_per_workgroup.into(),
+            ),
+            (
+                "max_compute_workgroup_storage_size",
+                limits.max_compute_workgroup_storage_size.into(),
+            ),
+        ],
+        features: [
+            ("timestamp_query", Features::TIMESTAMP_QUERY),
+            ("subgroup", Features::SUBGROUP),
+            ("shader_f64", Features::SHADER_F64),
+            ("ray_query", Features::EXPERIMENTAL_RAY_QUERY),
+        ]
+        .map(|(name, feature)| (name, features.contains(feature))),
     }
 }
 
@@ -214,24 +199,19 @@ fn readable(info: &Info) -> String {
     if let Some(problem) = &info.problem {
         text += &format!("{problem}\n");
     }
-    for adapter in &info.adapters {
-        let mark = if adapter.chosen { ", used by `render`" } else { "" };
+    for ListedAdapter { adapter, chosen, limits, features } in &info.adapters {
+        let AdapterReport { name, backend, device_type, driver, driver_info } = adapter;
+        let mark = if *chosen { ", used by `render`" } else { "" };
         text += &format!(
-            "\n{} ({}, {}{mark})\n  driver: {} {}\n",
-            adapter.name, adapter.backend, adapter.device_type, adapter.driver, adapter.driver_info
+            "\n{name} ({backend}, {device_type}{mark})\n  driver: {driver} {driver_info}\n  limits\n"
         );
-        for (group, values) in [
-            ("limits", serde_json::to_value(&adapter.limits)),
-            ("features", serde_json::to_value(&adapter.features)),
-        ] {
-            text += &format!("  {group}\n");
-            let Ok(serde_json::Value::Object(values)) = values else {
-                continue;
-            };
-            for (name, value) in values {
-                text += &format!("    {name}: {value}\n");
-            }
-        }
+        let mut limits = *limits;
+        limits.sort_unstable();
+        limits.iter().for_each(|(name, value)| text += &format!("    {name}: {value}\n"));
+        text += "  features\n";
+        let mut features = *features;
+        features.sort_unstable();
+        features.iter().for_each(|(name, value)| text += &format!("    {name}: {value}\n"));
     }
     text
 }

@@ -42,7 +42,6 @@ pub(super) struct Input {
     pub(super) annotations: AnnotationPlan,
     /// Where the size of the picture comes from, for messages: a flag or a file.
     pub(super) size_from: String,
-    /// Notes for the user that are not errors.
     pub(super) notes: Vec<String>,
     /// The file of bricks of which the scene has only the outermost spheres.
     pub(super) bricks: Option<Arc<BrickFile>>,

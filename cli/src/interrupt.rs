@@ -29,7 +29,6 @@ static STATE: Mutex<State> = Mutex::new(State {
 
 struct State {
     phase: Phase,
-    /// Whether there was a signal.
     is_requested: bool,
     /// Temporary files to remove. The list may include files that were renamed or removed since.
     temporaries: Vec<PathBuf>,

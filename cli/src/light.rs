@@ -16,7 +16,6 @@ use pinhole::style::Style;
 /// is set once.
 pub(super) const HEADING: &str = "Light and style";
 
-/// The values of `--integrator`.
 const INTEGRATORS: &[(&str, &str, IntegratorKind)] = &[
     (
         "primary",
@@ -31,7 +30,6 @@ const INTEGRATORS: &[(&str, &str, IntegratorKind)] = &[
     ("path", "Path tracing: light is followed as surfaces scatter it", IntegratorKind::Path),
 ];
 
-/// The values of `--filter`.
 const FILTERS: &[(&str, &str, PixelFilter)] = &[
     ("box", "", PixelFilter::Box),
     ("gaussian", "", PixelFilter::Gaussian),
@@ -218,7 +216,6 @@ fn add_to_studio(studio: &mut Studio, ao: Option<u32>, outline: Option<f32>) {
     }
 }
 
-/// Parses the name of a style.
 fn styles() -> impl TypedValueParser<Value = Style> {
     PossibleValuesParser::new(Style::ALL.iter().map(|style| style.name()))
         .try_map(|name| Style::of_name(&name).ok_or("this is not a style"))

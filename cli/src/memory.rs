@@ -3,6 +3,7 @@
 use std::fs::read_to_string;
 use std::path::Path;
 
+use anyhow::{Result, bail};
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 use crate::failure::Failure;
@@ -26,19 +27,19 @@ pub(crate) fn check(
     let needed = film.pixel_count().saturating_mul(per_pixel);
     let (width, height) = (film.width(), film.height());
     let what = format!("{size_from}: a picture of {width}x{height} needs");
-    Ok(check_bytes(&what, needed, "a smaller size").map_err(anyhow::Error::msg)?)
+    Ok(check_bytes(&what, needed, "a smaller size")?)
 }
 
 /// Refuses work that needs more memory than is free. `what` is the start of the sentence, up to the number of bytes.
-pub(crate) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), String> {
+pub(crate) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<()> {
     if let Some(available) = available()
         && needed > available
     {
-        return Err(format!(
+        bail!(
             "{what} {} of memory, but only {} are free; choose {instead}",
             readable(needed),
             readable(available)
-        ));
+        );
     }
     Ok(())
 }
@@ -48,7 +49,7 @@ const SMALL: u64 = 1 << 24;
 
 /// Refuses a file of `size` bytes if there is not enough memory for it and for its spheres. `what` is the start of the
 /// sentence, up to the number of bytes.
-pub(crate) fn check_reading(what: &str, size: u64) -> Result<(), String> {
+pub(crate) fn check_reading(what: &str, size: u64) -> Result<()> {
     if size <= SMALL {
         return Ok(());
     }

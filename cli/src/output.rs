@@ -9,10 +9,8 @@ use anyhow::{Context, Result, anyhow};
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
-use super::input::extension;
 use super::profile;
 use crate::interrupt;
-use pinhole::write::{npy, raw};
 
 /// Refuses to use one file for two outputs.
 pub(super) fn check_distinct<'a>(
@@ -81,42 +79,6 @@ impl NewFolder {
             }
         })
     }
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(super) enum SpheresFormat {
-    Npy,
-    RawF32x4,
-}
-
-impl SpheresFormat {
-    /// Returns the format for the extension of a path, and checks that the file can be written.
-    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
-        let format = match extension(path).as_deref() {
-            Some("npy") => Self::Npy,
-            Some("bin") => Self::RawF32x4,
-            _ => {
-                return Err(Failure::usage(format!(
-                    "{}: spheres are written as .npy or .bin; change the extension",
-                    path.display()
-                )));
-            }
-        };
-        check_writable(path)?;
-        Ok(format)
-    }
-}
-
-pub(super) fn write_spheres(
-    path: &Path,
-    format: SpheresFormat,
-    spheres: &[[f32; 4]],
-) -> Result<()> {
-    let file = unnamed_with(path, |file| match format {
-        SpheresFormat::Npy => npy::write_spheres(spheres, file),
-        SpheresFormat::RawF32x4 => raw::write_spheres(spheres, file),
-    })?;
-    name_all(vec![(&path.to_path_buf(), file)])
 }
 
 /// Creates a temporary file in the folder of the final file. It is removed if the program is stopped.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
@@ -87,7 +87,6 @@ impl Outputs {
         png::encode_annotated(image, encoding, &self.annotations)
     }
 
-    /// Returns these outputs with other names.
     pub(super) fn renamed(&self, name: impl Fn(&Path) -> PathBuf) -> Self {
         Self {
             picture: self.picture.as_deref().map(&name),
@@ -138,7 +137,7 @@ impl Outputs {
         name_all(files)?;
         if let Some(picture) = for_standard_output {
             interrupt::set_message("stopped; the picture on standard output is not complete");
-            answer(&picture).context("standard output: cannot be written")?;
+            answer(&picture)?;
         }
         Ok(())
     }

@@ -2,24 +2,22 @@
 
 use std::sync::Arc;
 
-use anyhow::Context;
 use serde::Serialize;
 
 use super::failure::Failure;
 use super::input::{Input, Source};
 use super::light::LightFlags;
-use super::views::Views;
+use super::views::views_of;
 use super::{render, threads};
 use crate::args::PlanArgs;
 use crate::device::{AdapterReport, WantedAdapter, explained};
 use crate::memory;
-use crate::progress::{self, answer, tell};
-use crate::text::table;
+use crate::progress::{self, answer};
+use crate::text::{json, table};
 use pinhole::accel::PlannedBuffer;
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Layer, LayerSet};
 
-/// The JSON document.
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
@@ -100,30 +98,23 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         ));
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
+    input.notes.iter().for_each(|note| progress::notes(false)(note));
     // `render` adds this layer too.
     let alpha = input.encoding.transparent().then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
     let choice = args.accel.accel.unwrap_or_default();
-    let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
+    let plan = render::plan(&headless, &input, &views_of(&input, input.film), layers, choice);
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)
         .map_err(|error| explained(&headless, &error));
     let problem = verdict.as_ref().err().map(Failure::message);
     let report = Report::new(&input, plan, &headless, available, problem);
-    let text = if args.json {
-        serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
-            + "\n"
-    } else {
-        report.readable()
-    };
+    let text = if args.json { json(&report)? } else { report.readable() };
     progress::clear();
-    answer(text.as_bytes()).context("standard output: cannot be written")?;
+    answer(text.as_bytes())?;
     verdict
 }
 
@@ -163,7 +154,7 @@ impl Report {
             host_bytes: plan.host_bytes,
             host_peak: plan.host_peak,
             host_bytes_available,
-            adapter: AdapterReport::of(headless),
+            adapter: AdapterReport::of(headless.adapter_info()),
             limits: LimitsReport {
                 max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
                 max_buffer_size: limits.max_buffer_size,

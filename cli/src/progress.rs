@@ -6,6 +6,7 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use pinhole::internals::text::one_line;
@@ -15,7 +16,7 @@ pub(crate) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() && !line.is_held {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {wide_msg}", None);
-        bar.set_message(pinhole::internals::text::one_line(&text.into()));
+        bar.set_message(one_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
 }
@@ -82,7 +83,6 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
     }
 }
 
-/// Removes the line.
 pub(crate) fn clear() {
     let mut line = line();
     (line.total, line.plain) = (None, None);
@@ -97,7 +97,6 @@ pub(crate) fn close() {
     line().is_closed = true;
 }
 
-/// The progress line of the program.
 static LINE: Mutex<Line> =
     Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
 
@@ -195,13 +194,22 @@ pub(crate) fn tell_all(text: &str) {
     let _ = write!(io::stderr().lock(), "{text}");
 }
 
+/// What tells notes, unless they are not wanted.
+pub(crate) fn notes(quiet: bool) -> impl Fn(&dyn fmt::Display) + Copy {
+    move |note: &dyn fmt::Display| {
+        if !quiet {
+            tell(format_args!("note: {note}"));
+        }
+    }
+}
+
 /// Prints the result on standard output.
-pub(crate) fn answer(bytes: &[u8]) -> io::Result<()> {
+pub(crate) fn answer(bytes: &[u8]) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         // The reader has closed the pipe because it needs no more.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
+        result => result.context("standard output: cannot be written"),
     }
 }
 

@@ -4,7 +4,6 @@ use super::failure::Failure;
 use crate::with_scene::explained_alone;
 use pinhole::gpu::{GpuError, Headless, SelfTestExtent, SelfTestReport, Wait};
 
-/// Returns a message about the first property that failed.
 pub(super) fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
     let failure = report.first_failure()?;
     Some(format!("{adapter} fails the self-test ({failure})"))

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Read, Seek};
 use std::path::Path;
 
-use anyhow::{Context, Error, Result, bail};
+use anyhow::{Context, Result, bail};
 
 use crate::bricks::EXTENSION;
 use crate::failure::Failure;
@@ -52,7 +52,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
         (Box::new(file), size)
     };
     let what = format!("{}: reading {size} bytes needs", path.display());
-    memory::check_reading(&what, size).map_err(Error::msg)?;
+    memory::check_reading(&what, size)?;
     let mut bytes = Vec::new();
     usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
         || format!("{}: there is not enough memory for {size} bytes", path.display()),
@@ -64,7 +64,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     {
         piece = bytes.len() as u64;
         let what = format!("{}: reading more than {piece} bytes needs", path.display());
-        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
+        memory::check_reading(&what, 2 * piece)?;
     }
     Ok(bytes)
 }

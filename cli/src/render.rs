@@ -12,7 +12,7 @@ use super::light::LightFlags;
 use super::picture::Outputs;
 use super::render_args::RenderArgs;
 use super::stop_rule::{StopRule, Watching};
-use super::views::Views;
+use super::views::{Shot, extra_bytes_per_pixel, views_of};
 use super::{bricks, profile};
 use crate::annotation::{AnnotationFlags, EncodingFlags};
 use crate::args::Stereo;
@@ -68,7 +68,11 @@ impl Job {
         Ok(Self {
             source: Source { color, structure, annotation: annotation.clone(), ..source },
             stop_rule,
-            encoding: EncodingFlags::new(&args.encoding, outputs.format)?,
+            encoding: EncodingFlags::new(
+                &args.encoding,
+                args.color.annotation.dpi,
+                outputs.format,
+            )?,
             annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
@@ -83,7 +87,7 @@ impl Job {
         input: &mut Input,
         note: impl Fn(&dyn std::fmt::Display),
     ) -> Result<(Encoding, Annotations), Failure> {
-        let encoding = self.annotation.apply_to(self.encoding.apply_to(input.encoding));
+        let encoding = self.encoding.apply_to(input.encoding);
         let encoding = encoding.with_background(input.settings.visible_background());
         input.settings.is_transparent = encoding.transparent();
         if input.settings.integrator.is_primary() {
@@ -100,68 +104,61 @@ pub(super) fn render_part(
     part: Film,
     layers: LayerSet,
     opened: &Opened,
-) -> Result<Views<Image>, Failure> {
+) -> Result<Vec<Image>, Failure> {
     let layers = input.settings.layers_for(layers);
     let unfinished = input.settings.unfinished();
     let finished = std::mem::replace(&mut input.settings, unfinished);
-    let views = Views::on_film(input, part);
-    let images = render_views(input, &StopRule::default(), &views, layers, opened);
+    let (views, stop_rule) = (&views_of(input, part), StopRule::default());
+    let images = render_views(&Shot { input, views, layers, stop_rule, opened });
     input.settings = finished;
     images
 }
 
 /// Completes the pictures of all eyes that were put together from parts, and puts them beside each other.
 pub(super) fn finish_joined(
-    images: Views<Image>,
+    images: Vec<Image>,
     settings: &RenderSettings,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Image, Failure> {
-    joined(finish_views(images, settings, layers, opened)?)
+    let finished = images.into_iter().map(|image| finish(image, settings, layers, opened));
+    joined(finished.collect::<Result<_, _>>()?)
 }
 
-/// Completes the pictures of all eyes that were put together from parts.
-pub(super) fn finish_views(
-    images: Views<Image>,
+/// Completes a picture that was put together from parts.
+pub(super) fn finish(
+    image: Image,
     settings: &RenderSettings,
     layers: LayerSet,
     opened: &Opened,
-) -> Result<Views<Image>, Failure> {
+) -> Result<Image, Failure> {
     match opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, .. } => images.try_each(|image| {
-            let finished = headless.finish(image.clone(), settings, layers).wait();
+        Opened::Device { headless, .. } => {
+            let finished = headless.finish(image, settings, layers).wait();
             finished.map_err(|error| explained(headless, &error))
-        }),
-        _ => Ok(images.map(|image| cpu::finish(image, settings, layers))),
+        }
+        _ => Ok(cpu::finish(image, settings, layers)),
     }
 }
 
 /// Renders the view of the camera, or of the middle between two eyes.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
-    let view = Views::One(input.view());
-    match render_views(input, &StopRule::default(), &view, layers, opened)? {
-        Views::One(image) | Views::Two([image, _]) => Ok(image),
-    }
+    let (views, stop_rule) = (&[input.view()], StopRule::default());
+    render_joined(&Shot { input, views, layers, stop_rule, opened })
 }
 
 /// Renders the picture, or the pictures of both eyes side by side.
-pub(super) fn render_joined(
-    input: &Input,
-    stop_rule: &StopRule,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<Image, Failure> {
-    joined(render_views(input, stop_rule, views, layers, opened)?)
+pub(super) fn render_joined(shot: &Shot<'_>) -> Result<Image, Failure> {
+    joined(render_views(shot)?)
 }
 
-fn joined(images: Views<Image>) -> Result<Image, Failure> {
-    Ok(match images {
-        Views::One(image) => image,
-        Views::Two([left, right]) => Image::side_by_side([&left, &right])
-            .context("the pictures of both eyes cannot be joined")?,
-    })
+fn joined(mut images: Vec<Image>) -> Result<Image, Failure> {
+    if let [left, right] = &images[..] {
+        let joined = Image::side_by_side([left, right]);
+        return Ok(joined.context("the pictures of both eyes cannot be joined")?);
+    }
+    Ok(images.pop().context("there is no picture")?)
 }
 
 /// Tells the user once, however many pictures are rendered, what the device is not.
@@ -172,38 +169,25 @@ fn tell_once(text: impl FnOnce() -> String) {
 }
 
 /// Renders on the device, and tells the user if it is not the expected one.
-pub(super) fn render_views(
-    input: &Input,
-    stop_rule: &StopRule,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<Views<Image>, Failure> {
-    check_device(input, views, layers, opened)?;
-    if let Some(bricks) = &input.bricks {
-        return bricks::render(bricks, input, views, layers, opened);
+pub(super) fn render_views(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
+    check_device(shot)?;
+    if let Some(bricks) = &shot.input.bricks {
+        return bricks::render(bricks, shot);
     }
-    match opened {
+    match shot.opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, .. } => {
-            on_gpu(headless, input, stop_rule, views, layers, *choice)
-        }
-        _ => on_cpu(input, stop_rule, views, layers),
+        Opened::Device { headless, choice, .. } => on_gpu(headless, shot, *choice),
+        _ => on_cpu(shot),
     }
 }
 
 /// Refuses pictures of the CPU that do not fit into memory, and tells the user once if the device is not the expected one.
-pub(super) fn check_device(
-    input: &Input,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<(), Failure> {
-    match opened {
-        Opened::Cpu => check_on_cpu(input, views, layers),
+pub(super) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
+    match shot.opened {
+        Opened::Cpu => check_on_cpu(shot),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
-            check_on_cpu(input, views, layers)?;
+            check_on_cpu(shot)?;
             tell_once(|| {
                 format!(
                     "note: rendering on the CPU reference, which is slower: {}",
@@ -221,23 +205,20 @@ pub(super) fn check_device(
 }
 
 /// Refuses pictures that do not fit into memory.
-fn check_on_cpu(input: &Input, views: &Views<View<'_>>, layers: LayerSet) -> Result<(), Failure> {
+fn check_on_cpu(shot: &Shot<'_>) -> Result<(), Failure> {
+    let Shot { input, views, layers, .. } = *shot;
     let is_lit = !input.settings.integrator.is_primary();
     let sums = if is_lit { SampledPicture::BYTES_PER_PIXEL } else { 0 };
-    let extra = views.extra_bytes_per_pixel(layers) + sums;
-    memory::check(&views.film(), &input.size_from, layers, extra)
+    let extra = extra_bytes_per_pixel(views, layers) + sums;
+    memory::check(&shot.film(), &input.size_from, layers, extra)
 }
 
-fn on_cpu(
-    input: &Input,
-    stop_rule: &StopRule,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-) -> Result<Views<Image>, Failure> {
-    let (Input { scene, settings, .. }, film) = (input, views.film());
+fn on_cpu(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
+    let Shot { input: Input { scene, settings, .. }, views, layers, stop_rule, .. } = *shot;
+    let pixels = shot.film().pixel_count();
     let plan = SearchPlan::new(scene);
     let what = format!("a structure of {} spheres needs", scene.len());
-    memory::check_bytes(&what, plan.bytes(), "fewer spheres").map_err(anyhow::Error::msg)?;
+    memory::check_bytes(&what, plan.bytes(), "fewer spheres")?;
     progress::stage("building the structure");
     let phase = profile::phase("build");
     let structure = plan.build().context("the structure cannot be built")?;
@@ -246,13 +227,14 @@ fn on_cpu(
     let is_lit = !settings.integrator.is_primary();
     let mut too_short = None;
     let mut render = || {
-        views.try_each(|view| {
-            let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
+        let pictures = views.iter().map(|view| {
+            let watching = Watching::new(stop_rule, views.len(), pixels, is_lit);
             let watch = &mut |progress: &_| watching.decide(progress);
             let picture = cpu::render_watched(&structure, view, settings, layers, watch);
             too_short = watching.too_short();
             Ok((picture?, watching))
-        })
+        });
+        pictures.collect::<Result<Vec<_>, cpu::RenderError>>()
     };
     // Where nothing would be kept, a signal may end the program at any time.
     let (done, is_stopped) =
@@ -260,38 +242,35 @@ fn on_cpu(
     if let Some(failure) = too_short {
         return Err(failure);
     }
-    let done: Result<_, cpu::RenderError> = done;
     let pictures = done.context("the CPU cannot render this picture")?;
     Ok(judged(pictures, settings.sampling.samples, is_stopped))
 }
 
 /// Tells the user about pictures that stopped early or have more noise than wanted, and returns the images.
-fn judged(pictures: Views<(Picture, Watching)>, total: u32, is_stopped: bool) -> Views<Image> {
-    for (picture, watching) in pictures.as_slice() {
+fn judged(pictures: Vec<(Picture, Watching)>, total: u32, is_stopped: bool) -> Vec<Image> {
+    for (picture, watching) in &pictures {
         let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
         verdict.iter().for_each(tell);
     }
-    pictures.map(|(picture, _)| picture.image)
+    pictures.into_iter().map(|(picture, _)| picture.image).collect()
 }
 
 #[cfg(feature = "gpu")]
 fn on_gpu(
     headless: &Headless,
-    input: &Input,
-    stop_rule: &StopRule,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
+    shot: &Shot<'_>,
     choice: AccelChoice,
-) -> Result<Views<Image>, Failure> {
-    let (Input { scene, settings, .. }, film) = (input, views.film());
+) -> Result<Vec<Image>, Failure> {
+    let Shot { input, views, layers, stop_rule, .. } = *shot;
+    let Input { scene, settings, .. } = input;
     let is_lit = !settings.integrator.is_primary();
+    let pixels = shot.film().pixel_count();
     let plan = |choice| plan(headless, input, views, layers, choice);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::keeping(|| {
-            let pixels = film.pixel_count();
-            if let (false, Views::One(view)) = (is_lit, views) {
-                let watching = Watching::new(*stop_rule, 1, pixels, false);
+            if let (false, [view]) = (is_lit, views) {
+                let watching = Watching::new(stop_rule, 1, pixels, false);
                 let name = plan.accel.structure.name();
                 let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) =
                     (&mut |progress| watch_upload(name, progress), &mut |progress| {
@@ -299,18 +278,19 @@ fn on_gpu(
                     });
                 let picture =
                     headless.render_planned(scene, plan, view, settings, layers, watches).wait()?;
-                return Ok(Views::One((picture, watching)));
+                return Ok(vec![(picture, watching)]);
             }
             let buffers = upload(headless, scene, plan)?;
             progress::stage("preparing");
-            views.try_each(|view| {
-                let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
+            let pictures = views.iter().map(|view| {
+                let watching = Watching::new(stop_rule, views.len(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
                 let picture =
                     headless.render_uploaded(&buffers, view, settings, layers, watch).wait();
                 too_short = watching.too_short();
                 Ok((picture?, watching))
-            })
+            });
+            pictures.collect::<Result<Vec<_>, GpuError>>()
         });
         if let Some(failure) = too_short {
             return Err(failure);
@@ -329,12 +309,12 @@ fn on_gpu(
 pub(super) fn plan(
     headless: &Headless,
     input: &Input,
-    views: &Views<View<'_>>,
+    views: &[View<'_>],
     layers: LayerSet,
     choice: AccelChoice,
 ) -> RenderPlan {
     let Input { scene, settings, .. } = input;
-    let extra = views.extra_bytes_per_pixel(layers);
-    let view = View::new(input.camera.as_ref(), views.film());
+    let extra = extra_bytes_per_pixel(views, layers);
+    let view = View::new(input.camera.as_ref(), views[0].film);
     headless.plan(scene, &view, settings, layers, choice, extra)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::frames::FramesArgs;
+use super::frames::args::FramesArgs;
 use super::light::LightArgs;
 #[cfg(feature = "gpu")]
 use super::profile::ProfileArgs;

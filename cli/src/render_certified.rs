@@ -8,12 +8,12 @@ use super::failure::Failure;
 use super::input::Input;
 use super::picture::{Outputs, PictureFormat};
 use super::progress;
-use super::render::{finish_views, render_joined, render_part};
+use super::render::{finish, render_joined, render_part};
 use super::stop_rule::StopRule;
-use super::views::Views;
+use super::views::{Shot, views_of};
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, Layer, LayerSet};
+use pinhole::image::{Image, Layer};
 use pinhole::render::RenderSettings;
 use pinhole::verify::denoised;
 
@@ -29,7 +29,7 @@ struct Made {
 
 /// How a picture is made.
 struct Making<'a> {
-    stop_rule: &'a StopRule,
+    stop_rule: StopRule,
     outputs: &'a Outputs,
     encoding: &'a Encoding,
     opened: &'a Opened,
@@ -39,7 +39,7 @@ struct Making<'a> {
 /// and is not written; the certificate of one of which too much is undecided says so.
 pub(super) fn run(
     input: &mut Input,
-    stop_rule: &StopRule,
+    stop_rule: StopRule,
     outputs: Outputs,
     encoding: &Encoding,
     opened: &Opened,
@@ -66,9 +66,9 @@ pub(super) fn run(
 impl Making<'_> {
     fn plain(&self, input: &mut Input) -> Result<Made, Failure> {
         let wanted = self.outputs.layers(self.encoding);
-        let views = Views::of(input);
-        let layers = wanted.with(COUNTED);
-        let image = render_joined(input, self.stop_rule, &views, layers, self.opened)?;
+        let (views, layers) = (&views_of(input, input.film), wanted.with(COUNTED));
+        let Self { stop_rule, opened, .. } = *self;
+        let image = render_joined(&Shot { input, views, layers, stop_rule, opened })?;
         let written = self.written(&image)?;
         let judged = certified::judge(input, self.encoding, wanted, &written)?;
         Ok(Made { image, written, judged })
@@ -82,26 +82,17 @@ impl Making<'_> {
             )));
         }
         let layers = self.outputs.layers(self.encoding).with(COUNTED);
-        let noisy = one(render_part(input, input.film, layers, self.opened)?);
+        let noisy = render_part(input, input.film, layers, self.opened)?.swap_remove(0);
         let with_guides = input.settings.layers_for(layers);
         let without_noise = RenderSettings { is_denoised: true, ..input.settings.unfinished() };
-        let quiet = self.finish(noisy.clone(), &without_noise, with_guides)?;
+        let quiet = finish(noisy.clone(), &without_noise, with_guides, self.opened)?;
         progress::stage("checking the denoiser");
         let denoiser = denoised::certify(&noisy, &quiet).map_err(anyhow::Error::from)?;
         let with_lines = RenderSettings { is_denoised: false, ..input.settings.clone() };
-        let image = self.finish(quiet, &with_lines, layers)?;
+        let image = finish(quiet, &with_lines, layers, self.opened)?;
         let written = self.written(&image)?;
         let means = certified::means_of_light(input, &noisy, GUIDES)?;
         Ok(Made { image, written, judged: Judged::Means(means, Some(denoiser)) })
-    }
-
-    fn finish(
-        &self,
-        image: Image,
-        settings: &RenderSettings,
-        layers: LayerSet,
-    ) -> Result<Image, Failure> {
-        finish_views(Views::One(image), settings, layers, self.opened).map(one)
     }
 
     /// The samples that are written of an image.
@@ -114,11 +105,5 @@ impl Making<'_> {
             ));
         }
         Written::of(image, self.encoding, self.outputs.format == PictureFormat::Png, first)
-    }
-}
-
-fn one(images: Views<Image>) -> Image {
-    match images {
-        Views::One(image) | Views::Two([image, _]) => image,
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 
 use crate::args::Stereo;
 use crate::failure::Failure;
@@ -14,7 +14,7 @@ use crate::profile;
 use crate::progress::{self, answer, tell};
 use crate::render::{Job, render_joined, render_views};
 use crate::render_args::RenderArgs;
-use crate::views::Views;
+use crate::views::{Shot, views_of};
 use crate::{frames, render_certified, threads};
 use pinhole::annotate::AnnotationPlan;
 use pinhole::image::encoding::Encoding;
@@ -47,11 +47,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if quiet {
         progress::close();
     }
-    let note = |note: &dyn std::fmt::Display| {
-        if !quiet {
-            tell(format_args!("note: {note}"));
-        }
-    };
+    let note = progress::notes(quiet);
     threads::start()?;
     if args.certify || args.report.print_scene {
         let flag = if args.certify { "--certify" } else { "--print-scene" };
@@ -60,7 +56,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if args.report.print_scene {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
-        let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
+        let encoding = job.encoding.apply_to(input.encoding);
         return Ok(print(&input, encoding, job.annotation.plan_over(&input.annotations))?);
     }
     // The driver is loaded while the file is read, which saves time.
@@ -70,28 +66,28 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     let (encoding, annotations) = job.finish(&mut input, note)?;
     let outputs = Outputs { annotations, ..job.outputs };
     let layers = outputs.layers(&encoding);
-    let views = Views::of(&input);
-    if job.stereo.is_some() && views.count() == 1 {
+    let views = &views_of(&input, input.film);
+    if job.stereo.is_some() && views.len() == 1 {
         return Err(Failure::usage(
             "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ));
     }
     let adapter = opened.adapter();
-    if job.stereo == Some(Stereo::TwoFiles) {
-        let outputs = outputs.of_eyes()?;
-        outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
-        let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
-        Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
-        said(quiet, &input, started);
-        return Ok(());
-    }
+    let (stop_rule, opened) = (job.stop_rule, &opened);
     if args.certify {
-        let verdict =
-            render_certified::run(&mut input, &job.stop_rule, outputs, &encoding, &opened)?;
+        let verdict = render_certified::run(&mut input, stop_rule, outputs, &encoding, opened)?;
         said(quiet, &input, started);
         return verdict;
     }
-    let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
+    let shot = Shot { input: &input, views, layers, stop_rule, opened };
+    if job.stereo == Some(Stereo::TwoFiles) {
+        let outputs = outputs.of_eyes()?;
+        outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
+        Outputs::write_both(&outputs, &render_views(&shot)?, &encoding, adapter)?;
+        said(quiet, &input, started);
+        return Ok(());
+    }
+    let image = render_joined(&shot)?;
     outputs.write(&image, &encoding, adapter, None)?;
     said(quiet, &input, started);
     Ok(())
@@ -124,7 +120,7 @@ pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPl
          # Paths are relative to the folder in which it was written: keep it there.\n\n{}",
         write(&contents)
     );
-    answer(text.as_bytes()).context("standard output: cannot be written")
+    answer(text.as_bytes())
 }
 
 /// Returns a path as text, which is all that a scene file can name.

@@ -73,7 +73,7 @@ impl Report {
 }
 
 /// Writes a number with a comma before each group of three digits.
-fn grouped(number: usize) -> String {
+pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

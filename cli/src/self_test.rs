@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use serde::Serialize;
 
 use crate::device::{AdapterReport, WantedAdapter, explained_alone};
@@ -44,7 +44,7 @@ impl SelfTested {
         let report = test(&headless)?;
         progress::clear();
         Ok(Self {
-            adapter: AdapterReport::of(&headless),
+            adapter: AdapterReport::of(headless.adapter_info()),
             passed: report.passed(),
             properties: report.properties().iter().map(PropertyReport::new).collect(),
             failure: failure(&headless.adapter_info().name, &report),
@@ -128,7 +128,7 @@ pub(crate) fn dump(folder: &Path) -> Result<(), Failure> {
             name_all(files.collect::<anyhow::Result<Vec<_>>>()?)
         },
     )?;
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    Ok(answer(text.as_bytes())?)
 }
 
 /// What distinguishes a kernel, as the name of a file.

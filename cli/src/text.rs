@@ -1,6 +1,13 @@
 //! Tables for people, words of command lines for shells, so that people and scripts can give them again, and names of values.
 
+use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+/// Formats a report as JSON.
+pub(crate) fn json(report: &impl serde::Serialize) -> anyhow::Result<String> {
+    let text = serde_json::to_string_pretty(report);
+    Ok(text.context("the report cannot be written as JSON")? + "\n")
+}
 
 /// Formats rows under a heading, indented by two spaces.
 #[cfg(feature = "gpu")]

@@ -13,18 +13,14 @@ use pinhole::{LinearRgb, SphereArray};
 /// Centres, an array of shape (n, 3).
 #[derive(FromPyObject)]
 pub(crate) enum Centers<'py> {
-    /// In f32.
     Narrow(PyReadonlyArray2<'py, f32>),
-    /// In f64.
     Wide(PyReadonlyArray2<'py, f64>),
 }
 
 /// One radius, or an array of shape (n,) with the type of the centres.
 #[derive(FromPyObject)]
 pub(crate) enum Radii<'py> {
-    /// In f32.
     Narrow(PyReadonlyArray1<'py, f32>),
-    /// In f64.
     Wide(PyReadonlyArray1<'py, f64>),
     /// The radius of all spheres.
     All(f64),

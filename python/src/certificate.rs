@@ -16,6 +16,8 @@ use pinhole::verify::{Certificate, Checker, Verdict};
 #[pyclass(frozen, module = "pinhole._pinhole")]
 pub(crate) struct Judged {
     certificate: Certificate,
+    /// The name of the adapter that rendered.
+    #[pyo3(get)]
     adapter: String,
 }
 
@@ -31,12 +33,6 @@ impl Judged {
     #[getter]
     fn is_legal(&self) -> bool {
         self.certificate.is_legal()
-    }
-
-    /// The name of the adapter that rendered.
-    #[getter]
-    fn adapter(&self) -> &str {
-        &self.adapter
     }
 
     /// The number of pixels with each verdict.

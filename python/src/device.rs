@@ -11,14 +11,11 @@ use pinhole::LayerSet;
 use pinhole::cpu::{SampledPicture, SearchPlan};
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, SelfTestExtent, Wait, adapter};
 
-/// What renders.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Backend {
     /// An adapter, or the CPU if there is none.
     Auto,
-    /// An adapter.
     Gpu,
-    /// The CPU.
     Cpu,
 }
 

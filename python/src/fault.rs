@@ -22,7 +22,6 @@ pub(crate) enum Fault {
     Python(PyErr),
 }
 
-/// The result of work that may fail.
 pub(crate) type Outcome<T> = Result<T, Fault>;
 
 impl Fault {

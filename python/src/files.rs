@@ -22,6 +22,8 @@ pub(crate) struct FileData {
     /// The frames, if files of this format can have several.
     frames: Option<Mutex<Trajectory>>,
     count: usize,
+    /// What is wrong after the last complete frame, if anything is.
+    #[pyo3(get)]
     problem: Option<String>,
 }
 
@@ -57,12 +59,6 @@ impl FileData {
     /// The number of complete frames.
     fn __len__(&self) -> usize {
         self.count
-    }
-
-    /// What is wrong after the last complete frame, if anything is.
-    #[getter]
-    fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
     }
 
     /// Reads a frame, counted from 0. Equal values have equal colours in all frames with the same `keys`.

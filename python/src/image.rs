@@ -20,11 +20,14 @@ pub(crate) struct Picture {
     pub(crate) image: Image,
     pub(crate) encoding: Encoding,
     pub(crate) annotations: Annotations,
-    /// The name of the adapter, if an adapter rendered.
+    /// The name of the adapter that rendered; None if the CPU did.
+    #[pyo3(get)]
     pub(crate) adapter: Option<String>,
     /// The layers that were asked for, which EXR files have.
     pub(crate) layers: LayerSet,
-    pub(crate) all_notes: Vec<String>,
+    /// What the user should know.
+    #[pyo3(get)]
+    pub(crate) notes: Vec<String>,
 }
 
 #[pymethods]
@@ -39,18 +42,6 @@ impl Picture {
     #[getter]
     fn height(&self) -> u32 {
         self.image.height()
-    }
-
-    /// The name of the adapter that rendered; None if the CPU did.
-    #[getter]
-    fn adapter(&self) -> Option<&str> {
-        self.adapter.as_deref()
-    }
-
-    /// What the user should know.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.all_notes.clone()
     }
 
     /// The names of the layers that the picture has.

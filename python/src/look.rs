@@ -31,7 +31,6 @@ impl<'py> FromPyObject<'_, 'py> for SceneText {
 }
 
 impl SceneText {
-    /// Parses the text.
     pub(crate) fn parse(&self) -> Outcome<SceneFile> {
         SceneFile::parse(&self.text).map_err(|error| self.fault(&error))
     }

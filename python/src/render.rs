@@ -11,14 +11,13 @@ use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
 use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries};
-use pinhole::render::{Integrator, Progress};
+use pinhole::render::{Integrator, Picture, Watch};
 use pinhole::scene::SceneUpdate;
-use pinhole::{Image, LayerSet, RenderSettings, Scene};
+use pinhole::{Image, LayerSet, RenderSettings, Scene, View};
 
 /// How long a thread sleeps before it looks again whether another has rendered its picture.
 const WAIT: Duration = Duration::from_millis(2);
 
-/// A scene on a device.
 struct Uploaded {
     opened: Arc<Opened>,
     buffers: SceneBuffers,
@@ -117,16 +116,9 @@ impl OnDevice {
         let plan =
             |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, extra);
         let work = |buffers: &SceneBuffers| {
-            let pictures = views.iter().enumerate().map(|(done, view)| {
-                let watch = &mut |progress: &Progress| {
-                    stop.report((done as f64 + progress.part) / views.len() as f64);
-                    stop.decision()
-                };
-                let picture =
-                    headless.render_uploaded(buffers, view, &look.settings, layers, watch).wait();
-                Ok(picture?.image)
-            });
-            pictures.collect::<Result<Vec<Image>, GpuError>>()
+            each(&views, stop, |view, watch| {
+                headless.render_uploaded(buffers, view, &look.settings, layers, watch).wait()
+            })
         };
         let known = match kept.as_ref().map(|kept| work(&kept.buffers)) {
             Some(Err(GpuError::Steps)) | None => None,
@@ -187,20 +179,30 @@ fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<
     let plan = SearchPlan::new(scene);
     device::check_on_cpu(&plan, look, layers)?;
     let structure = plan.build().map_err(Fault::input)?;
-    let views = look.views();
+    let images = each(&look.views(), stop, |view, watch| {
+        cpu::render_watched(&structure, view, &look.settings, layers, watch)
+    });
+    let images = images.map_err(|error| match error {
+        RenderError::Stopped => Fault::Stopped,
+        error => Fault::input(error),
+    })?;
+    Ok(Rendered { image: joined(images)?, adapter: None, warning: None })
+}
+
+/// Renders each view, and says how far all of them are.
+fn each<E>(
+    views: &[View<'_>],
+    stop: &Stop,
+    render: impl Fn(&View<'_>, &mut Watch<'_>) -> Result<Picture, E>,
+) -> Result<Vec<Image>, E> {
     let pictures = views.iter().enumerate().map(|(done, view)| {
-        let watch = &mut |progress: &Progress| {
+        let picture = render(view, &mut |progress| {
             stop.report((done as f64 + progress.part) / views.len() as f64);
             stop.decision()
-        };
-        let picture = cpu::render_watched(&structure, view, &look.settings, layers, watch);
-        picture.map(|picture| picture.image).map_err(|error| match error {
-            RenderError::Stopped => Fault::Stopped,
-            error => Fault::input(error),
-        })
+        });
+        Ok(picture?.image)
     });
-    let images = pictures.collect::<Outcome<Vec<Image>>>()?;
-    Ok(Rendered { image: joined(images)?, adapter: None, warning: None })
+    pictures.collect()
 }
 
 /// The picture, or those of two eyes side by side.

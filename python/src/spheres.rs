@@ -35,6 +35,8 @@ pub(crate) struct SphereData {
     /// Whether the caller gave radii.
     has_radii: bool,
     z_is_up: bool,
+    /// Notes for the user.
+    #[pyo3(get)]
     notes: Vec<String>,
     pub(crate) on_device: OnDevice,
     /// The number of updates of the scene since it was made of what was loaded. It changes while the scene is locked.
@@ -78,7 +80,6 @@ impl SphereData {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The scene as it is now.
     pub(crate) fn scene(&self) -> Arc<Scene> {
         Arc::clone(&self.lock())
     }
@@ -151,12 +152,6 @@ impl SphereData {
     fn __len__(&self) -> usize {
         let scene = self.lock();
         scene.len() - scene.added()
-    }
-
-    /// Notes for the user.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.notes.clone()
     }
 
     /// The smallest and the largest coordinates of the spheres; None if there are none.
@@ -277,7 +272,7 @@ impl SphereData {
                 annotations: look.annotations,
                 adapter: rendered.adapter,
                 layers,
-                all_notes: look.notes,
+                notes: look.notes,
             })
         })?)
     }

@@ -21,7 +21,6 @@ const LOG: &str = "PINHOLE_VIEWER_LOG";
 /// Where the window leaves the error that ends the program.
 pub(crate) type Ending = Arc<Mutex<Option<ViewError>>>;
 
-/// The window and all that it shows.
 pub(crate) struct App {
     pub(crate) state: State,
     pub(crate) worker: Worker,
@@ -52,7 +51,6 @@ pub(crate) struct App {
     logs: bool,
 }
 
-/// A still picture in the window.
 pub(crate) struct Still {
     state: u64,
     pub(crate) texture: egui::TextureHandle,
@@ -60,7 +58,6 @@ pub(crate) struct Still {
     pub(crate) total: u32,
 }
 
-/// Plays the frames of a trajectory.
 pub(crate) struct Player {
     pub(crate) plays: bool,
     pub(crate) frames_per_second: f32,
@@ -142,7 +139,6 @@ impl App {
         self.changed = Some(Instant::now());
     }
 
-    /// Moves the camera.
     pub(crate) fn fly(&mut self, motion: impl FnOnce(&mut Orbit)) {
         let Some(orbit) = &mut self.orbit else { return };
         motion(orbit);
@@ -165,7 +161,6 @@ impl App {
         }
     }
 
-    /// Shows another frame.
     pub(crate) fn go_to(&mut self, frame: usize) {
         self.hold_camera();
         self.change(|flags| flags.set("frame", &frame.to_string()));
@@ -214,18 +209,18 @@ impl App {
             // The picture of the scene before stays until there is a new one.
             self.seen = self.seen.map(|_| (0, false));
         }
-        let is_new = |old: &News| !Arc::ptr_eq(&old.scene, &news.scene);
+        let is_new = |old: &News| !Arc::ptr_eq(&old.facts.scene, &news.facts.scene);
         if self.news.as_deref().is_none_or(is_new) {
-            let (scene, columns) = (&news.scene, &news.columns);
-            let same = |old: &News| old.scene.len() == scene.len();
+            let (scene, columns) = (&news.facts.scene, &news.facts.columns);
+            let same = |old: &News| old.facts.scene.len() == scene.len();
             let keeps = self.news.as_deref().is_some_and(same);
             let picked = self.picked.take().filter(|_| keeps);
             self.picked = picked.and_then(|old| Details::of(scene, columns, old.id));
             self.log(|| format!("shown: {} spheres", scene.len()));
         }
         if news.state == self.state.number {
-            let bounds = news.scene.bounds_to_frame();
-            let camera = ViewCamera::new(&news.camera);
+            let bounds = news.facts.scene.bounds_to_frame();
+            let camera = ViewCamera::new(&news.facts.camera);
             let length = bounds.size().length();
             self.orbit = camera.map(|camera| Orbit::new(camera, bounds.center(), length));
             self.busy = None;
@@ -268,7 +263,7 @@ impl App {
         }
         (self.player.plays, self.busy) = (false, None);
         let Some(news) = &self.news else { return };
-        let mut before = news.flags.clone();
+        let mut before = news.facts.flags.clone();
         before.remove("size");
         if before != self.state.flags {
             self.state.flags = before;
@@ -281,7 +276,8 @@ impl App {
     fn ask(&mut self, context: &egui::Context) {
         let Some(changed) = self.changed else { return };
         let request = self.state.request(!self.player.plays);
-        let is_read = self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.flags));
+        let is_read =
+            self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.facts.flags));
         if is_read && (self.is_moving() || changed.elapsed() < STILL_AFTER) {
             context.request_repaint_after(STILL_AFTER);
             return;
@@ -297,7 +293,7 @@ impl App {
         if !self.player.plays {
             return;
         }
-        let Some(line) = self.news.as_ref().and_then(|news| news.time_line.clone()) else {
+        let Some(line) = self.news.as_ref().and_then(|news| news.facts.time_line.clone()) else {
             self.player.plays = false;
             return;
         };
@@ -325,7 +321,7 @@ impl App {
         use egui::{Key, Modifiers};
         // The modifiers are those of the key's own event: a quick user has let go of them in the same frame.
         let pressed = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
-        let line = self.news.as_ref().and_then(|news| news.time_line.clone());
+        let line = self.news.as_ref().and_then(|news| news.facts.time_line.clone());
         let is_copy = |event: &egui::Event| matches!(event, egui::Event::Copy);
         if context.input(|input| input.events.iter().any(is_copy)) {
             self.copy(context);
@@ -402,7 +398,6 @@ impl eframe::App for App {
     }
 }
 
-/// The look of the window.
 pub(crate) fn dress(context: &egui::Context) {
     context.set_theme(egui::Theme::Light);
     context.all_styles_mut(|style| {

@@ -4,13 +4,14 @@ use eframe::egui::{self, Align, Color32, Layout, RichText};
 
 use crate::app::App;
 use crate::details::readable;
+use pinhole_cli::viewing::grouped;
 
 const RED: Color32 = Color32::from_rgb(176, 32, 32);
 
 impl App {
     pub(crate) fn panels(&mut self, ui: &mut egui::Ui) {
         egui::Panel::bottom("command").show(ui, |ui| self.command_row(ui));
-        if self.news.as_ref().is_some_and(|news| news.time_line.is_some()) {
+        if self.news.as_ref().is_some_and(|news| news.facts.time_line.is_some()) {
             egui::Panel::bottom("time").show(ui, |ui| self.time_row(ui));
         }
         egui::Panel::right("controls").default_size(272.0).size_range(220.0..=420.0).show(
@@ -39,24 +40,24 @@ impl App {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
         ui.label(RichText::new(name).strong().size(16.0));
         let Some(news) = &self.news else { return };
-        let count = news.scene.len() - news.scene.added();
-        let has_species = news.columns.iter().any(|column| column.name == "species");
+        let count = news.facts.scene.len() - news.facts.scene.added();
+        let has_species = news.facts.columns.iter().any(|column| column.name == "species");
         let noun = if has_species { "atoms" } else { "spheres" };
         let frames =
-            news.time_line.as_ref().map(|line| format!(" · {} frames", grouped(line.count)));
+            news.facts.time_line.as_ref().map(|line| format!(" · {} frames", grouped(line.count)));
         ui.label(
             RichText::new(format!("{} {noun}{}", grouped(count), frames.unwrap_or_default()))
                 .weak(),
         );
-        if !news.notes.is_empty() {
-            let title = match news.notes.len() {
+        if !news.facts.notes.is_empty() {
+            let title = match news.facts.notes.len() {
                 1 => "1 note about the file".to_owned(),
                 notes => format!("{notes} notes about the file"),
             };
             egui::CollapsingHeader::new(RichText::new(title).weak()).id_salt("notes").show(
                 ui,
                 |ui| {
-                    for note in &news.notes {
+                    for note in &news.facts.notes {
                         ui.label(RichText::new(note).small());
                     }
                 },
@@ -119,7 +120,9 @@ impl App {
     }
 
     fn time_row(&mut self, ui: &mut egui::Ui) {
-        let Some(line) = self.news.as_ref().and_then(|news| news.time_line.clone()) else { return };
+        let Some(line) = self.news.as_ref().and_then(|news| news.facts.time_line.clone()) else {
+            return;
+        };
         ui.horizontal(|ui| {
             let text = if self.player.plays { "Pause" } else { "Play" };
             let button = egui::Button::new(text).min_size(egui::vec2(52.0, 0.0));
@@ -220,17 +223,4 @@ impl App {
 fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
     let title = RichText::new(title).strong();
     egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);
-}
-
-/// Writes a number with a comma before each group of three digits.
-fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }

@@ -17,7 +17,7 @@ impl App {
         let [width, height] = self.state.window.map(f64::from);
         let mut camera = orbit.camera.clone();
         camera.set_aspect(width / height);
-        camera.parameters().ok()?.camera(width / height, &news.scene.subject()).ok()
+        camera.parameters().ok()?.camera(width / height, &news.facts.scene.subject()).ok()
     }
 
     /// Shows the picture, and lets the pointer move it.
@@ -132,7 +132,7 @@ impl App {
     /// Renders a quick picture of the present state.
     fn look(&mut self, is_moving: bool) {
         let (Some(camera), Some(news)) = (self.camera(), &self.news) else { return };
-        let (settings, size) = (news.settings.clone(), self.state.window);
+        let (settings, size) = (news.facts.settings.clone(), self.state.window);
         self.quick.see(Sight { camera, settings, size, is_moving });
         self.seen = Some((self.state.number, is_moving));
     }
@@ -141,7 +141,7 @@ impl App {
         let news = self.news.as_ref();
         self.picked = hit.and_then(|hit| {
             let news = news?;
-            Details::of(&news.scene, &news.columns, hit.id)
+            Details::of(&news.facts.scene, &news.facts.columns, hit.id)
         });
         self.log(|| match &self.picked {
             Some(details) => format!("picked: id {} {}", details.id, details.title()),

@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use eframe::{egui, wgpu};
 
-use crate::blit::{Blit, Layers};
+use crate::blit::Blit;
 use crate::worker::QuickScene;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
-use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker, Wait};
+use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker, TargetTextures, Wait};
 use pinhole::render::{Integrator, RenderSettings};
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -32,7 +32,6 @@ struct State {
     targets: Option<TargetSet>,
     camera: Option<Box<dyn Camera>>,
     picker: Option<Picker>,
-    /// A picture that is to be recorded.
     is_due: bool,
     /// A pixel that is to be picked in the picture.
     pick: Option<[u32; 2]>,
@@ -49,8 +48,7 @@ struct State {
 
 /// Textures of one size, and what renders into them.
 struct TargetSet {
-    size: [u32; 2],
-    layers: Layers,
+    textures: TargetTextures,
     source: Source,
     /// What draws the colors.
     group: wgpu::BindGroup,
@@ -178,7 +176,9 @@ impl Quick {
     /// Asks which sphere is at a pixel of the picture, given by parts of its width and height.
     pub(crate) fn pick(&self, [x, y]: [f64; 2]) {
         let mut state = self.state();
-        let Some(size) = state.targets.as_ref().map(|targets| targets.size) else { return };
+        let Some(size) = state.targets.as_ref().map(|targets| targets.textures.size()) else {
+            return;
+        };
         let pixel = |part: f64, side: u32| ((part * f64::from(side)) as u32).min(side - 1);
         state.pick = Some([pixel(x, size[0]), pixel(y, size[1])]);
     }
@@ -189,7 +189,6 @@ impl Quick {
         state.is_due || state.pick.is_some() || state.is_picking
     }
 
-    /// The result of a pick, if there is one.
     pub(crate) fn picked(&self) -> Option<Picked> {
         let mut state = self.state();
         match state.picker.as_mut()?.take() {
@@ -210,12 +209,10 @@ impl Quick {
         self.state().error.take()
     }
 
-    /// The size of the last picture.
     pub(crate) fn size(&self) -> Option<[u32; 2]> {
-        self.state().targets.as_ref().map(|targets| targets.size)
+        self.state().targets.as_ref().map(|targets| targets.textures.size())
     }
 
-    /// The number of pictures so far.
     pub(crate) fn count(&self) -> u64 {
         self.state().pictures
     }
@@ -268,11 +265,11 @@ impl State {
         let RenderState { device, queue, .. } = &self.render;
         let (renderer, buffers) = (&scene.renderer, &scene.buffers);
         let fits = |targets: &TargetSet| {
-            targets.size == size && matches!(targets.source, Source::Live(_)) == is_live
+            targets.textures.size() == size && matches!(targets.source, Source::Live(_)) == is_live
         };
         if !self.targets.as_ref().is_some_and(fits) {
-            let layers = Layers::new(device, size);
-            let targets = layers.targets();
+            let textures = TargetTextures::new(renderer.renderer(), device, size).wait()?;
+            let targets = textures.targets();
             let source = match is_live {
                 true => {
                     let live = LivePicture::new(
@@ -286,8 +283,8 @@ impl State {
                     Source::Primary(Box::new(frame))
                 }
             };
-            let group = self.blit.group(device, &layers.color);
-            self.targets = Some(TargetSet { size, layers, source, group });
+            let group = self.blit.group(device, targets.color);
+            self.targets = Some(TargetSet { textures, source, group });
         }
         match self.targets.as_mut().map(|targets| &mut targets.source) {
             Some(Source::Live(live)) => {
@@ -334,10 +331,10 @@ impl State {
             });
         }
         if let (Some(pixel), Some(picker)) = (self.pick.take(), &mut self.picker) {
-            let [width, height] = targets.size;
+            let [width, height] = targets.textures.size();
             let film = Film::new(width, height).map_err(|error| error.to_string())?;
             let view = View::new(camera.as_ref(), film);
-            let recorded = picker.record(encoder, &targets.layers.targets(), &view, pixel);
+            let recorded = picker.record(encoder, &targets.textures.targets(), &view, pixel);
             recorded.map_err(|error| error.to_string())?;
             self.is_picking = true;
         }

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Align, Layout, RichText};
 
 use crate::app::App;
+use crate::state::Fields;
 use pinhole::color_by::MapName;
 use pinhole::load::{Column, ColumnValues};
 use pinhole::render::Integrator;
@@ -66,10 +67,10 @@ impl App {
     }
 
     pub(crate) fn style_section(&mut self, ui: &mut egui::Ui) {
-        let own = self.news.as_ref().and_then(|news| news.style).unwrap_or("of the file");
+        let own = self.news.as_ref().and_then(|news| news.facts.style).unwrap_or("of the file");
         let styles: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
         self.choice(ui, "style", own, &styles);
-        let integrator = self.news.as_ref().map(|news| match news.settings.integrator {
+        let integrator = self.news.as_ref().map(|news| match news.facts.settings.integrator {
             Integrator::Primary(_) => "primary",
             Integrator::Path(_) => "path",
             _ => "studio",
@@ -81,7 +82,7 @@ impl App {
             &["primary", "studio", "path"],
         );
         row(ui, "--samples", |ui| {
-            let own = self.news.as_ref().map_or(1, |news| news.settings.sampling.samples);
+            let own = self.news.as_ref().map_or(1, |news| news.facts.settings.sampling.samples);
             let given = self.state.flags.get("samples").and_then(|text| text.parse().ok());
             let mut samples: u32 = given.unwrap_or(own);
             let drag = egui::DragValue::new(&mut samples).range(1..=65536).speed(0.2);
@@ -90,14 +91,7 @@ impl App {
             }
             self.reset(ui, "samples");
         });
-        row(ui, "--background", |ui| {
-            let edit = egui::TextEdit::singleline(&mut self.fields.background);
-            let edit = ui.add(edit.hint_text("white, #f3f4f6 …").desired_width(120.0));
-            if edit.lost_focus() {
-                let text = self.fields.background.clone();
-                self.set_or_remove("background", &text);
-            }
-        });
+        self.typed(ui, "background", "white, #f3f4f6 …", |fields| &mut fields.background);
         ui.horizontal(|ui| {
             self.switch(ui, "transparent", "transparent");
             self.switch(ui, "scale-bar", "scale bar");
@@ -107,9 +101,9 @@ impl App {
 
     pub(crate) fn color_section(&mut self, ui: &mut egui::Ui) {
         let Some(news) = &self.news else { return };
-        let own = news.own_color_by.clone();
+        let own = news.facts.own_color_by.clone();
         let mut columns: Vec<String> =
-            news.columns.iter().map(|column| column.name.clone()).collect();
+            news.facts.columns.iter().map(|column| column.name.clone()).collect();
         for built_in in BUILT_IN {
             if columns.iter().all(|column| column != built_in) {
                 columns.push(built_in.to_owned());
@@ -122,14 +116,7 @@ impl App {
         }
         let maps: Vec<&str> = MapName::all().collect();
         self.choice(ui, "cmap", "automatic", &maps);
-        row(ui, "--range", |ui| {
-            let edit = egui::TextEdit::singleline(&mut self.fields.range);
-            let edit = ui.add(edit.hint_text("LO,HI or 2%,98%").desired_width(120.0));
-            if edit.lost_focus() {
-                let text = self.fields.range.clone();
-                self.set_or_remove("range", &text);
-            }
-        });
+        self.typed(ui, "range", "LO,HI or 2%,98%", |fields| &mut fields.range);
         ui.horizontal(|ui| {
             self.switch(ui, "legend", "legend");
             self.switch(ui, "cmap-reverse", "reverse");
@@ -139,7 +126,7 @@ impl App {
 
     pub(crate) fn structure_section(&mut self, ui: &mut egui::Ui) {
         ui.label(RichText::new("--select").monospace().size(11.0));
-        let hint = self.news.as_ref().map_or_else(String::new, |news| example(&news.columns));
+        let hint = self.news.as_ref().map_or_else(String::new, |news| example(&news.facts.columns));
         let edit = egui::TextEdit::singleline(&mut self.fields.select).hint_text(hint);
         let edit = ui.add(edit.desired_width(f32::INFINITY));
         if edit.lost_focus() {
@@ -251,11 +238,28 @@ impl App {
         });
     }
 
+    /// A row in which the value of a flag is typed.
+    fn typed(
+        &mut self,
+        ui: &mut egui::Ui,
+        flag: &str,
+        hint: &str,
+        field: fn(&mut Fields) -> &mut String,
+    ) {
+        row(ui, &format!("--{flag}"), |ui| {
+            let edit = egui::TextEdit::singleline(field(&mut self.fields)).hint_text(hint);
+            if ui.add(edit.desired_width(120.0)).lost_focus() {
+                let text = field(&mut self.fields).clone();
+                self.set_or_remove(flag, &text);
+            }
+        });
+    }
+
     /// A box for a flag that is there or not.
     fn switch(&mut self, ui: &mut egui::Ui, flag: &str, text: &str) {
         let given = self.state.flags.get(flag);
-        let own =
-            flag == "denoise" && self.news.as_ref().is_some_and(|news| news.settings.is_denoised);
+        let own = flag == "denoise"
+            && self.news.as_ref().is_some_and(|news| news.facts.settings.is_denoised);
         let mut is_on = given.map_or(own, |value| value != "false");
         if ui.checkbox(&mut is_on, text).on_hover_text(format!("--{flag}")).changed() {
             self.change(|flags| match (is_on, flag) {
@@ -283,17 +287,9 @@ impl App {
                 flags.remove(flag);
                 // What says how a column becomes colors needs a column.
                 if flag == "color-by" {
-                    for of_column in [
-                        "cmap",
-                        "cmap-reverse",
-                        "range",
-                        "log",
-                        "missing-color",
-                        "legend",
-                        "legend-title",
-                    ] {
-                        flags.remove(of_column);
-                    }
+                    let of_map = ["cmap", "cmap-reverse", "range", "log", "missing-color"];
+                    let of_legend = ["legend", "legend-title"];
+                    of_map.iter().chain(&of_legend).for_each(|flag| flags.remove(flag));
                 }
             } else {
                 flags.set(flag, value);

@@ -11,11 +11,9 @@ pub(crate) struct State {
     pub(crate) flags: RenderFlags,
     /// The number of this state; every change makes another one.
     pub(crate) number: u64,
-    /// The size of the picture in the window.
     pub(crate) window: [u32; 2],
     /// The size of the saved picture, if it is not that in the window.
     pub(crate) size: Option<[u32; 2]>,
-    /// Where pictures are saved.
     pub(crate) output: String,
 }
 
@@ -58,7 +56,6 @@ impl State {
         is_new
     }
 
-    /// The flags of a picture of a size.
     fn sized(&self, size: [u32; 2]) -> RenderFlags {
         let mut flags = self.flags.clone();
         if flags.get("half-extent").is_some()
@@ -71,7 +68,6 @@ impl State {
         flags
     }
 
-    /// What the window asks for.
     pub(crate) fn request(&self, still: bool) -> Request {
         Request { state: self.number, flags: self.sized(self.window), still }
     }
@@ -80,7 +76,6 @@ impl State {
         self.sized(self.saved_size())
     }
 
-    /// The command that renders the picture that is saved.
     pub(crate) fn command(&self) -> String {
         self.saved().command_line(&self.output)
     }

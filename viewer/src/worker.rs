@@ -7,17 +7,15 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use pinhole_cli::viewing::{RenderFlags, Shown, StillPicture, StillRenderer, TimeLine, ViewError};
+use pinhole_cli::viewing::{Facts, RenderFlags, Shown, StillPicture, StillRenderer, ViewError};
 
-use crate::blit::Layers;
 use pinhole::camera::film::Film;
-use pinhole::camera::{CameraKind, CameraParameters, View};
+use pinhole::camera::{CameraKind, View};
 use pinhole::gpu::{
-    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
+    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, TargetTextures,
+    Wait, wgpu,
 };
-use pinhole::load::Column;
 use pinhole::render::{Integrator, RenderSettings};
-use pinhole::scene::Scene;
 
 /// What the window wants to show.
 #[derive(Clone, Debug)]
@@ -29,30 +27,26 @@ pub(crate) struct Request {
     pub(crate) still: bool,
 }
 
-/// What the window is told.
 pub(crate) enum Message {
     /// The flags of a request were understood, and the file was read.
     Shown(Box<News>),
     /// A still picture, which will be followed by better ones.
-    Still { state: u64, picture: StillPicture },
+    Still {
+        state: u64,
+        picture: StillPicture,
+    },
     /// A request failed. What was shown before stays.
-    Failed { state: u64, error: ViewError },
-    /// Something that the user should know.
+    Failed {
+        state: u64,
+        error: ViewError,
+    },
     Note(String),
 }
 
 /// What flags mean.
 pub(crate) struct News {
     pub(crate) state: u64,
-    pub(crate) flags: RenderFlags,
-    pub(crate) scene: Arc<Scene>,
-    pub(crate) columns: Arc<Vec<Column>>,
-    pub(crate) camera: CameraParameters,
-    pub(crate) settings: RenderSettings,
-    pub(crate) style: Option<&'static str>,
-    pub(crate) own_color_by: Option<String>,
-    pub(crate) time_line: Option<TimeLine>,
-    pub(crate) notes: Vec<String>,
+    pub(crate) facts: Facts,
     /// The scene on the window's device, if there is a window.
     pub(crate) quick: Option<QuickScene>,
 }
@@ -228,19 +222,8 @@ impl Work {
         let quick = window.as_ref().map(|window| self.prepared(window)).transpose();
         let quick = quick.map_err(|error| error_of(&error))?.flatten();
         let Some(shown) = &self.shown else { return Ok(()) };
-        self.tell(Message::Shown(Box::new(News {
-            state: request.state,
-            flags: flags.clone(),
-            scene: Arc::clone(shown.scene()),
-            columns: Arc::clone(shown.columns()),
-            camera: shown.camera_parameters(),
-            settings: shown.settings().clone(),
-            style: shown.style(),
-            own_color_by: shown.own_color_by().map(str::to_owned),
-            time_line: shown.time_line(),
-            notes: shown.notes().to_vec(),
-            quick,
-        })));
+        let facts = shown.facts();
+        self.tell(Message::Shown(Box::new(News { state: request.state, facts, quick })));
         if !request.still || window.is_none() {
             return Ok(());
         }
@@ -304,7 +287,8 @@ fn is_live(
     let Ok(film) = Film::new(16, 16) else { return false };
     let view = View::new(shown.camera(), film);
     let settings = RenderSettings { is_transparent: false, ..shown.settings().clone() };
-    let layers = Layers::new(device, [16, 16]);
+    let layers = TargetTextures::new(renderer.renderer(), device, [16, 16]).wait();
+    let Ok(layers) = layers else { return false };
     LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets())
         .wait()
         .is_ok()

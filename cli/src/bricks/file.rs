@@ -67,13 +67,11 @@ pub(super) struct Brick {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum StoredColors {
-    /// Spheres have no colours.
     None,
     /// One linear colour for all.
     One([u32; 3]),
     /// Each sphere has an index into these linear colours.
     Palette(Vec<[u32; 3]>),
-    /// Each sphere has a colour in four bytes.
     Rgba8,
 }
 

@@ -10,8 +10,7 @@ use crate::device::Opened;
 #[cfg(feature = "gpu")]
 use crate::device::explained;
 use crate::failure::Failure;
-use crate::input::Input;
-use crate::views::Views;
+use crate::views::Shot;
 #[cfg(feature = "gpu")]
 use crate::with_scene::{watch_upload, with_structures};
 use crate::{interrupt, memory, progress};
@@ -20,22 +19,15 @@ use pinhole::cpu::{self, SearchPlan};
 use pinhole::glam::DVec2;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{Headless, UploadWatch, Wait};
-use pinhole::image::{Image, LayerSet};
+use pinhole::image::Image;
 #[cfg(feature = "gpu")]
 use pinhole::render::{Decision, Watch};
 use pinhole::render::{Nearest, RenderSettings};
 use pinhole::scene::Scene;
 
-/// Renders the picture of each view.
-pub(crate) fn render(
-    file: &BrickFile,
-    input: &Input,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<Views<Image>, Failure> {
-    let nearest = nearest_of(file, 0..file.len(), input, views, layers, opened)?;
-    Ok(nearest.map(Nearest::into_image))
+pub(crate) fn render(file: &BrickFile, shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
+    let nearest = nearest_of(file, 0..file.len(), shot)?;
+    Ok(nearest.into_iter().map(Nearest::into_image).collect())
 }
 
 /// Refuses light, for which all spheres must be there.
@@ -57,52 +49,40 @@ pub(crate) fn check_without_light(
 pub(crate) fn nearest_of(
     file: &BrickFile,
     bricks: Range<usize>,
-    input: &Input,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<Views<Nearest>, Failure> {
+    shot: &Shot<'_>,
+) -> Result<Vec<Nearest>, Failure> {
+    let Shot { input, views, .. } = *shot;
     check_without_light(file, &input.settings)?;
     // The left and the right eye see the bricks in the same order, more or less.
-    let first = match views {
-        Views::One(view) | Views::Two([view, _]) => view,
-    };
-    let order = nearest_first(file, bricks, first);
-    let mut nearest: Views<Option<Nearest>> = views.try_each(|_| Ok::<_, Failure>(None))?;
+    let order = nearest_first(file, bricks, &views[0]);
+    let mut nearest: Vec<Nearest> = Vec::new();
     for (number, brick) in order.iter().enumerate() {
         let bounds = file.bounds(*brick).with_context(|| file.path.display().to_string())?;
-        let is_hidden = |view: &View<'_>, nearest: &Option<Nearest>| {
-            nearest.as_ref().is_some_and(|seen| seen.hides(view, &file.whole().bounds, &bounds))
+        let is_hidden = |(view, nearest): (&View<'_>, &Nearest)| {
+            nearest.hides(view, &file.whole().bounds, &bounds)
         };
-        let mut pairs = views.as_slice().iter().zip(nearest.as_slice());
-        if pairs.all(|(view, nearest)| is_hidden(view, nearest)) {
+        if !nearest.is_empty() && views.iter().zip(&nearest).all(is_hidden) {
             continue;
         }
         let of = format!("brick {} of {}", number + 1, order.len());
         progress::stage(format!("reading {}: {of}", file.path.display()));
         let read = file.read(*brick, input.color)?;
-        let of_brick = of_scene(&read.scene, input, views, layers, opened)?;
-        for (nearest, new) in nearest.as_mut_slice().iter_mut().zip(into_vec(of_brick)) {
-            let new = new.with_ids(&read.ids);
-            match nearest {
-                Some(nearest) => nearest.keep_nearer(&new).map_err(|error| anyhow!(error))?,
-                None => *nearest = Some(new),
+        let new = of_scene(&read.scene, shot)?.into_iter().map(|new| new.with_ids(&read.ids));
+        if nearest.is_empty() {
+            nearest = new.collect();
+        } else {
+            for (nearest, new) in nearest.iter_mut().zip(new) {
+                nearest.keep_nearer(&new).map_err(|error| anyhow!(error))?;
             }
         }
         if interrupt::is_requested() {
             return Err(Failure::Stopped);
         }
     }
-    let none = || Failure::Job(anyhow!("{}: there are no such bricks", file.path.display()));
-    let mut left = into_vec(nearest).into_iter().map(|nearest| nearest.ok_or_else(none));
-    views.try_each(|_| left.next().unwrap_or_else(|| Err(none())))
-}
-
-fn into_vec<T>(views: Views<T>) -> Vec<T> {
-    match views {
-        Views::One(one) => vec![one],
-        Views::Two(two) => two.into(),
+    if nearest.is_empty() {
+        return Err(Failure::Job(anyhow!("{}: there are no such bricks", file.path.display())));
     }
+    Ok(nearest)
 }
 
 /// The bricks by the distance of their boxes from the camera. The picture does not depend on the order.
@@ -118,30 +98,24 @@ fn nearest_first(file: &BrickFile, bricks: Range<usize>, view: &View<'_>) -> Vec
     order.into_iter().map(|(_, brick)| brick).collect()
 }
 
-/// The pictures of one brick.
-fn of_scene(
-    scene: &Scene,
-    input: &Input,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-    opened: &Opened,
-) -> Result<Views<Nearest>, Failure> {
+fn of_scene(scene: &Scene, shot: &Shot<'_>) -> Result<Vec<Nearest>, Failure> {
+    let Shot { input, views, layers, opened, .. } = *shot;
     match opened {
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, .. } => {
-            views.try_each(|view| on_gpu(headless, scene, input, view, layers, *choice))
+            views.iter().map(|view| on_gpu(headless, scene, shot, view, *choice)).collect()
         }
         _ => {
             let plan = SearchPlan::new(scene);
             let what = format!("a structure of {} spheres needs", scene.len());
-            memory::check_bytes(&what, plan.bytes(), "smaller bricks")
-                .map_err(anyhow::Error::msg)?;
+            memory::check_bytes(&what, plan.bytes(), "smaller bricks")?;
             let structure = plan.build().context("the structure cannot be built")?;
-            views.try_each(|view| {
+            let pictures = views.iter().map(|view| {
                 let done = cpu::render_nearest(&structure, view, &input.settings, layers);
                 let done = done.context("the CPU cannot render this picture")?;
                 Ok(done.context("this picture has light")?)
-            })
+            });
+            pictures.collect()
         }
     }
 }
@@ -150,12 +124,11 @@ fn of_scene(
 fn on_gpu(
     headless: &Headless,
     scene: &Scene,
-    input: &Input,
+    shot: &Shot<'_>,
     view: &View<'_>,
-    layers: LayerSet,
     choice: pinhole::accel::AccelChoice,
 ) -> Result<Nearest, Failure> {
-    let settings = &input.settings;
+    let (settings, layers) = (&shot.input.settings, shot.layers);
     let extra = memory::ENCODING_BYTES_PER_PIXEL + Nearest::BYTES_PER_PIXEL;
     let plan = |choice| headless.plan(scene, view, settings, layers, choice, extra);
     let rendered = with_structures(headless, choice, plan, |plan| {

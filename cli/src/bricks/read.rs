@@ -15,6 +15,7 @@ use crate::bricks::file::{
     extent,
 };
 use crate::memory::readable;
+use crate::text;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::scene::{Appearance, Colors, Scene, Whole};
@@ -38,7 +39,6 @@ pub(super) struct ReadBrick {
 }
 
 impl BrickFile {
-    /// Reads the header.
     pub(crate) fn open(path: &Path) -> Result<Arc<Self>> {
         let named = || path.display().to_string();
         let cannot = || format!("{}: cannot be read", path.display());
@@ -51,7 +51,6 @@ impl BrickFile {
         Ok(Arc::new(Self { path: path.to_path_buf(), header, whole }))
     }
 
-    /// All spheres together.
     pub(crate) fn whole(&self) -> &Whole {
         &self.whole
     }
@@ -69,12 +68,10 @@ impl BrickFile {
         self.header.colors != StoredColors::None
     }
 
-    /// How many bricks there are.
     pub(crate) fn len(&self) -> usize {
         self.header.bricks.len()
     }
 
-    /// How many spheres the largest brick has.
     pub(crate) fn largest(&self) -> u64 {
         self.header.bricks.iter().map(|brick| brick.section.count).max().unwrap_or(0)
     }
@@ -86,7 +83,6 @@ impl BrickFile {
         divided(&counts, groups)
     }
 
-    /// The spheres of the largest brick.
     #[cfg(feature = "gpu")]
     pub(crate) fn largest_scene(&self, color: LinearRgb) -> Result<Scene> {
         let bricks = 0..self.len();
@@ -94,7 +90,6 @@ impl BrickFile {
         Ok(self.read(largest, color)?.scene)
     }
 
-    /// How many spheres a brick has.
     pub(crate) fn count(&self, brick: usize) -> u64 {
         self.header.bricks.get(brick).map_or(0, |brick| brick.section.count)
     }
@@ -333,7 +328,7 @@ impl Report {
 pub(crate) fn lines(path: &Path, json: bool) -> Result<String> {
     let report = Report::new(path)?;
     if json {
-        return Ok(serde_json::to_string_pretty(&report)? + "\n");
+        return text::json(&report);
     }
     let corner = |corner: [f64; 3]| corner.map(|x| x.to_string()).join(" ");
     Ok(format!(

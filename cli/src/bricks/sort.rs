@@ -13,7 +13,6 @@ use crate::bricks::EXTENSION;
 use crate::bricks::file::{COLOR, Header, ID, SPHERE, StoredColors, WholeBits};
 use crate::bricks::outer::{Cells, Outer};
 use crate::bricks::writer::{self, Array, Stream, Writer};
-use crate::camera::CameraArgs;
 use crate::data::format_parser;
 use crate::failure::Failure;
 use crate::input::{Source, default_color, extension};
@@ -67,7 +66,6 @@ pub(crate) struct SortArgs {
     quiet: bool,
 }
 
-/// The spheres of a file and what else is kept of it.
 struct Input {
     stream: Stream,
     z_is_up: bool,
@@ -127,7 +125,6 @@ pub(crate) fn run(args: &SortArgs) -> Result<(), Failure> {
 }
 
 impl Header {
-    /// Bytes of the largest brick.
     pub(crate) fn largest(&self) -> u64 {
         let most = self.bricks.iter().map(|brick| brick.section.count).max();
         most.unwrap_or(0) * self.colors.sphere_bytes()
@@ -153,10 +150,8 @@ fn input(args: &SortArgs) -> Result<Input, Failure> {
         topology: args.topology.clone(),
         columns: args.columns.clone(),
         radius: args.radius,
-        color: None,
         frame: args.frame,
-        size: None,
-        camera: CameraArgs::default(),
+        ..ViewArgs::default()
     };
     let source = Source::of_view(&args.path, &view)?;
     let Some(format) = source.data_format() else {
@@ -197,7 +192,6 @@ fn stored_colors(stream: &Stream) -> Result<StoredColors, Failure> {
     }
 }
 
-/// The stored colour of a sphere.
 fn color_of(scene: Option<&Scene>, id: u32) -> Option<[u8; 4]> {
     match scene?.appearance().colors() {
         Colors::Palette { indices, .. } => {
@@ -332,7 +326,6 @@ impl Sample {
         }
     }
 
-    /// The cuts of the sample into bricks.
     pub(crate) fn cuts(mut self, bricks: usize) -> Cuts {
         let mut cuts = Cuts { nodes: Vec::new(), bricks };
         cuts.cut(&mut self.spheres, 0, bricks);
@@ -380,7 +373,6 @@ impl Cuts {
         self.cut(right, first + bricks / 2, bricks - bricks / 2);
     }
 
-    /// The brick of a sphere.
     pub(crate) fn brick(&self, id: u32, sphere: [f32; 4]) -> usize {
         let mut at = 0;
         loop {
@@ -415,7 +407,6 @@ fn ascending(x: f32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Number of spheres of each brick.
     fn counts(spheres: &[[f32; 4]], bricks: usize) -> Vec<usize> {
         let mut sample = Sample::new(spheres.len() as u64, bricks as u64);
         (0..).zip(spheres).for_each(|(id, sphere)| sample.add(id, *sphere));

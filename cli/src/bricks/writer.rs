@@ -178,7 +178,6 @@ impl Array {
         self.columns * if self.is_wide { 8 } else { 4 }
     }
 
-    /// Puts the file to the first row.
     fn begin(&self, file: &mut File) -> std::io::Result<()> {
         file.seek(SeekFrom::Start(self.offset)).map(drop)
     }
@@ -231,7 +230,6 @@ pub(crate) struct Writer<'a, F: Write + Seek> {
     /// How many bytes a buffer has before it is written.
     capacity: usize,
     has_colors: bool,
-    /// Where the bricks end.
     end: u64,
 }
 

@@ -98,7 +98,6 @@ impl FromStr for FrameRange {
 }
 
 impl FrameRange {
-    /// All frames.
     pub(crate) const ALL: Self = Self::Slice { start: None, end: None, step: 1 };
 
     /// Returns the numbers of the frames of a file that has `count` frames.
@@ -157,7 +156,6 @@ pub(crate) fn has_sign(path: &Path) -> bool {
 }
 
 impl Pattern {
-    /// Reads a pattern.
     pub(crate) fn new(path: &Path) -> Result<Self, String> {
         let wanted = |problem: &str| {
             format!(

@@ -7,13 +7,13 @@ use super::failure::Failure;
 use super::render_args::RenderArgs;
 use crate::args::Stereo;
 use crate::frames::args::FrameRange;
-pub(super) use crate::frames::args::{FramesArgs, Raw};
+use crate::frames::args::FramesArgs;
 use crate::frames::moving::WantedPath;
 pub(crate) use crate::frames::numbers::Overview;
 pub(super) use crate::frames::run::run;
 pub(crate) use crate::frames::run::{Known, Ready, ready};
 
-mod args;
+pub(super) mod args;
 mod movie;
 mod moving;
 mod numbers;
@@ -26,7 +26,6 @@ pub(super) fn is_movie(path: &Path) -> bool {
     target::movie_of(path).is_some()
 }
 
-/// Which pictures of an input are made.
 #[derive(Clone, Debug)]
 enum Pictures {
     Frames { range: FrameRange, camera_from: Option<FrameRange>, path: Option<WantedPath> },

@@ -15,7 +15,6 @@ use crate::frames::target::{Movie, Target};
 use crate::interrupt;
 use crate::output::{name_all, unnamed_with};
 use crate::picture::Outputs;
-use pinhole::annotate::Annotations;
 use pinhole::image::Image;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::write::png::samples_annotated;
@@ -34,12 +33,10 @@ pub(crate) enum Message {
     End,
 }
 
-/// How the pictures are written.
 pub(crate) struct Sink<'a> {
     pub(crate) target: &'a Target,
     pub(crate) outputs: &'a Outputs,
     pub(crate) encoding: &'a Encoding,
-    pub(crate) annotations: &'a Annotations,
     pub(crate) adapter: Option<&'a str>,
     pub(crate) frames_per_second: u32,
     /// How many pictures there will be.
@@ -58,8 +55,8 @@ impl Samples<'_> {
     pub(crate) fn next(&self) -> io::Result<Option<Vec<u8>>> {
         match self.pictures.recv() {
             Ok(Message::Picture { image, .. }) => {
-                let Sink { encoding, annotations, .. } = self.sink;
-                let samples = samples_annotated(&image, encoding, annotations);
+                let Sink { encoding, outputs, .. } = self.sink;
+                let samples = samples_annotated(&image, encoding, &outputs.annotations);
                 samples.map(Some).map_err(io::Error::other)
             }
             Ok(Message::End) => Ok(None),
@@ -69,7 +66,6 @@ impl Samples<'_> {
 }
 
 impl Sink<'_> {
-    /// Writes all pictures that are received.
     pub(crate) fn write(&self, pictures: &Receiver<Message>) -> Result<()> {
         let samples = Samples { pictures, sink: self };
         match self.target {
@@ -190,16 +186,8 @@ pub(crate) fn write_video(
     let even = size.map(|side| side + side % 2);
     let [width, height] = even;
     let mut command = Command::new("ffmpeg");
-    command.args([
-        "-hide_banner",
-        "-loglevel",
-        "error",
-        "-y",
-        "-f",
-        "rawvideo",
-        "-pix_fmt",
-        "rgb24",
-    ]);
+    command.args(["-hide_banner", "-loglevel", "error", "-y"]);
+    command.args(["-f", "rawvideo", "-pix_fmt", "rgb24"]);
     command.args(["-s", &format!("{width}x{height}"), "-r", &sink.frames_per_second.to_string()]);
     command.args(["-i", "-", "-an", "-vf", "scale=out_color_matrix=bt709:out_range=tv"]);
     command.args(["-pix_fmt", "yuv420p", "-color_range", "tv", "-colorspace", "bt709"]);

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
-use serde::Deserialize;
-use toml::Value;
 
+use crate::camera::{CameraTable, list};
 use crate::failure::Failure;
 use crate::frames::union::around;
 use crate::input::{Framed, Look, Source, read};
@@ -23,7 +22,6 @@ use pinhole::scene_file::{SceneFile, parse_camera_path};
 /// Most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;
 
-/// A camera path, and the file that has it.
 #[derive(Clone, Debug)]
 pub(crate) struct WantedPath {
     pub(crate) path: CameraPath,
@@ -75,7 +73,6 @@ pub(crate) struct MovingCamera {
     pub(crate) stage: Stage,
 }
 
-/// The course of a camera.
 #[expect(clippy::large_enum_variant, reason = "a job has one of them")]
 pub(crate) enum Course {
     /// Turned about an axis, at the end once around.
@@ -108,7 +105,8 @@ impl MovingCamera {
         let motion = wanted.path.motion(up);
         let motion = motion.with_context(|| wanted.file.display().to_string())?;
         let center = stage.framed.bounds_to_frame().center();
-        let distance = eye_of(&base).map_or(1.0, |eye| eye.distance(center));
+        let eye = CameraTable::new(&base).and_then(|camera| camera.vector("eye"));
+        let distance = eye.map_or(1.0, |eye| eye.distance(center));
         let (clock, frames_per_second) = (wanted.path.clock(), f64::from(frames_per_second));
         let course = Course::Path { motion, clock, frames_per_second, base, center, distance };
         Ok(Self { course, stage })
@@ -155,7 +153,6 @@ pub(crate) fn in_frame(failure: Failure, number: usize) -> Failure {
     }
 }
 
-/// The camera at a place of its path.
 fn moved(
     camera: &CameraParameters,
     on_path: &CameraOnPath,
@@ -166,29 +163,18 @@ fn moved(
         PlaceOnPath::Point { eye, look_at, up } => (eye, look_at, up),
         PlaceOnPath::View { direction, up } => (center - distance * direction, center, up),
     };
-    let mut document = Value::try_from(camera)?;
-    for (_, table) in document.as_table_mut().into_iter().flat_map(|kinds| kinds.iter_mut()) {
-        let Some(table) = table.as_table_mut() else { continue };
-        table.remove("direction");
-        let list = |vector: DVec3| Value::from(vector.to_array().to_vec());
-        let mut keys = vec![("eye", list(eye)), ("look_at", list(look_at)), ("up", list(up))];
-        if let Some(radians) = on_path.fov_radians {
-            keys.push(("vertical_fov", radians.to_degrees().into()));
-        }
-        if let Some(zoom) = on_path.zoom {
-            keys.push(("zoom", zoom.into()));
-        }
-        table.extend(keys.into_iter().map(|(key, value)| (key.to_owned(), value)));
+    let mut camera = CameraTable::new(camera).context("this camera has no table")?;
+    camera.table.remove("direction");
+    for (key, vector) in [("eye", eye), ("look_at", look_at), ("up", up)] {
+        camera.set(key, list(vector.to_array()));
     }
-    CameraParameters::deserialize(document)
-        .map_err(|error| anyhow::anyhow!(error.message().trim().replace('\n', " ")))
-}
-
-/// The position of a camera that has one.
-fn eye_of(camera: &CameraParameters) -> Option<DVec3> {
-    let document = Value::try_from(camera).ok()?;
-    let eye = document.as_table()?.values().find_map(|table| vector(table.get("eye")?))?;
-    Some(eye)
+    if let Some(radians) = on_path.fov_radians {
+        camera.set("vertical_fov", radians.to_degrees());
+    }
+    if let Some(zoom) = on_path.zoom {
+        camera.set("zoom", zoom);
+    }
+    camera.parameters().map_err(|message| anyhow::anyhow!(message.trim().replace('\n', " ")))
 }
 
 /// The axis about which a camera turns, and a point on it.
@@ -201,32 +187,26 @@ pub(crate) struct Axis {
 /// Turns a camera that has its position by a part of a full turn, counter-clockwise seen from above.
 pub(crate) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result<CameraParameters> {
     let turn = DQuat::from_axis_angle(axis.direction, TAU * part);
-    let mut document = Value::try_from(camera).context("this camera cannot be turned")?;
-    for table in document.as_table_mut().into_iter().flat_map(|kinds| kinds.iter_mut()) {
-        let Some(table) = table.1.as_table_mut() else { continue };
-        for (key, value) in table {
-            let is_point = matches!(key.as_str(), "eye" | "look_at" | "focus_on");
-            let is_direction = matches!(key.as_str(), "direction" | "up");
-            if let (true, Some(vector)) = (is_point || is_direction, vector(value)) {
-                let center = if is_point { axis.center } else { DVec3::ZERO };
-                let turned = center + turn * (vector - center);
-                *value = Value::from(turned.to_array().to_vec());
-            }
+    let mut camera = CameraTable::new(camera).context("this camera cannot be turned")?;
+    for (key, center) in [
+        ("eye", axis.center),
+        ("look_at", axis.center),
+        ("focus_on", axis.center),
+        ("direction", DVec3::ZERO),
+        ("up", DVec3::ZERO),
+    ] {
+        if let Some(vector) = camera.vector(key) {
+            camera.set(key, list((center + turn * (vector - center)).to_array()));
         }
     }
-    CameraParameters::deserialize(document).context("this camera cannot be turned")
+    camera
+        .parameters()
+        .map_err(|message| anyhow::anyhow!("this camera cannot be turned: {message}"))
 }
 
 /// The direction that is up for a camera that has its position.
 pub(crate) fn up_of(camera: &CameraParameters) -> Option<DVec3> {
-    let document = Value::try_from(camera).ok()?;
-    let up = document.as_table()?.values().find_map(|table| vector(table.get("up")?))?;
-    up.try_normalize()
-}
-
-pub(crate) fn vector(value: &Value) -> Option<DVec3> {
-    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_float).collect();
-    Some(DVec3::from(<[f64; 3]>::try_from(numbers).ok()?))
+    CameraTable::new(camera)?.vector("up")?.try_normalize()
 }
 
 #[cfg(test)]
@@ -240,9 +220,9 @@ mod tests {
         let camera: CameraParameters = toml::from_str(table).unwrap();
         let axis = Axis { direction: DVec3::Y, center: DVec3::new(1.0, 0.0, 0.0) };
         let turned = turned(&camera, axis, 0.25).unwrap();
-        let turned = Value::try_from(turned).unwrap();
+        let turned = CameraTable::new(&turned).unwrap();
         let near = |key: &str, expected: [f64; 3]| {
-            let found = vector(&turned["pinhole"][key]).unwrap();
+            let found = turned.vector(key).unwrap();
             assert!((found - DVec3::from(expected)).length() < 1e-12, "{key} {found}");
         };
         near("eye", [6.0, 2.0, 0.0]);

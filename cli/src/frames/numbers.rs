@@ -14,7 +14,6 @@ use crate::progress::{self, tell};
 use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::scene::{Scene, SceneError};
 
-/// The numbers of pictures.
 #[derive(Default)]
 pub(crate) struct Numbers {
     /// Those that the camera frames, if these are not all.
@@ -60,7 +59,6 @@ fn replaced(scene: &str, by: &str) -> String {
     format!("{scene}: {by} replaced `camera_path`, which is not used")
 }
 
-/// Finds which pictures there are.
 pub(crate) fn numbers(
     source: &mut Source,
     wanted: &Wanted,

@@ -19,8 +19,7 @@ use crate::render::{Job, render_joined};
 use crate::render_args::RenderArgs;
 use crate::stop_rule::StopRule;
 use crate::threads;
-use crate::views::Views;
-use pinhole::annotate::Annotations;
+use crate::views::{Shot, views_of};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 
@@ -39,7 +38,6 @@ pub(crate) struct Ready {
 /// How pictures are written.
 pub(crate) struct Writing {
     pub(crate) encoding: Encoding,
-    annotations: Annotations,
     outputs: Outputs,
     pub(crate) layers: LayerSet,
     /// Width and height of a picture.
@@ -60,56 +58,47 @@ pub(crate) struct Known<'a> {
 pub(crate) fn ready(
     args: &RenderArgs,
     wanted: &Wanted,
-    job: Job,
+    mut job: Job,
     known: Known<'_>,
 ) -> Result<Option<Ready>, Failure> {
     let quiet = args.report.quiet;
-    let Job { mut source, outputs, encoding, annotation, stop_rule, device, stereo } = job;
     if quiet {
         progress::close();
     }
     let mut notes = Notes::new(quiet);
     threads::start()?;
-    let path = wanted_path(&source, wanted, &mut notes)?;
-    let numbers = numbers(&mut source, wanted, path.as_ref(), &mut notes)?;
-    let left = left(wanted, &outputs, &numbers.all, known.only, &mut notes);
+    let path = wanted_path(&job.source, wanted, &mut notes)?;
+    let numbers = numbers(&mut job.source, wanted, path.as_ref(), &mut notes)?;
+    let left = left(wanted, &job.outputs, &numbers.all, known.only, &mut notes);
     let Some(&first) = left.first() else { return Ok(None) };
     let mut overview = known.overview;
     let prepare = || match (&wanted.pictures, &path) {
-        (Pictures::Turntable { .. }, _) => turntable(&source, numbers.all.len(), first),
+        (Pictures::Turntable { .. }, _) => turntable(&job.source, numbers.all.len(), first),
         (Pictures::Frames { .. }, Some(path)) if numbers.is_still => {
-            still(&source, path, wanted.fps, numbers.index_of(first), first)
+            still(&job.source, path, wanted.fps, numbers.index_of(first), first)
         }
         (Pictures::Frames { .. }, path) => {
             let path = path.as_ref().map(|path| (path, wanted.fps));
             let found = match overview.take() {
                 Some(overview) => overview,
-                None => Overview::of(&mut source, &numbers)?,
+                None => Overview::of(&mut job.source, &numbers)?,
             };
-            frames(&mut source, overview.insert(found), &numbers, first, path)
+            frames(&mut job.source, overview.insert(found), &numbers, first, path)
         }
     };
-    let (prepared, opened) = device.open_beside(prepare)?;
+    let (prepared, opened) = job.device.open_beside(prepare)?;
     let Prepared { mut input, camera } = prepared;
     for number in &left {
-        outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
+        job.outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
     }
     input.notes.drain(..).for_each(|note| notes.tell(note));
-    let encoding = annotation.apply_to(encoding.apply_to(input.encoding));
-    let encoding = encoding.with_background(input.settings.visible_background());
-    input.settings.is_transparent = encoding.transparent();
-    if input.settings.integrator.is_primary() {
-        stop_rule.check_without_light()?;
-    }
-    input.settings.notes(&input.scene).iter().for_each(|note| notes.tell(note.to_string()));
-    let found = RefCell::new(Vec::new());
-    let annotations =
-        annotation.for_input(&input, |text| found.borrow_mut().push(text.to_string()))?;
-    found.into_inner().into_iter().for_each(|note| notes.tell(note));
-    let outputs = Outputs { annotations: annotations.clone(), ..outputs };
+    let notes = RefCell::new(notes);
+    let note = |text: &dyn std::fmt::Display| notes.borrow_mut().tell(text.to_string());
+    let (encoding, annotations) = job.finish(&mut input, note)?;
+    let outputs = Outputs { annotations, ..job.outputs };
     let layers = outputs.layers(&encoding);
     let eyes = if input.eyes.is_some() { 2 } else { 1 };
-    if stereo.is_some() && eyes == 1 {
+    if job.stereo.is_some() && eyes == 1 {
         return Err(Failure::usage(
             "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ));
@@ -117,9 +106,10 @@ pub(crate) fn ready(
     let size = [eyes * input.film.width(), input.film.height()];
     wanted.target.check(&encoding, size)?;
     let all = numbers.all.clone();
+    let (source, notes) = (job.source, notes.into_inner());
     let series = Series { source, input, camera, numbers, left, notes };
-    let writing = Writing { encoding, annotations, outputs, layers, size, quiet };
-    Ok(Some(Ready { series, opened, stop_rule, writing, overview, all }))
+    let writing = Writing { encoding, outputs, layers, size, quiet };
+    Ok(Some(Ready { series, opened, stop_rule: job.stop_rule, writing, overview, all }))
 }
 
 /// The numbers of the pictures that are to be made, without those that are there already.
@@ -146,7 +136,6 @@ fn left(
     left
 }
 
-/// Renders all pictures and writes them.
 pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Failure> {
     let started = Instant::now();
     let Some(ready) = ready(args, wanted, job, Known::default())? else { return Ok(()) };
@@ -155,8 +144,8 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
     let done = writing.write(wanted, count, opened.adapter(), |pictures| {
         series.for_each(|number, input| {
             pictures.begin();
-            let views = Views::of(input);
-            let image = render_joined(input, &stop_rule, &views, writing.layers, &opened)?;
+            let (views, layers) = (&views_of(input, input.film), writing.layers);
+            let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &opened })?;
             Ok(pictures.send(number, image))
         })
     })?;
@@ -173,7 +162,6 @@ pub(crate) struct Written<'a> {
 }
 
 impl Written<'_> {
-    /// Shows that the next picture is at work.
     pub(crate) fn begin(&mut self) {
         self.status.show();
     }
@@ -201,7 +189,6 @@ impl Writing {
             target: &wanted.target,
             outputs: &self.outputs,
             encoding: &self.encoding,
-            annotations: &self.annotations,
             adapter,
             frames_per_second: wanted.fps,
             count,
@@ -238,7 +225,6 @@ impl Writing {
 /// Time between two lines where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(20);
 
-/// How many frames are done, and since when.
 pub(crate) struct Status {
     total: usize,
     done: usize,

@@ -14,7 +14,6 @@ use crate::input::contents::Contents;
 use crate::input::{Framed, Input, Look, Source};
 use pinhole::glam::DVec3;
 
-/// What changes from one picture to the next.
 struct Change {
     contents: Option<Box<Contents>>,
     look: Option<Box<Look>>,

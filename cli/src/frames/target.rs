@@ -9,13 +9,11 @@ use crate::input::extension;
 use crate::output::check_writable;
 use pinhole::image::encoding::{Bits, Encoding};
 
-/// Where several pictures go.
 #[derive(Debug)]
 pub(super) enum Target {
     Files {
         path: PathBuf,
     },
-    /// One file.
     Movie {
         path: PathBuf,
         kind: Movie,
@@ -24,7 +22,6 @@ pub(super) enum Target {
     Raw,
 }
 
-/// A format of movies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Movie {
     Apng,

@@ -7,7 +7,8 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::frames::{Raw, Wanted};
+use crate::frames::Wanted;
+use crate::frames::args::Raw;
 use crate::input::Input;
 use crate::job::manifest::Manifest;
 use crate::render::Job;
@@ -127,7 +128,6 @@ pub(crate) struct MergeArgs {
     pub(crate) quiet: bool,
 }
 
-/// A command line of `job`, without the other commands.
 #[derive(Debug, Parser)]
 struct JobLine {
     #[command(subcommand)]
@@ -175,7 +175,6 @@ impl Recipe {
         Self::new(render)
     }
 
-    /// The pictures of these flags.
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Failure> {
         let output = args.output.as_deref().unwrap_or(Path::new("-"));
         let wanted = Wanted::new(&args)?;

@@ -2,7 +2,7 @@
 //! `output.rs` writes; and the digests by which files are known.
 
 use std::fs;
-pub(super) use std::fs::File;
+pub(super) use std::fs::{File, create_dir, read, read_to_string, remove_dir_all, remove_file};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
@@ -11,35 +11,10 @@ use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-pub(super) fn open(path: &Path) -> io::Result<File> {
-    File::open(path)
-}
-
-pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
-    fs::read(path)
-}
-
-pub(super) fn read_text(path: &Path) -> io::Result<String> {
-    fs::read_to_string(path)
-}
-
-pub(super) fn create_folder(path: &Path) -> io::Result<()> {
-    fs::create_dir(path)
-}
-
-/// Removes a folder that this program has created, with all that is in it.
-pub(super) fn remove_folder(path: &Path) {
-    let _ = fs::remove_dir_all(path);
-}
-
 /// The names of what is in a folder. Asking for them makes network file systems look for new files.
 pub(super) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
-}
-
-pub(super) fn remove(path: &Path) {
-    let _ = fs::remove_file(path);
 }
 
 /// When a file was written, by the clock of the file system.
@@ -65,14 +40,12 @@ pub(super) struct InputFile {
     pub(super) sha256: String,
 }
 
-/// The digest of bytes, in hexadecimal digits.
 pub(super) fn hex(bytes: &[u8]) -> String {
     HEXLOWER.encode(&Sha256::digest(bytes))
 }
 
-/// The length and the digest of a file.
 pub(super) fn digest(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = open(path)?;
+    let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     let mut digest = Sha256::new();
     let mut piece = vec![0; PIECE as usize];

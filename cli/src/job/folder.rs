@@ -28,7 +28,6 @@ pub(super) const OVERVIEW: &str = "overview.bin";
 const LEFT: Duration = Duration::from_secs(3600);
 
 impl Folder {
-    /// Reads the description of a job.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let absolute = std::path::absolute(path)
             .with_context(|| format!("{}: this path has no meaning", path.display()))?;
@@ -66,7 +65,7 @@ impl Folder {
         for path in unnamed.into_iter().map(|name| parts.join(name)) {
             let age = files::modified(&path).and_then(|time| now.duration_since(time).ok());
             if age.is_some_and(|age| age > LEFT) {
-                files::remove(&path);
+                let _ = files::remove_file(&path);
             }
         }
     }

@@ -16,7 +16,6 @@ pub(crate) const NAME: &str = "job.json";
 /// The version of the format. Another one is refused, because bytes depend on it.
 const FORMAT: u32 = 1;
 
-/// This version of the program.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The most units of a job. Each is a file, and all of them are looked at together.
@@ -26,14 +25,11 @@ pub(crate) const MOST_UNITS: usize = 1_000_000;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    /// The version of this format.
     pub(crate) pinhole_job: u32,
     pub(crate) version: String,
     /// The digest of this file with an empty text here.
     pub(crate) sha256: String,
-    /// What a unit is.
     pub(crate) unit: UnitKind,
-    /// How many units there are.
     pub(crate) units: usize,
     /// The arguments of the program that split the job.
     pub(crate) arguments: Vec<String>,
@@ -50,7 +46,6 @@ pub(crate) struct Manifest {
     /// The bricks of each unit that is a group of them: the first, and the one after the last. Empty for tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) groups: Vec<[usize; 2]>,
-    /// Columns and rows of tiles.
     pub(crate) tiles: [u32; 2],
     /// The layers of parts, which may be more than those of the pictures: outlines and denoising are guided by them.
     pub(crate) layers: Vec<String>,
@@ -68,7 +63,6 @@ pub(crate) struct Manifest {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum UnitKind {
-    /// A tile of a picture.
     Tile,
     /// Some bricks, of which every part has what is nearest in all pixels.
     Depth,
@@ -78,7 +72,6 @@ pub(crate) enum UnitKind {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StoredOverview {
-    /// The digest of the file.
     pub(crate) sha256: String,
     /// How many spheres there are, and how many of them were added to the data.
     pub(crate) spheres: usize,
@@ -103,10 +96,9 @@ impl Manifest {
         Ok(files::hex(serde_json::to_string(&unsealed)?.as_bytes()))
     }
 
-    /// Reads the file of a job.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
-        let text = files::read_text(path)
+        let text = files::read_to_string(path)
             .with_context(|| format!("{}: this is not the folder of a job", place()))?;
         Self::parse(&text).with_context(place)
     }
@@ -147,7 +139,6 @@ impl Manifest {
         has_tiles && units == Some(self.units) && self.units > 0
     }
 
-    /// Whether units are groups of bricks.
     pub(crate) fn is_by_depth(&self) -> bool {
         self.unit == UnitKind::Depth
     }

@@ -19,7 +19,6 @@ use crate::picture::{Outputs, PictureFormat};
 use crate::progress::tell;
 use crate::render::finish_joined;
 use crate::threads;
-use crate::views::Views;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::Nearest;
 
@@ -50,7 +49,12 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
         args.layers.iter().map(|text| absolute_layer(text)).collect::<Result<_, _>>()?;
     render.report.quiet = args.quiet;
     (render.frames.fps, render.frames.raw) = (args.fps.or(render.frames.fps), args.raw);
-    check_kind(&folder, &args.output)?;
+    if folder.manifest.pictures.is_none() && is_movie(&args.output) {
+        return Err(Failure::usage(format!(
+            "{}: this job is a single picture; for a movie split it with --frames RANGE or --turntable N",
+            args.output.display()
+        )));
+    }
     folder.enter()?;
     let recipe = Recipe::new(render)?;
     if exr != (recipe.job.outputs.format == PictureFormat::Exr) {
@@ -86,7 +90,6 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes all pictures, and returns their number.
 fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Failure> {
     let Recipe { args, wanted, job } = recipe;
     let adapter = devices.adapter.as_deref();
@@ -214,55 +217,44 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
 }
 
 /// The pictures of all eyes at a place among all pictures, from their parts.
-fn picture(folder: &Folder, place: usize) -> Result<Views<Image>, Failure> {
+fn picture(folder: &Folder, place: usize) -> Result<Vec<Image>, Failure> {
     let manifest = &folder.manifest;
     if manifest.is_by_depth() {
-        return Ok(nearest(folder)?.map(Nearest::into_image));
+        return Ok(nearest(folder)?.into_iter().map(Nearest::into_image).collect());
     }
     let [width, height] = manifest.size;
-    let empty = || {
-        let image = Image::new(width, height, manifest.layer_set());
-        image.map_err(|error| Failure::Job(error.into()))
-    };
-    let mut whole = match manifest.eyes {
-        2 => Views::Two([empty()?, empty()?]),
-        _ => Views::One(empty()?),
-    };
+    let empty = (0..manifest.eyes).map(|_| Image::new(width, height, manifest.layer_set()));
+    let whole: Result<Vec<Image>, _> = empty.collect();
+    let mut whole = whole.map_err(|error| Failure::Job(error.into()))?;
     let tiles = manifest.units_of_picture();
     for unit in place * tiles..(place + 1) * tiles {
         let (_, (origin, _)) = manifest.unit(unit);
-        let tile = tile(folder, unit)?;
-        for (whole, tile) in whole.as_mut_slice().iter_mut().zip(tile.as_slice()) {
+        let Pictures::Tile(tile) = read_part(folder, unit)? else {
+            return Err(unusable(folder, unit, Problem::Foreign));
+        };
+        for (whole, tile) in whole.iter_mut().zip(&tile) {
             whole.put(tile, origin).map_err(|error| Failure::Job(error.into()))?;
         }
     }
     Ok(whole)
 }
 
-/// The pictures of a unit that is a tile.
-fn tile(folder: &Folder, unit: usize) -> Result<Views<Image>, Failure> {
-    match read_part(folder, unit)? {
-        Pictures::Tile(images) => Ok(images),
-        Pictures::Depth(_) => Err(unusable(folder, unit, Problem::Foreign)),
-    }
-}
-
 /// What is nearest in the parts of all groups of bricks, of which one is in memory at a time.
-fn nearest(folder: &Folder) -> Result<Views<Nearest>, Failure> {
-    let mut all: Option<Views<Nearest>> = None;
+fn nearest(folder: &Folder) -> Result<Vec<Nearest>, Failure> {
+    let mut all: Vec<Nearest> = Vec::new();
     for unit in 0..folder.manifest.units {
         let Pictures::Depth(part) = read_part(folder, unit)? else {
             return Err(unusable(folder, unit, Problem::Foreign));
         };
-        let Some(all) = &mut all else {
-            all = Some(part);
+        if all.is_empty() {
+            all = part;
             continue;
-        };
-        for (all, part) in all.as_mut_slice().iter_mut().zip(part.as_slice()) {
+        }
+        for (all, part) in all.iter_mut().zip(&part) {
             all.keep_nearer(part).map_err(|error| Failure::Job(error.into()))?;
         }
     }
-    all.ok_or_else(|| Failure::Job(anyhow!("there are no parts to put together")))
+    Ok(all)
 }
 
 /// Reads a part, which was checked, but may have changed since.
@@ -271,21 +263,8 @@ fn read_part(folder: &Folder, unit: usize) -> Result<Pictures, Failure> {
     part.map(|(_, pictures)| pictures).map_err(|problem| unusable(folder, unit, problem))
 }
 
-/// Why a part cannot be used.
 fn unusable(folder: &Folder, unit: usize, problem: Problem) -> Failure {
     Failure::Job(anyhow!("{}: this part is {}", folder.part(unit).display(), problem.words()))
-}
-
-/// Refuses an output of another kind than that of the job.
-fn check_kind(folder: &Folder, output: &Path) -> Result<(), Failure> {
-    let has_numbers = folder.manifest.pictures.is_some();
-    if !has_numbers && is_movie(output) {
-        return Err(Failure::usage(format!(
-            "{}: this job is a single picture; for a movie split it with --frames RANGE or --turntable N",
-            output.display()
-        )));
-    }
-    Ok(())
 }
 
 /// Refuses layers that the parts have not.

@@ -4,8 +4,6 @@
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
 
-use anyhow::Context;
-
 use self::folder::Folder;
 use super::failure::Failure;
 use super::threads;
@@ -31,12 +29,11 @@ pub(super) fn run(args: &JobArgs) -> Result<(), Failure> {
     }
 }
 
-/// Lists the units that are to be rendered.
 fn status(args: &StatusArgs) -> Result<(), Failure> {
     let folder = Folder::open(&args.job)?;
     threads::start()?;
     let found = if args.check { folder.check() } else { folder.glance() };
     let missing = (0..found.len()).filter(|unit| found[*unit].is_err());
     let text: String = missing.map(|unit| format!("{unit}\n")).collect();
-    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+    Ok(answer(text.as_bytes())?)
 }

@@ -17,10 +17,11 @@ use crate::interrupt::{self, Deadline};
 use crate::job::args::{PartArgs, Recipe, check_same};
 use crate::job::manifest::{VERSION, parse_list};
 use crate::output::{name_all, unnamed_with};
-use crate::progress::tell;
+use crate::progress::{self, tell};
 use crate::render::{check_device, render_part};
+use crate::stop_rule::StopRule;
 use crate::threads;
-use crate::views::Views;
+use crate::views::{Shot, views_of};
 
 /// The message if the program is stopped.
 const STOPPED: &str =
@@ -75,14 +76,9 @@ impl Work<'_> {
         let manifest = &self.folder.manifest;
         let recipe = Recipe::of_parts(&manifest.arguments, &self.folder.path.join(PARTS), true)?;
         let Recipe { args, wanted, job } = recipe;
-        let note = |note: &dyn std::fmt::Display| {
-            if !self.quiet {
-                tell(format_args!("note: {note}"));
-            }
-        };
         let Some(wanted) = wanted else {
             let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
-            let (_, _) = job.finish(&mut input, note)?;
+            let (_, _) = job.finish(&mut input, progress::notes(self.quiet))?;
             check_same(manifest, None, &input)?;
             return self.units.iter().try_for_each(|unit| self.render(*unit, &mut input, &opened));
         };
@@ -112,10 +108,10 @@ impl Work<'_> {
         let layers = manifest.layer_set();
         let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
-            let views = Views::of(input);
-            check_device(input, &views, layers, opened)?;
-            let nearest = nearest_of(&bricks, *first..*end, input, &views, layers, opened)?;
-            Pictures::Depth(nearest)
+            let (views, stop_rule) = (&views_of(input, input.film), StopRule::default());
+            let shot = Shot { input, views, layers, stop_rule, opened };
+            check_device(&shot)?;
+            Pictures::Depth(nearest_of(&bricks, *first..*end, &shot)?)
         } else {
             let tile = input.film.part(origin, size).map_err(|error| Failure::Job(error.into()))?;
             Pictures::Tile(render_part(input, tile, layers, opened)?)

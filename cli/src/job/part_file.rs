@@ -9,7 +9,6 @@ use sha2::{Digest, Sha256};
 
 use super::files;
 use crate::job::manifest::{Manifest, VERSION};
-use crate::views::Views;
 use pinhole::image::Image;
 use pinhole::render::Nearest;
 
@@ -20,7 +19,6 @@ const DIGEST: usize = 32;
 /// No header is longer.
 const LONGEST_HEADER: u64 = 1 << 16;
 
-/// What a part says about itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
@@ -31,7 +29,6 @@ pub(super) struct Header {
     pub(super) device: String,
     /// The name of the adapter, as files of pictures have it.
     pub(super) adapter: Option<String>,
-    /// How long the unit took.
     pub(super) milliseconds: u64,
     /// Bytes of the layers that follow.
     pub(super) bytes: u64,
@@ -40,7 +37,6 @@ pub(super) struct Header {
 /// Why a file is not the part that is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Problem {
-    /// There is no file.
     Missing,
     /// It is not a part, or it was changed or cut off.
     Damaged,
@@ -81,9 +77,9 @@ pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
 
 /// What a part shows, for each eye.
 pub(super) enum Pictures {
-    Tile(Views<Image>),
+    Tile(Vec<Image>),
     /// The whole film, with what is nearest of some bricks.
-    Depth(Views<Nearest>),
+    Depth(Vec<Nearest>),
 }
 
 pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) -> io::Result<()> {
@@ -98,12 +94,8 @@ pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) 
     put(&length)?;
     put(&text)?;
     match pictures {
-        Pictures::Tile(images) => {
-            images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
-        }
-        Pictures::Depth(images) => {
-            images.as_slice().iter().try_for_each(|image| put(&image.to_le_bytes()))?;
-        }
+        Pictures::Tile(images) => images.iter().try_for_each(|i| put(&i.to_le_bytes()))?,
+        Pictures::Depth(images) => images.iter().try_for_each(|i| put(&i.to_le_bytes()))?,
     }
     out.write_all(&digest.finalize())
 }
@@ -163,7 +155,6 @@ pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Hea
     checked(path, manifest, unit, skip)
 }
 
-/// Reads a part and checks every byte of it.
 pub(super) fn read(
     path: &Path,
     manifest: &Manifest,
@@ -176,24 +167,21 @@ pub(super) fn read(
     let (_, (_, size)) = manifest.unit(unit);
     let layers = manifest.layer_set();
     let of_eye = rest.len() / manifest.eyes.max(1) as usize;
-    let eyes = match manifest.eyes {
-        2 => Views::Two(rest.split_at(of_eye).into()),
-        _ => Views::One(&rest[..]),
-    };
+    let eyes = rest.chunks_exact(of_eye.max(1));
     // What has the right length and digest was written so; only memory can be missing.
     let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
     let pictures = if manifest.is_by_depth() {
-        let nearest = |bytes: &&[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(no_memory);
-        Pictures::Depth(eyes.try_each(nearest)?)
+        let nearest = |bytes: &[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(no_memory);
+        Pictures::Depth(eyes.map(nearest).collect::<Result<_, _>>()?)
     } else {
-        let image = |bytes: &&[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(no_memory);
-        Pictures::Tile(eyes.try_each(image)?)
+        let image = |bytes: &[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(no_memory);
+        Pictures::Tile(eyes.map(image).collect::<Result<_, _>>()?)
     };
     Ok((header, pictures))
 }
 
 fn open(path: &Path) -> Result<files::File, Problem> {
-    files::open(path).map_err(|error| Problem::of(&error))
+    files::File::open(path).map_err(|error| Problem::of(&error))
 }
 
 /// Reads the header, and returns how many bytes it takes with what is before it.

@@ -156,11 +156,7 @@ fn found(recipe: Recipe) -> Result<Found, Failure> {
     if wanted.is_some() {
         job.source = job.source.without_bricks("a series of pictures")?;
     }
-    let note = |note: &dyn std::fmt::Display| {
-        if !args.report.quiet {
-            tell(format_args!("note: {note}"));
-        }
-    };
+    let note = progress::notes(args.report.quiet);
     let Some(wanted) = wanted else {
         let mut input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
@@ -227,9 +223,9 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
 fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Failure> {
     let path = &folder.path;
     let cannot = || format!("{}: cannot be created", path.display());
-    files::create_folder(path).with_context(cannot)?;
+    files::create_dir(path).with_context(cannot)?;
     let fill = || {
-        files::create_folder(&path.join(PARTS)).with_context(cannot)?;
+        files::create_dir(&path.join(PARTS)).with_context(cannot)?;
         if let Some(bytes) = overview {
             let file = path.join(OVERVIEW);
             name_all(vec![(&file, unnamed(&file, bytes)?)])?;
@@ -237,7 +233,7 @@ fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Fa
         let file = path.join(NAME);
         name_all(vec![(&file, unnamed(&file, text.as_bytes())?)])
     };
-    Ok(fill().inspect_err(|_| files::remove_folder(path))?)
+    Ok(fill().inspect_err(|_| drop(files::remove_dir_all(path)))?)
 }
 
 fn said(folder: &Folder) {

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     report.open = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
     progress::clear();
-    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    answer(report.table().as_bytes())?;
     outputs.write(&run, &certificate, &report, &kept)?;
     let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);

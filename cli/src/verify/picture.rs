@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::input::read;
 use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
 use crate::picture::{Outputs, PictureFormat};
-use crate::progress::{self, answer, tell};
+use crate::progress::{self, answer};
 use crate::render::Job;
 use crate::render_args::{RenderCommand, RenderLine};
 use crate::threads;
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     let mut input = job.source.load()?;
     let files: Vec<_> = input.files.iter().cloned().chain([path.to_path_buf()]).collect();
     check_not_inputs(args.json.iter(), &files)?;
-    let note = |note: &dyn std::fmt::Display| tell(format_args!("note: {note}"));
+    let note = progress::notes(false);
     input.notes.iter().for_each(|text| note(text));
     certified::check_scene(&certificate, &input).with_context(of_picture)?;
     let (encoding, _) = job.finish(&mut input, note)?;
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     let judged = certified::judge(&mut input, &encoding, layers, &written)?;
     progress::clear();
     let table = format!("{:<12}{flags}\n{}", "rendered by", judged.table());
-    answer(table.as_bytes()).context("standard output: cannot be written")?;
+    answer(table.as_bytes())?;
     if let Some(json) = &args.json {
         let ([width, height], [proved, undecided, violated]) = (written.size, judged.counts());
         let report = Report {

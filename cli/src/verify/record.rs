@@ -13,7 +13,7 @@ use crate::input::{Input, Source};
 use crate::progress::{self, tell};
 use crate::verify::output::{Kept, Recorded, VerifyOutputs};
 use crate::verify::report::{self, command_line};
-use crate::views::Views;
+use crate::views::views_of;
 use crate::with_scene::{upload, with_structures};
 use crate::{interrupt, memory, output, render, self_test, threads};
 use pinhole::accel::{AccelChoice, Structure};
@@ -100,7 +100,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {
     let AdapterReport { name, backend, device_type, driver, driver_info } =
-        AdapterReport::of(headless);
+        AdapterReport::of(headless.adapter_info());
     let limits = headless.device().limits();
     let limits = [
         ("max_buffer_size", limits.max_buffer_size),
@@ -130,7 +130,7 @@ pub(crate) fn certify_light(
     kept: Option<&mut LitSamples>,
 ) -> Result<LitCertificate, Failure> {
     let Input { scene, settings, .. } = input;
-    let (view, views) = (input.view(), Views::of(input));
+    let (view, views) = (input.view(), views_of(input, input.film));
     let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
     let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
     let tile_seed = tile_seed.unwrap_or_else(any_seed);
@@ -268,7 +268,7 @@ pub(crate) fn render_lit(
     let background = settings.visible_background();
     let encoding = input.encoding.with_transparent(false).with_background(background);
     let layers = encoding.layers();
-    let (view, views) = (input.view(), Views::of(input));
+    let (view, views) = (input.view(), views_of(input, input.film));
     let plan = |choice| render::plan(headless, input, &views, layers, choice);
     let done = with_structures(headless, choice, plan, |plan| {
         interrupt::on_device(|| {

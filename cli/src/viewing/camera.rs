@@ -1,9 +1,8 @@
 //! A camera that a viewer moves.
 
-use serde::Deserialize;
-use toml::{Table, Value};
+use toml::Value;
 
-use crate::camera::CameraArgs;
+use crate::camera::{CameraArgs, CameraTable, list};
 use crate::viewing::ViewError;
 use crate::viewing::flags::RenderFlags;
 use pinhole::camera::CameraParameters;
@@ -12,32 +11,20 @@ use pinhole::glam::DVec3;
 
 /// A camera of any kind, with its place in the world: the flags of the camera as a viewer changes them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ViewCamera {
-    pub(crate) kind: String,
-    /// The table of this kind in a scene file.
-    pub(crate) table: Table,
-}
+pub struct ViewCamera(CameraTable);
 
 impl ViewCamera {
-    /// Takes the parameters of a camera that has its place, as [`crate::viewing::Shown::camera`] has. `None` if it has no place.
+    /// Takes the parameters of a camera that has its place, as [`crate::viewing::Facts::camera`] has. `None` if it has no place.
     pub fn new(parameters: &CameraParameters) -> Option<Self> {
-        let Ok(Value::Table(document)) = Value::try_from(parameters) else { return None };
-        let (kind, Value::Table(table)) = document.into_iter().next()? else { return None };
-        let camera = Self { kind, table };
+        let camera = Self(CameraTable::new(parameters)?);
         camera.place().map(|_| camera)
     }
 
     /// The eye, the direction of view, which is no unit vector, and the direction that is up.
     fn place(&self) -> Option<[DVec3; 3]> {
-        let eye = self.vector("eye")?;
-        let toward = self.vector("look_at").map(|point| point - eye);
-        Some([eye, toward.or_else(|| self.vector("direction"))?, self.vector("up")?])
-    }
-
-    fn vector(&self, key: &str) -> Option<DVec3> {
-        let numbers = self.table.get(key)?.as_array()?;
-        let numbers: Vec<f64> = numbers.iter().filter_map(Value::as_float).collect();
-        <[f64; 3]>::try_from(numbers).ok().map(DVec3::from)
+        let eye = self.0.vector("eye")?;
+        let toward = self.0.vector("look_at").map(|point| point - eye);
+        Some([eye, toward.or_else(|| self.0.vector("direction"))?, self.0.vector("up")?])
     }
 
     /// The position of the camera.
@@ -59,59 +46,51 @@ impl ViewCamera {
 
     /// The point at which the camera looks, if it has one.
     pub fn look_at(&self) -> Option<DVec3> {
-        self.vector("look_at")
+        self.0.vector("look_at")
     }
 
     /// Whether what is far is as large as what is near, so that the camera comes no nearer by moving.
     pub fn is_orthographic(&self) -> bool {
-        self.kind == "orthographic"
+        self.0.kind == "orthographic"
     }
 
     /// Moves the camera. Numbers are rounded to what a picture can show, so that flags stay short.
     pub fn set_place(&mut self, eye: DVec3, look_at: DVec3, up: DVec3) {
         let scale = eye.distance(look_at);
         let place = |point: DVec3| list(point.to_array().map(|x| rounded(x, 1e-6 * scale)));
-        self.table.insert("eye".to_owned(), place(eye));
-        self.table.insert("look_at".to_owned(), place(look_at));
-        self.table.insert(
-            "up".to_owned(),
-            list(up.normalize_or(DVec3::Y).to_array().map(|x| rounded(x, 1e-6))),
-        );
-        self.table.remove("direction");
+        let up = up.normalize_or(DVec3::Y).to_array().map(|x| rounded(x, 1e-6));
+        for (key, value) in [("eye", place(eye)), ("look_at", place(look_at)), ("up", list(up))] {
+            self.0.set(key, value);
+        }
+        self.0.table.remove("direction");
     }
 
     /// Enlarges the picture of an orthographic camera.
     pub fn enlarge(&mut self, factor: f64) {
-        let zoom = self.table.get("zoom").and_then(Value::as_float).unwrap_or(1.0) * factor;
+        let zoom = self.0.table.get("zoom").and_then(Value::as_float).unwrap_or(1.0) * factor;
         let zoom = zoom.clamp(1e-3, 1e3);
-        self.table.insert("zoom".to_owned(), rounded(zoom, 1e-4 * zoom).into());
+        self.0.set("zoom", rounded(zoom, 1e-4 * zoom));
     }
 
     /// Lets a camera with a given view plane fill a picture of this aspect ratio (width over height) without
     /// stretching it: the height stays.
     pub fn set_aspect(&mut self, aspect: f64) {
-        let plane = self.table.get("half_extent").and_then(Value::as_array);
+        let plane = self.0.table.get("half_extent").and_then(Value::as_array);
         if let Some(height) = plane.and_then(|plane| plane.get(1)).and_then(Value::as_float) {
             let [width, height] =
                 [height * aspect, height].map(|side| rounded(side, 1e-6 * height));
-            self.table.insert("half_extent".to_owned(), vec![width, height].into());
+            self.0.set("half_extent", list([width, height]));
         }
     }
 
     /// The parameters of the camera.
     pub fn parameters(&self) -> Result<CameraParameters, ViewError> {
-        let document = Table::from_iter([(self.kind.clone(), Value::Table(self.table.clone()))]);
-        CameraParameters::deserialize(Value::Table(document))
-            .map_err(|error| ViewError::usage(error.message()))
+        self.0.clone().parameters().map_err(ViewError::usage)
     }
 }
 
-pub(crate) fn list(numbers: [f64; 3]) -> Value {
-    numbers.to_vec().into()
-}
-
 /// Rounds to a power of ten of about this step.
-pub(crate) fn rounded(number: f64, step: f64) -> f64 {
+fn rounded(number: f64, step: f64) -> f64 {
     let digits = -step.log10().floor();
     if !digits.is_finite() {
         return number;
@@ -127,15 +106,18 @@ impl ViewCamera {
     /// Writes the camera into flags, in place of all flags of the camera that were there.
     pub fn write_to(&self, flags: &mut RenderFlags) {
         flags.remove_camera();
-        if self.kind != "pinhole" {
-            flags.set("camera", &self.kind);
+        if self.0.kind != "pinhole" {
+            flags.set("camera", &self.0.kind);
         }
         for (key, flag, _) in CameraArgs::default().keys() {
             let value = match key.split_once('.') {
-                None => self.table.get(key),
-                Some((table, key)) => {
-                    self.table.get(table).and_then(Value::as_table).and_then(|inner| inner.get(key))
-                }
+                None => self.0.table.get(key),
+                Some((table, key)) => self
+                    .0
+                    .table
+                    .get(table)
+                    .and_then(Value::as_table)
+                    .and_then(|inner| inner.get(key)),
             };
             if let Some(value) = value.and_then(text) {
                 flags.set(flag.trim_start_matches('-'), &value);
@@ -147,10 +129,10 @@ impl ViewCamera {
     pub fn write_fit_to(&self, flags: &mut RenderFlags) {
         let round = |v: DVec3| list(v.to_array().map(|x| rounded(x, 1e-6)));
         let mut fit = self.clone();
-        fit.table.insert("direction".to_owned(), round(self.direction()));
-        fit.table.insert("up".to_owned(), round(self.up()));
+        fit.0.set("direction", round(self.direction()));
+        fit.0.set("up", round(self.up()));
         for key in ["eye", "look_at", "zoom", "half_extent", "distance"] {
-            fit.table.remove(key);
+            fit.0.table.remove(key);
         }
         fit.write_to(flags);
     }

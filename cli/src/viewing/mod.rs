@@ -8,7 +8,7 @@ use std::fmt;
 use std::process::ExitCode;
 
 pub use flags::RenderFlags;
-pub use shown::{Shown, TimeLine};
+pub use shown::{Facts, Shown, TimeLine};
 pub use still::{StillPicture, StillRenderer};
 
 use crate::failure::{FAILED, Failure, USAGE};
@@ -73,6 +73,11 @@ pub fn print_error(error: &dyn fmt::Display) {
 /// Prints a line on standard error, with control characters escaped.
 pub fn print_note(line: &str) {
     crate::progress::tell(line);
+}
+
+/// Writes a number with a comma before each group of three digits.
+pub fn grouped(number: usize) -> String {
+    crate::report::grouped(number)
 }
 
 /// Prints a line on standard output.

@@ -31,6 +31,31 @@ pub struct Shown {
     notes: Vec<String>,
 }
 
+/// What a window says about what is shown.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Facts {
+    /// The flags that are shown.
+    pub flags: RenderFlags,
+    /// The spheres.
+    pub scene: Arc<Scene>,
+    /// The columns of the data, with a value for each of its spheres, which are the last ones of the scene apart from
+    /// [`Scene::added`]; empty if the data has none.
+    pub columns: Arc<Vec<Column>>,
+    /// The parameters of the camera, with its place.
+    pub camera: CameraParameters,
+    /// The settings.
+    pub settings: RenderSettings,
+    /// The name of the style, if there is one.
+    pub style: Option<&'static str>,
+    /// The column that colours the spheres although no flag asks for it.
+    pub own_color_by: Option<String>,
+    /// The frames; `None` for a file that has one picture.
+    pub time_line: Option<TimeLine>,
+    /// Notes for the user about the file.
+    pub notes: Vec<String>,
+}
+
 /// The frames of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimeLine {
@@ -104,6 +129,22 @@ impl Shown {
         Ok(())
     }
 
+    /// What is to be said about it.
+    pub fn facts(&self) -> Facts {
+        let Self { flags, input, columns, notes, .. } = self;
+        Facts {
+            flags: flags.clone(),
+            scene: Arc::clone(&input.scene),
+            columns: Arc::clone(columns),
+            camera: input.parameters,
+            settings: input.settings.clone(),
+            style: input.report.style.map(|style| style.name()),
+            own_color_by: input.report.color_by.clone(),
+            time_line: self.time_line(),
+            notes: notes.clone(),
+        }
+    }
+
     /// The flags that are shown.
     pub fn flags(&self) -> &RenderFlags {
         &self.flags
@@ -114,20 +155,9 @@ impl Shown {
         &self.input.scene
     }
 
-    /// The columns of the data, with a value for each of its spheres, which are the last ones of the scene apart from
-    /// [`Scene::added`]; empty if the data has none.
-    pub fn columns(&self) -> &Arc<Vec<Column>> {
-        &self.columns
-    }
-
     /// The camera; for two eyes, that of the middle between them.
     pub fn camera(&self) -> &dyn Camera {
         self.input.camera.as_ref()
-    }
-
-    /// The parameters of the camera, with its place.
-    pub fn camera_parameters(&self) -> CameraParameters {
-        self.input.parameters
     }
 
     /// The settings.
@@ -135,27 +165,11 @@ impl Shown {
         &self.input.settings
     }
 
-    /// The name of the style, if there is one.
-    pub fn style(&self) -> Option<&'static str> {
-        self.input.report.style.map(|style| style.name())
-    }
-
-    /// The column that colours the spheres although no flag asks for it.
-    pub fn own_color_by(&self) -> Option<&str> {
-        self.input.report.color_by.as_deref()
-    }
-
-    /// The frames; `None` for a file that has one picture.
-    pub fn time_line(&self) -> Option<TimeLine> {
+    fn time_line(&self) -> Option<TimeLine> {
         let count = self.frames.count.filter(|count| *count > 1)?;
         let frame = self.flags.get("frame").and_then(|frame| frame.parse().ok());
         let of_scene = || self.input.data.as_ref().and_then(|data| data.frame);
         Some(TimeLine { count, frame: frame.or_else(of_scene).unwrap_or(0) })
-    }
-
-    /// Notes for the user about the file.
-    pub fn notes(&self) -> &[String] {
-        &self.notes
     }
 }
 

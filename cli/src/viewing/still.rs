@@ -8,7 +8,6 @@ use super::{RenderFlags, Shown, ViewError};
 use crate::device::{Opened, explained};
 use crate::failure::Failure;
 use crate::render;
-use crate::views::Views;
 use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
@@ -146,7 +145,7 @@ fn first_render(
     render: &dyn Fn(&SceneBuffers) -> Result<Picture, GpuError>,
 ) -> Result<Result<(SceneBuffers, Picture), GpuError>, Failure> {
     let input = &shown.input;
-    let view = Views::One(input.view());
+    let view = [input.view()];
     let plan = |choice| render::plan(headless, input, &view, layers, choice);
     let done = with_structures(headless, choice, plan, |plan| {
         let uploaded = upload(headless, &input.scene, plan);

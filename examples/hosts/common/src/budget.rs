@@ -14,20 +14,15 @@ pub struct Budget {
     wanted: Duration,
     /// Rays and nanoseconds of the frame that the device has finished last, until they were looked at.
     done: Arc<[AtomicU64; 2]>,
-    last: Option<(u64, Duration)>,
 }
 
 impl Budget {
     /// A budget for frames that take `wanted`.
-    #[must_use]
     pub fn new(wanted: Duration) -> Self {
-        Self { rays: 500_000, wanted, done: Arc::default(), last: None }
+        Self { rays: 500_000, wanted, done: Arc::default() }
     }
 
     /// Records the next part of a lit picture. `None` if it must be tried again in the next frame.
-    ///
-    /// # Errors
-    /// The errors of [`LitPicture::record`] that no other budget and no other passes help against.
     pub fn record(
         &mut self,
         picture: &mut LitPicture,
@@ -53,11 +48,10 @@ impl Budget {
     }
 
     /// The number of rays that the next frame may trace.
-    pub fn rays(&mut self) -> u64 {
+    fn rays(&mut self) -> u64 {
         let [rays, nanoseconds] = self.done.each_ref().map(|value| value.swap(0, Ordering::AcqRel));
         if rays > 0 {
             let took = Duration::from_nanos(nanoseconds);
-            self.last = Some((rays, took));
             if took < self.wanted / 2 && rays > self.rays / 2 {
                 self.rays = self.rays.saturating_mul(2);
             } else if took > self.wanted * 2 {
@@ -69,7 +63,7 @@ impl Budget {
 
     /// Measures how long the device takes for rays that were recorded into this encoder: from now until they are
     /// executed.
-    pub fn watch(&self, encoder: &wgpu::CommandEncoder, rays: u64) {
+    fn watch(&self, encoder: &wgpu::CommandEncoder, rays: u64) {
         if rays > 0 {
             let (begin, done) = (Instant::now(), Arc::clone(&self.done));
             encoder.on_submitted_work_done(move || {
@@ -78,11 +72,5 @@ impl Budget {
                 done[0].store(rays, Ordering::Release);
             });
         }
-    }
-
-    /// Rays of the last frame that the device has finished, and how long it took.
-    #[must_use]
-    pub fn last(&self) -> Option<(u64, Duration)> {
-        self.last
     }
 }

@@ -6,14 +6,12 @@ use pinhole::render::{Occlusion, Sampling, Studio};
 use pinhole::{Integrator, LinearRgb, RenderSettings};
 
 /// What is behind the spheres.
-#[must_use]
 pub fn background() -> LinearRgb {
     LinearRgb::from_srgb8([0xf3, 0xf4, 0xf6])
 }
 
 /// A studio: one light with shadows, fixed to the camera at an angle in radians about it, and ambient light that does not
 /// reach into pockets.
-#[must_use]
 pub fn studio(angle: f64, samples: u32) -> RenderSettings {
     let studio = Studio {
         ambient: LinearRgb::from_srgb8([188; 3]),
@@ -39,7 +37,6 @@ pub fn studio(angle: f64, samples: u32) -> RenderSettings {
 }
 
 /// Path tracing under the same light and a soft sky.
-#[must_use]
 pub fn paths(angle: f64, samples: u32) -> RenderSettings {
     let RenderSettings { lights, sampling, .. } = studio(angle, samples);
     RenderSettings { lights, sampling, background: background(), ..RenderSettings::path() }

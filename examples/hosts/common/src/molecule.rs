@@ -9,9 +9,6 @@ use crate::Outcome;
 
 /// Two strands with rungs between them, twisted about each other along a trefoil knot: 3,420 spheres, within about 3.6 of
 /// the origin.
-///
-/// # Errors
-/// Returns the errors of [`Scene::new`].
 pub fn molecule() -> Outcome<Scene> {
     const RUNGS: u32 = 180;
     const TWISTS: f64 = 18.0;

@@ -44,9 +44,6 @@ impl Orbit {
     }
 
     /// The camera, for a host without matrices.
-    ///
-    /// # Errors
-    /// If the aspect ratio is not greater than zero.
     pub fn camera(&self, aspect: f64) -> Outcome<PinholeCamera> {
         let pose = Pose::looking_at(self.eye(), DVec3::ZERO, DVec3::Y)?;
         Ok(PinholeCamera::with_vertical_fov(pose, Self::FOV, aspect)?)
@@ -54,16 +51,12 @@ impl Orbit {
 
     /// The view matrix and the projection matrix of a host that rasterizes: depth is 1 at the near plane and 0 at
     /// infinity.
-    #[must_use]
     pub fn matrices(&self, aspect: f64) -> [DMat4; 2] {
         let view = view::look_at_mat4(self.eye(), DVec3::ZERO, DVec3::Y);
         [view, directx::perspective_infinite_reverse(Self::FOV, aspect, Self::NEAR)]
     }
 
     /// The camera with these matrices.
-    ///
-    /// # Errors
-    /// If the aspect ratio is not greater than zero.
     pub fn host_camera(&self, aspect: f64) -> Outcome<HostCamera> {
         let [view, projection] = self.matrices(aspect);
         Ok(HostCamera::new(view, projection, DepthOrder::NearIsOne)?)

@@ -8,9 +8,6 @@ use crate::Outcome;
 
 /// Renders a view without the host and writes it to `pinhole-host-NAME.png` in the current folder. It waits for the
 /// device, which nothing else in these hosts does.
-///
-/// # Errors
-/// If no device can render it, or the file cannot be written.
 pub fn save_still(
     name: &str,
     scene: &Scene,

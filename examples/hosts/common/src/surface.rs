@@ -32,9 +32,6 @@ pub struct WindowSurface {
 impl WindowSurface {
     /// Opens a device that can draw to the window, with the default limits of WebGPU and no features. The format of the
     /// surface takes linear light if `is_srgb`, and else encoded colours, where the window offers both.
-    ///
-    /// # Errors
-    /// If there is no such device.
     pub async fn open(
         window: Arc<Window>,
         display: OwnedDisplayHandle,
@@ -70,7 +67,6 @@ impl WindowSurface {
     }
 
     /// Columns and rows.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.configuration.width, self.configuration.height]
     }
@@ -84,9 +80,6 @@ impl WindowSurface {
     }
 
     /// The texture to be drawn to next. `None` if there is none now; then another redraw was asked for where one helps.
-    ///
-    /// # Errors
-    /// If a lost surface cannot be created again, or wgpu refuses the surface.
     pub fn next_texture(&mut self, gpu: &Gpu) -> Outcome<Option<wgpu::SurfaceTexture>> {
         match self.surface.get_current_texture() {
             CurrentSurfaceTexture::Success(texture) => return Ok(Some(texture)),

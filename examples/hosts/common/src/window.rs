@@ -22,27 +22,15 @@ pub trait Host: Sized {
     const IS_SRGB: bool = true;
 
     /// Makes what belongs to the device.
-    ///
-    /// # Errors
-    /// Whatever ends the program.
     fn new(gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<Self>;
 
     /// Makes what belongs to the size of the window.
-    ///
-    /// # Errors
-    /// Whatever ends the program.
     fn resize(&mut self, gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<()>;
 
     /// Draws the window, and says whether it wants to draw again without an event.
-    ///
-    /// # Errors
-    /// Whatever ends the program.
     fn draw(&mut self, gpu: &Gpu, orbit: &Orbit, window: &wgpu::Texture) -> Outcome<Next>;
 
     /// A key was pressed, given as the character that it types.
-    ///
-    /// # Errors
-    /// Whatever ends the program.
     fn key(&mut self, key: &str, orbit: &Orbit) -> Outcome<()>;
 }
 
@@ -57,9 +45,6 @@ pub enum Next {
 
 /// Opens a window and runs a host in it until Escape is pressed or the window is closed. Dragging turns the camera, and
 /// the wheel moves it.
-///
-/// # Errors
-/// Whatever ended the program.
 pub fn run<H: Host>() -> Outcome<()> {
     crate::start_log();
     let events = EventLoop::new()?;
