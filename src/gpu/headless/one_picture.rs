@@ -159,7 +159,7 @@ impl Headless {
                 drop(phase);
                 let key = keys[usize::from(brick.is_nested())].clone();
                 drop(brick);
-                scene.set_bricks(upload.take_bricks());
+                scene.bricks = upload.take_bricks();
                 let renderer = renderers.of(device, device_type, key).await?;
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
