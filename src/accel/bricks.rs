@@ -1,11 +1,10 @@
 //! Bricks: parts of a scene that each fit into a device's bindings and each have an acceleration structure. They are built
 //! one after the other, so that not all of them have to be in memory.
 use std::collections::VecDeque;
-use std::ops::Range;
 
 use glam::Vec3;
 
-use super::divide::divide;
+use super::divide::{Divided, divide};
 use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
@@ -15,6 +14,7 @@ use super::structure::{BrickKind, Primitive, Structure};
 use super::wide_tree::WideTree;
 #[cfg(feature = "gpu")]
 use crate::parallel::map_chunks;
+use crate::parallel::ranges;
 
 /// The acceleration structure of a brick.
 #[derive(Clone, Debug)]
@@ -110,17 +110,9 @@ fn query_boxes(spheres: &[[f32; 4]], margin: f32) -> Vec<[f32; 6]> {
 pub struct Bricks<'a> {
     plan: &'a AccelPlan,
     spheres: &'a [[f32; 4]],
-    parts: VecDeque<Part>,
+    /// For each brick that has not been built, the indices of its spheres in input order, in ascending order.
+    parts: VecDeque<Vec<u32>>,
     may_part_equals: bool,
-}
-
-/// The spheres of a brick that has not been built.
-#[derive(Clone, Debug)]
-enum Part {
-    /// Consecutive spheres in input order.
-    Range(Range<usize>),
-    /// The indices of the spheres in input order, in ascending order.
-    Ids(Vec<u32>),
 }
 
 impl AccelPlan {
@@ -130,22 +122,22 @@ impl AccelPlan {
     pub fn bricks<'a>(&'a self, spheres: &'a [[f32; 4]]) -> Bricks<'a> {
         let count = spheres.len();
         let per_brick = count.div_ceil(self.brick_count).max(1);
-        let (mut parts, may_part_equals): (VecDeque<Part>, bool) = match self.structure {
+        let Divided { parts, may_part_equals } = match self.structure {
             // Without a structure, bricks are consecutive spheres in the order of ids.
-            Structure::List => {
-                let ranges = (0..count).step_by(per_brick);
-                let parts = ranges.map(|first| Part::Range(first..(first + per_brick).min(count)));
-                (parts.collect(), self.brick_count > 1)
-            }
-            _ => {
-                let divided = divide(spheres, self.brick_count);
-                let parts = divided.parts.into_iter().filter(|ids| !ids.is_empty());
-                (parts.map(Part::Ids).collect(), divided.may_part_equals)
-            }
+            Structure::List => Divided {
+                // The number of spheres fits into u32.
+                parts: ranges(count, per_brick)
+                    .into_iter()
+                    .map(|range| (range.start as u32..range.end as u32).collect())
+                    .collect(),
+                may_part_equals: self.brick_count > 1,
+            },
+            _ => divide(spheres, self.brick_count),
         };
+        let mut parts: VecDeque<_> = parts.into_iter().filter(|ids| !ids.is_empty()).collect();
         // Kernels need at least one brick.
         if parts.is_empty() {
-            parts.push_back(Part::Range(0..0));
+            parts.push_back(Vec::new());
         }
         Bricks { plan: self, spheres, parts, may_part_equals }
     }
@@ -181,39 +173,29 @@ impl Bricks<'_> {
         self.may_part_equals
     }
 
-    fn build_part(&self, part: Part) -> Brick {
+    fn build_part(&self, ids: Vec<u32>) -> Brick {
         let Self { plan, spheres, .. } = *self;
         let margin = plan.statistics.margin();
-        let ids = match part {
-            Part::Ids(ids) => ids,
-            // The number of spheres fits into u32.
-            Part::Range(range) => (range.start as u32..range.end as u32).collect(),
-        };
+        if matches!(plan.structure, Structure::Grid | Structure::NestedGrid) {
+            let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
+            return Brick { index: Index::Grid(grid), spheres, ids };
+        }
+        let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
         match plan.structure {
-            Structure::List => {
-                let spheres = ids.iter().map(|id| spheres[*id as usize]).collect();
-                Brick { index: Index::List, spheres, ids }
-            }
-            Structure::Grid | Structure::NestedGrid => {
-                let BuiltGrid { grid, spheres, ids } =
-                    build_grid(spheres, &ids, margin, plan.budget);
-                Brick { index: Index::Grid(grid), spheres, ids }
-            }
             Structure::WideTree => {
-                let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
-                    spheres: tree.ids().iter().map(|index| own[*index as usize]).collect(),
-                    ids: tree.ids().iter().map(|index| ids[*index as usize]).collect(),
+                    spheres: tree.ids.iter().map(|index| own[*index as usize]).collect(),
+                    ids: tree.ids.iter().map(|index| ids[*index as usize]).collect(),
                     index: Index::WideTree(tree),
                 }
             }
             Structure::RayQuery => {
-                let spheres: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-                let boxes = query_boxes(&spheres, plan.box_margin * margin);
-                Brick { index: Index::RayQuery(boxes), spheres, ids }
+                let boxes = query_boxes(&own, plan.box_margin * margin);
+                Brick { index: Index::RayQuery(boxes), spheres: own, ids }
             }
+            _ => Brick { index: Index::List, spheres: own, ids },
         }
     }
 }
@@ -222,16 +204,12 @@ impl Bricks<'_> {
 impl Bricks<'_> {
     /// The boxes of the bricks that have not been built, in order.
     pub(crate) fn boxes(&self) -> Vec<BrickBounds> {
-        let bounds = |part: &Part| match part {
-            Part::Range(range) => BrickBounds::of_spheres(&self.spheres[range.clone()]),
-            Part::Ids(ids) => BrickBounds::of_ids(self.spheres, ids),
-        };
-        self.parts.iter().map(bounds).collect()
+        self.parts.iter().map(|ids| BrickBounds::of_ids(self.spheres, ids)).collect()
     }
 
     /// Keeps the bricks with these numbers, in this order. Those that were built before have no number.
     pub(crate) fn keep(&mut self, numbers: &[usize]) {
-        let mut parts: Vec<Option<Part>> = self.parts.drain(..).map(Some).collect();
+        let mut parts: Vec<Option<Vec<u32>>> = self.parts.drain(..).map(Some).collect();
         let kept = numbers.iter().filter_map(|number| parts.get_mut(*number)?.take());
         self.parts = kept.collect();
     }

@@ -34,10 +34,3 @@ pub use plan::{AccelPlan, PlannedBuffer};
 pub(crate) use statistics::margin_of;
 pub use statistics::{Crowd, SceneStatistics};
 pub use structure::{AccelChoice, BrickKind, Primitive, Structure};
-
-/// Constants that kernels share, for the test that compares both.
-#[cfg(all(test, feature = "gpu"))]
-pub(crate) mod shared {
-    pub(crate) use super::grid::{LAST, word};
-    pub(crate) use super::wide_tree::{LEAF_COUNT_SHIFT, LEAF_FIRST};
-}

@@ -163,7 +163,7 @@ impl AccelPlan {
     fn dividing_bytes(&self) -> u64 {
         let ids = 4 * self.statistics.count as u64;
         match self.structure {
-            Structure::List => 0,
+            Structure::List => ids,
             _ if self.brick_count == 1 => ids,
             _ => 3 * ids,
         }

@@ -181,7 +181,7 @@ impl Crowd {
     }
 
     /// The margin of the crowd's spheres for rays that start in the crowd's box.
-    pub(super) fn margin(&self) -> f32 {
+    pub(crate) fn margin(&self) -> f32 {
         margin_of(self.min, self.max)
     }
 }
@@ -215,29 +215,12 @@ fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
     (low - around, high + around)
 }
 
-/// How much wider the boxes of a tree's spheres must be for rays that start far away from most of them.
-#[cfg(feature = "gpu")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct NearRays {
-    /// The box of the spheres that have the smaller margin.
-    pub(crate) min: Vec3,
-    pub(crate) max: Vec3,
-    /// The margin of these spheres.
-    pub(crate) margin: f32,
-}
-
-#[cfg(feature = "gpu")]
-impl NearRays {
-    /// All rays are near: no margin is too small for any.
-    pub(crate) const ALL: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO, margin: 1e30 };
-}
-
 /// The margin of each sphere of a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Margins {
-    /// The margin of spheres outside of the box of `near`.
+pub(crate) struct Margins {
+    /// The margin of spheres that are not in the crowd.
     pub(super) all: f32,
-    pub(super) crowd: Option<Crowd>,
+    pub(crate) crowd: Option<Crowd>,
 }
 
 impl Margins {
@@ -252,15 +235,6 @@ impl Margins {
             Some(crowd) if crowd.contains(sphere) => crowd.margin(),
             _ => self.all,
         }
-    }
-
-    #[cfg(feature = "gpu")]
-    pub(super) fn near(&self) -> NearRays {
-        self.crowd.map_or(NearRays::ALL, |crowd| NearRays {
-            min: crowd.min,
-            max: crowd.max,
-            margin: crowd.margin(),
-        })
     }
 }
 

@@ -135,21 +135,13 @@ pub struct BrickKind {
 }
 
 impl BrickKind {
-    /// All combinations of the given structures and primitives that are supported.
+    /// All combinations of the given structures and primitives.
     pub fn of<'a>(
         structures: &'a [Structure],
         primitives: &'a [Primitive],
     ) -> impl Iterator<Item = Self> + 'a {
-        let kinds = primitives.iter().flat_map(|&primitive| {
+        primitives.iter().flat_map(|&primitive| {
             structures.iter().map(move |&structure| Self { structure, primitive })
-        });
-        kinds.filter(|kind| kind.exists())
-    }
-
-    /// Whether the structure supports the primitive.
-    const fn exists(self) -> bool {
-        match self.primitive {
-            Primitive::Sphere => true,
-        }
+        })
     }
 }

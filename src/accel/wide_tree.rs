@@ -10,8 +10,6 @@ use glam::Vec3A;
 use super::slab::NODE_PART;
 use super::split::Extent;
 use super::statistics::Margins;
-#[cfg(feature = "gpu")]
-use super::statistics::NearRays;
 
 /// A tree whose nodes have up to eight children, and the order of the spheres in its leaves.
 ///
@@ -19,37 +17,14 @@ use super::statistics::NearRays;
 /// is one node without children, so kernels need no special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WideTree {
-    pub(super) nodes: Vec<WideNode>,
-    pub(super) ids: Vec<u32>,
-    pub(super) levels: u32,
-    pub(super) margins: Margins,
-}
-
-impl WideTree {
-    /// The rays that use boxes as stored, and the widening for all others.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn near_rays(&self) -> NearRays {
-        self.margins.near()
-    }
-
     /// All nodes, as kernels read them.
-    #[must_use]
-    pub fn nodes(&self) -> &[WideNode] {
-        &self.nodes
-    }
-
+    pub nodes: Vec<WideNode>,
     /// For each index in leaf order, the index of the sphere in input order; ascending within a leaf.
-    #[must_use]
-    pub fn ids(&self) -> &[u32] {
-        &self.ids
-    }
-
+    pub ids: Vec<u32>,
     /// The number of nodes on the longest path from the root to the parent of a leaf, both included; at most
     /// `WIDE_LEVELS`.
-    #[must_use]
-    pub fn levels(&self) -> u32 {
-        self.levels
-    }
+    pub levels: u32,
+    pub(crate) margins: Margins,
 }
 
 /// The largest number of spheres in a leaf.

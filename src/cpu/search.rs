@@ -244,7 +244,7 @@ impl TreeIndex {
     pub(super) fn new(scene: &Scene) -> Result<Self, SceneError> {
         let all = scene.spheres();
         let tree = WideTree::build(all, 0.0);
-        let spheres = try_map(all.len(), |i| all[tree.ids()[i] as usize])
+        let spheres = try_map(all.len(), |i| all[tree.ids[i] as usize])
             .map_err(|_| SceneError::Memory { count: all.len() })?;
         let corners = tree.corners();
         Ok(Self { tree, corners, spheres })
@@ -262,7 +262,7 @@ impl TreeIndex {
         let Some(boxes) = boxes else { return false };
         let mut left = limit;
         self.tree.visit(&boxes, limit, |range: Range<usize>| {
-            for (id, sphere) in self.tree.ids()[range.clone()].iter().zip(&self.spheres[range]) {
+            for (id, sphere) in self.tree.ids[range.clone()].iter().zip(&self.spheres[range]) {
                 left = offer(*id, *sphere);
                 if left < 0.0 {
                     break;

@@ -175,7 +175,7 @@ fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
             let mut is_found = false;
             let limit = f64::from_bits(t);
             tree.tree.visit(&boxes, limit, |range| {
-                is_found |= tree.tree.ids()[range].contains(&id);
+                is_found |= tree.tree.ids[range].contains(&id);
                 limit
             });
             hits += 1;

@@ -58,7 +58,7 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     buffers.push(("ids", ids));
     match &brick.index {
         Index::List | Index::Grid(_) => {}
-        Index::WideTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
+        Index::WideTree(tree) => buffers.push(("nodes", size_of_val(&tree.nodes[..]) as u64)),
         Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(&boxes[..]) as u64)),
     }
     buffers

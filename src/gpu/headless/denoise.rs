@@ -11,7 +11,7 @@ use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::{Kernel, part, pipeline};
+use crate::gpu::shader::{Kernel, pipeline};
 use crate::image::Image;
 use crate::image::denoise::{Guided, PASSES, REACH};
 
@@ -28,7 +28,7 @@ pub(crate) struct Denoise {
 const MAX_STRIP_PIXELS: u64 = 1 << 21;
 
 pub(crate) fn denoise_kernel() -> Kernel {
-    Kernel::new("denoise", vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")])
+    Kernel::new("denoise", &[])
 }
 
 impl Headless {

@@ -158,7 +158,7 @@ impl Headless {
                 drop(phase);
                 let options = options[usize::from(brick.is_nested())].clone();
                 drop(brick);
-                scene.set_bricks(upload.take_bricks());
+                scene.bricks = upload.take_bricks();
                 let renderer = renderers.of(device, options).await?;
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {

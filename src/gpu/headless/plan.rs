@@ -187,7 +187,7 @@ impl RenderPlan {
 pub(crate) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
     let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();
-    let words = appearance::words_per_sphere(scene.checked_appearance()).count();
+    let words = appearance::words_per_sphere(scene.checked_appearance());
     if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = spheres.filter(|_| words > 0) {
         // A sphere has four numbers.
         buffers.push(PlannedBuffer {

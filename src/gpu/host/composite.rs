@@ -14,7 +14,7 @@ use crate::gpu::passes::targets::{Targets, check_texture};
 use crate::gpu::resources::numbered_group;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
-use crate::gpu::shader::{Kernel, Part, part, with_constants};
+use crate::gpu::shader::{Kernel, with_constants};
 
 /// The pipeline that draws pictures into a host's render pass. One is enough for a device and a kind of render pass.
 #[derive(Debug)]
@@ -40,15 +40,9 @@ pub(crate) const AS_STORED: u32 = 0;
 pub(crate) const TO_LINEAR: u32 = 1;
 pub(crate) const TO_SRGB: u32 = 2;
 
-fn shared_parts() -> Vec<Part> {
-    vec![part!("host/host_view.wgsl"), part!("host/covered.wgsl")]
-}
-
 /// The kernel of the vertices.
 pub(crate) fn cover_kernel() -> Kernel {
-    let mut parts = shared_parts();
-    parts.push(part!("host/cover.wgsl"));
-    Kernel::new("cover", parts)
+    Kernel::new("cover", &[])
 }
 
 /// The kernel of the pixels, for colours stored as `source`; without a coverage, for a pass without depth.
@@ -66,18 +60,12 @@ pub(crate) fn composite_kernel(
         (TargetEncoding::Linear, TargetEncoding::Srgb) => TO_SRGB,
         _ => AS_STORED,
     };
-    let mut parts = shared_parts();
-    parts.push(part!("host/host_color.wgsl"));
-    let depth = match coverage {
-        None => {
-            parts.push(part!("host/overlay.wgsl"));
-            return Kernel::new("overlay", parts).with([("ENCODING", constant)]);
-        }
-        Some(Coverage::Hits) => part!("host/picture_depth.wgsl", "primary"),
-        Some(Coverage::Alpha) => part!("host/picture_depth.wgsl", "lit"),
+    let coverage = match coverage {
+        None => return Kernel::new("overlay", &[]).with([("ENCODING", constant)]),
+        Some(Coverage::Hits) => "host/picture_depth.wgsl#primary",
+        Some(Coverage::Alpha) => "host/picture_depth.wgsl#lit",
     };
-    parts.extend([part!("host/clip_depth.wgsl"), depth, part!("host/composite.wgsl")]);
-    Kernel::new("composite", parts).with([("ENCODING", constant)])
+    Kernel::new("composite", &[("$coverage", coverage)]).with([("ENCODING", constant)])
 }
 
 impl Composite {

@@ -11,7 +11,7 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::resources::numbered_group;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::{layout, uniform};
-use crate::gpu::shader::{Kernel, Part, camera_constant, camera_parts, part, pipeline};
+use crate::gpu::shader::{Kernel, camera_constant, pipeline};
 
 /// The passes that end rays at the depth of a host, and remove hits behind it. One is enough for a renderer.
 #[derive(Debug)]
@@ -35,37 +35,14 @@ pub struct HostDepth {
     size: Option<[u32; 2]>,
 }
 
-fn shared_parts() -> Vec<Part> {
-    vec![
-        part!("scene/records.wgsl"),
-        part!("scene/frame.wgsl"),
-        part!("math/fence.wgsl"),
-        part!("primary/hits.wgsl"),
-        part!("host/host_view.wgsl"),
-        part!("host/clip_depth.wgsl"),
-        part!("host/host_depth.wgsl"),
-    ]
-}
-
 /// The kernel that ends rays, for a kind of camera.
 pub(crate) fn limit_kernel(camera: CameraKind) -> Kernel {
-    let mut parts = shared_parts();
-    parts.extend([
-        part!("camera/film.wgsl"),
-        part!("camera/ray.wgsl"),
-        part!("scene/enter.wgsl"),
-        part!("camera/entry.wgsl"),
-    ]);
-    parts.extend(camera_parts());
-    parts.extend([part!("host/farthest.wgsl"), part!("host/limit.wgsl")]);
-    Kernel::new("limit", parts).with([camera_constant(camera)])
+    Kernel::new("limit", &[]).with([camera_constant(camera)])
 }
 
 /// The kernel that removes hits.
 pub(crate) fn hide_kernel() -> Kernel {
-    let mut parts = shared_parts();
-    parts.push(part!("host/hide.wgsl"));
-    Kernel::new("hide", parts)
+    Kernel::new("hide", &[])
 }
 
 impl DepthTest {

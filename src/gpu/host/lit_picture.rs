@@ -133,7 +133,7 @@ impl LitPicture {
         } else {
             if is_other_look || !lighting.is_same(&self.lighting) {
                 let is_new = is_other_look || !lighting.has_same_images(&self.lighting);
-                self.frame.set_lighting(make, &self.passes, &lighting, is_new).await?;
+                self.frame.lit.set(make, &self.passes.layouts, &lighting, is_new).await?;
                 begins_again = true;
             }
             let records = tiles(&view.film, sizes.tile).map(scenes.records(device));

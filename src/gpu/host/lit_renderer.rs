@@ -14,7 +14,7 @@ use crate::gpu::passes::lit::{
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
-use crate::gpu::shader::{Kernel, color_target, part, pipeline_with};
+use crate::gpu::shader::{Kernel, color_target, pipeline_with};
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
@@ -139,17 +139,5 @@ pub(super) fn lit_key<'a>(
 }
 
 pub(crate) fn resolve_kernel(color: ColorTarget) -> Kernel {
-    let parts = vec![
-        part!("scene/records.wgsl"),
-        part!("scene/lighting_records.wgsl"),
-        part!("scene/frame.wgsl"),
-        part!("math/fence.wgsl"),
-        part!("path/state.wgsl"),
-        part!("math/luminance.wgsl"),
-        part!("path/film_sums.wgsl"),
-        color_target(color),
-        part!("host/mean.wgsl"),
-        part!("host/resolve.wgsl"),
-    ];
-    Kernel::new("resolve", parts)
+    Kernel::new("resolve", &[color_target(color)])
 }

@@ -105,7 +105,8 @@ impl LivePicture {
         let targets = Frame::new(renderer.renderer(), device, targets).await?;
         targets.check_film(view)?;
         let passes = renderer.live_passes(device, key).await?;
-        let lit = LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting).await?;
+        let lit =
+            LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting, None).await?;
         let buffers = Buffers::new(device, &passes, targets.size()).await?;
         let tickets = scoped(device, || Tickets::new(device)).await?;
         let frames = frames_of(device, scenes);
@@ -150,7 +151,7 @@ impl LivePicture {
         let make = Make { device, queue };
         if key != self.key {
             let passes = renderer.live_passes(device, key).await?;
-            self.lit = LightingBuffers::new(make, &passes.lit, &lighting).await?;
+            self.lit = LightingBuffers::new(make, &passes.lit, &lighting, None).await?;
             self.buffers = Buffers::new(device, &passes, self.targets.size()).await?;
             (self.passes, self.key, self.before) = (passes, key, None);
         } else if !lighting.is_same(&self.lighting) {

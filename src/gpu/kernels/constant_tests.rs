@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Expression, Handle, Literal, Module};
 
 use super::all_sources;
-use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, word};
-use crate::accel::wide_tree::WideNode;
+use crate::accel::grid::{LAST, word};
+use crate::accel::wide_tree::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
 use crate::accel::{self};
 use crate::camera::CameraKind;
 use crate::gpu::host::composite;

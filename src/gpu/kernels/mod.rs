@@ -5,9 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::shader::formats::ColorTarget;
-use crate::gpu::shader::{
-    BrickPass, Kernel, Probe, probe_kernel, self_test_kernel, shade_kernel, trace_kernel,
-};
+use crate::gpu::shader::{BrickPass, Kernel, probe_kernel, shade_kernel, trace_kernel};
 
 #[cfg(test)]
 mod constant_tests;
@@ -55,7 +53,7 @@ pub(in crate::gpu) fn all_sources() -> Vec<Kernel> {
 /// All kernels of which pipelines are made. Many have the same source and differ in constants.
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
-        [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
+        ["arithmetic", "exact", "loops"].map(|probe| Kernel::new(probe, &[])).to_vec();
     for &camera in CameraKind::ALL {
         for kind in BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL) {
             for brick_pass in [BrickPass::First, BrickPass::Later] {

@@ -8,7 +8,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::declarations::Declarations;
 use super::{all_kernels, all_sources};
-use crate::gpu::shader::{Kernel, Part, part, variants};
+use crate::gpu::shader::{Kernel, Part, variants};
 
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
     let source = kernel.source();
@@ -122,13 +122,15 @@ fn no_part_uses_a_private_variable_of_another() {
 
 #[test]
 fn an_error_names_the_file_and_its_line() {
-    let broken = Part::whole("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
-    let parts = vec![part!("camera/ray.wgsl"), broken, part!("camera/film.wgsl")];
-    let message = validate(&Kernel::new("none", parts)).unwrap_err();
+    let broken = Part::of("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
+    let parts = vec![Part::named("camera/ray.wgsl"), broken, Part::named("camera/film.wgsl")];
+    let refused =
+        |parts| validate(&Kernel { entry_point: "none", parts, constants: vec![] }).unwrap_err();
+    let message = refused(parts);
     assert!(message.contains("broken.wgsl:3:"), "{message}");
     let file = "// Head.\n\n//// a\nconst x: f32 = 1.0;\n//// b\n\nconst x: f32 = y;\n";
-    let parts = vec![part!("camera/ray.wgsl"), Part::variant("broken.wgsl#b", file)];
-    let message = validate(&Kernel::new("none", parts)).unwrap_err();
+    let parts = vec![Part::named("camera/ray.wgsl"), Part::of("broken.wgsl#b", file)];
+    let message = refused(parts);
     assert!(message.contains("broken.wgsl:7:"), "{message}");
 }
 

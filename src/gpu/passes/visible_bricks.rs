@@ -275,14 +275,6 @@ mod tests {
             assert!(parts.iter().all(|(_, groups)| *groups == Groups::of_size([64, 32])));
         }
     }
-}
-
-#[cfg(test)]
-mod order_tests {
-    use glam::DVec3;
-
-    use super::*;
-    use crate::camera::{OrthographicCamera, PinholeCamera, Pose};
 
     #[test]
     fn from_every_side() {
@@ -321,17 +313,8 @@ mod order_tests {
         let space = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ONE };
         assert_eq!(nearest_first(boxes.into_iter(), &camera, &space), [1, 0]);
     }
-}
 
-#[cfg(test)]
-mod visible_region_tests {
-    use glam::{DVec3, Vec3};
-
-    use super::*;
-    use crate::camera::film::Film;
-    use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
-
-    fn space() -> SceneSpace {
+    fn cube() -> SceneSpace {
         let origin = DVec3::new(10.0, 0.0, 0.0);
         SceneSpace { origin, min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
     }
@@ -347,7 +330,7 @@ mod visible_region_tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
-        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        let region = VisibleRegion::of(&View::new(&camera, film), &cube());
         assert_eq!(region, VisibleRegion { first: [68.0, 28.0], end: [92.0, 52.0] });
         let all = region.groups_of(tile([0, 0], [160, 80]));
         assert_eq!(all, Groups { first: [8, 3], size: [4, 4] });
@@ -363,8 +346,8 @@ mod visible_region_tests {
         let pose =
             Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
-        let up = VisibleRegion::of(&View::new(&camera, film), &space());
-        let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
+        let up = VisibleRegion::of(&View::new(&camera, film), &cube());
+        let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &cube());
         assert_eq!((up.first[1], up.end[1]), (48.0, 72.0));
         assert_eq!((down.first[1], down.end[1]), (8.0, 32.0));
     }
@@ -375,7 +358,7 @@ mod visible_region_tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
-        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        let region = VisibleRegion::of(&View::new(&camera, film), &cube());
         assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
     }
 
@@ -385,7 +368,7 @@ mod visible_region_tests {
         let film = Film::new(200, 100).unwrap();
         let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();
-        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        let region = VisibleRegion::of(&View::new(&camera, film), &cube());
         for i in 0..8_u8 {
             let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
             let corner = DVec3::new(10.0 + sign(0), sign(1), sign(2));

@@ -21,7 +21,7 @@ impl AppearanceWords {
         let colors = appearance.colors();
         let mut words = color_words(colors, ids.iter().copied());
         let material_first = words.len() as u32;
-        let has_materials = words_per_sphere(appearance).materials;
+        let has_materials = has_materials(appearance);
         if has_materials {
             words.extend(ids.iter().map(|id| appearance.material_row(*id)));
         }
@@ -38,26 +38,15 @@ impl AppearanceWords {
     }
 }
 
-/// The kinds of words that every sphere of a scene has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SphereWords {
-    colors: bool,
-    materials: bool,
+/// Whether spheres have words that tell their materials.
+fn has_materials(appearance: &SceneAppearance) -> bool {
+    appearance.material_rows().len() > 1
 }
 
-impl SphereWords {
-    /// Number of words for each sphere.
-    pub(crate) fn count(self) -> u64 {
-        u64::from(self.colors) + u64::from(self.materials)
-    }
-}
-
-/// The kinds of words that every sphere of a scene with this appearance has.
-pub(crate) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
-    SphereWords {
-        colors: !matches!(appearance.colors(), Colors::One(_)),
-        materials: appearance.material_rows().len() > 1,
-    }
+/// The number of words of every sphere of a scene with this appearance.
+pub(crate) fn words_per_sphere(appearance: &SceneAppearance) -> u64 {
+    let has_colors = !matches!(appearance.colors(), Colors::One(_));
+    u64::from(has_colors) + u64::from(has_materials(appearance))
 }
 
 /// The colour words of some spheres. There are none if all spheres of the scene have the same colour.
@@ -159,7 +148,7 @@ mod tests {
                     palette(scene.appearance()),
                 );
                 assert_eq!(palette.len(), palette_length(scene.appearance()));
-                let used = words_per_sphere(scene.checked_appearance()).count() * 5;
+                let used = words_per_sphere(scene.checked_appearance()) * 5;
                 assert_eq!(appearances.words.len() as u64, used.max(1));
                 for (shape_index, id) in (0..).zip(ids) {
                     let ([r, g, b, alpha], row) = read(&appearances, &palette, shape_index);
@@ -185,26 +174,18 @@ mod tests {
         let metal =
             SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 1.0 };
         let one = scene(Appearance::from(colors.clone()).with_surface(metal));
-        assert_eq!(
-            (
-                one.checked_appearance().material_rows().len(),
-                words_per_sphere(one.checked_appearance()).count()
-            ),
-            (1, 1)
-        );
+        let counts = |scene: &Scene| {
+            let appearance = scene.checked_appearance();
+            (appearance.material_rows().len(), words_per_sphere(appearance))
+        };
+        assert_eq!(counts(&one), (1, 1));
         let glass =
             Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
         let tinted = Appearance::from(colors)
             .with_surface(SurfaceProperties { material: glass, opacity: 1.0 });
         let tinted = scene(tinted);
         // The first and the last have the same colour.
-        assert_eq!(
-            (
-                tinted.checked_appearance().material_rows().len(),
-                words_per_sphere(tinted.checked_appearance()).count()
-            ),
-            (3, 2)
-        );
+        assert_eq!(counts(&tinted), (3, 2));
         assert_eq!(
             [0, 1, 2, 3].map(|id| tinted.checked_appearance().material_row(id)),
             [0, 1, 2, 0]

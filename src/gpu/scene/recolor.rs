@@ -12,7 +12,7 @@ use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::BrickBuffers;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::{Kernel, part, pipeline};
+use crate::gpu::shader::{Kernel, pipeline};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
@@ -37,7 +37,7 @@ pub struct Recolor {
 }
 
 pub(crate) fn recolor_kernel() -> Kernel {
-    Kernel::new("recolor", vec![part!("scene/recolor.wgsl")])
+    Kernel::new("recolor", &[])
 }
 
 impl Recolor {

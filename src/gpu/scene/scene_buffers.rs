@@ -183,11 +183,6 @@ impl SceneBuffers {
         Self { occluders: Some(Box::new(occluders)), ..self }
     }
 
-    /// Replaces the bricks by others of the same scene. Views of frames stay valid.
-    pub(crate) fn set_bricks(&mut self, bricks: Vec<BrickBuffers>) {
-        self.bricks = bricks;
-    }
-
     /// Replaces the summary after the colours in the buffers were changed.
     pub(crate) fn set_summary(&mut self, summary: SceneSummary) {
         self.summary = summary;

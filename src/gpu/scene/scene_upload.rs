@@ -164,11 +164,14 @@ impl<'a> SceneUpload<'a> {
                 words = Some(bytemuck::cast_slice(&grid.balls));
             }
             Index::WideTree(tree) => {
-                let near = tree.near_rays();
-                record.crowd_min = near.min.to_array();
-                record.crowd_margin = near.margin;
-                record.crowd_max = near.max.to_array();
-                words = Some(bytemuck::cast_slice(tree.nodes()));
+                // Without a crowd, no margin is too small for any ray.
+                record.crowd_margin = 1e30;
+                if let Some(crowd) = &tree.margins.crowd {
+                    record.crowd_min = crowd.min.to_array();
+                    record.crowd_margin = crowd.margin();
+                    record.crowd_max = crowd.max.to_array();
+                }
+                words = Some(bytemuck::cast_slice(&tree.nodes));
             }
             Index::RayQuery(own) => boxes = Some(&own[..]),
         }

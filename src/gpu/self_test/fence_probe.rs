@@ -3,13 +3,13 @@
 
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::self_test::report::{Tally, TestedProperty, percent};
-use crate::gpu::shader::part;
+use crate::gpu::shader::Part;
 use crate::verify::{TracedPixel, TracedRay};
 
 /// What turns the kernel that records rays into the one that probes fences.
 pub(crate) fn edit() -> ShaderEdit {
-    let recorded = part!("primary/entry.wgsl", "recorded");
-    let probed = part!("primary/entry.wgsl", "probed");
+    let recorded = Part::named("primary/entry.wgsl#recorded");
+    let probed = Part::named("primary/entry.wgsl#probed");
     ShaderEdit {
         file: recorded.name.to_owned(),
         find: recorded.source.into_owned(),

@@ -1,11 +1,7 @@
 //! Running the self-test on a device. Its dispatches are recorded here, and `Headless` submits them.
 
-use std::marker::PhantomData;
-
 use bytemuck::{Pod, bytes_of, cast_slice};
-use wgpu::{
-    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device,
-};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device};
 
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
@@ -16,7 +12,7 @@ use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTe
 use crate::gpu::self_test::report::{SelfTestExtent, SelfTestReport};
 use crate::gpu::self_test::{loops, records, rounding};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
-use crate::gpu::shader::{Probe, pipeline, self_test_kernel};
+use crate::gpu::shader::{Kernel, pipeline};
 
 /// Numbers of inputs of each operation, which are multiples of the workgroup size.
 const QUICK: usize = 512;
@@ -28,88 +24,51 @@ const WORKGROUP: u32 = 64;
 #[derive(Debug)]
 pub(crate) struct SelfTestRun {
     operands: Vec<Operands>,
-    arithmetic: Dispatch,
-    full: Option<Full>,
-}
-
-/// The dispatches that a quick test leaves out.
-#[derive(Debug)]
-struct Full {
     values: Vec<Values>,
-    exact: Dispatch,
     limit: u32,
-    loops: Vec<Dispatch>,
+    /// Operations that round; and in a full test those that are exact, and loops.
+    dispatches: Vec<Dispatch>,
 }
 
 impl SelfTestRun {
     pub(crate) async fn new(device: &Device, extent: SelfTestExtent) -> Result<Self, GpuError> {
-        let checks = Checks::default();
-        let count = match extent {
-            SelfTestExtent::Quick => QUICK,
-            SelfTestExtent::Full => FULL,
-        };
-        let operands = records::operands(count);
-        let kernel = TestKernel::<_, Arithmetic>::new(device, Probe::Arithmetic, &checks);
-        let arithmetic = kernel.dispatch(device, &SelfTest::default(), &operands, &checks);
-        let full = match extent {
-            SelfTestExtent::Quick => None,
-            SelfTestExtent::Full => Some(Full::new(device, count, &checks)),
-        };
+        let (checks, limit) = (Checks::default(), iteration_limit(device));
+        let is_full = extent == SelfTestExtent::Full;
+        let count = if is_full { FULL } else { QUICK };
+        let (operands, values) = (records::operands(count), records::values(count));
+        let once = [SelfTest::default()];
+        let mut all = dispatches::<_, Arithmetic>(device, &checks, "arithmetic", &once, &operands);
+        if is_full {
+            let exact = dispatches::<_, Exact>(device, &checks, "exact", &once, &values);
+            // Only the number of inputs matters, because the kernel does not read them.
+            let inputs = [0_u32; loops::INVOCATIONS as usize];
+            let runs = loops::runs(limit);
+            let loops = dispatches::<_, Looped>(device, &checks, "loops", &runs, &inputs);
+            all.extend(exact.into_iter().chain(loops));
+        }
         checks.passed().await?;
-        Ok(Self { operands, arithmetic, full })
-    }
-
-    fn dispatches(&self) -> impl Iterator<Item = &Dispatch> {
-        let full = self.full.iter();
-        let rest = full.flat_map(|full| std::iter::once(&full.exact).chain(&full.loops));
-        std::iter::once(&self.arithmetic).chain(rest)
+        Ok(Self { operands, values, limit, dispatches: all })
     }
 
     pub(crate) fn record(&self, encoder: &mut CommandEncoder) {
-        for dispatch in self.dispatches() {
-            dispatch.record(encoder);
-        }
+        self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
     }
 
     /// The buffers that must be mapped before [`SelfTestRun::judge`].
     pub(crate) fn buffers(&self) -> Vec<&Buffer> {
-        self.dispatches().map(|dispatch| &dispatch.readable.buffer).collect()
+        self.dispatches.iter().map(|dispatch| &dispatch.readable.buffer).collect()
     }
 
     /// Judges the results of the device.
     pub(crate) fn judge(&self) -> Result<SelfTestReport, GpuError> {
-        let mut properties = rounding::judge(&self.operands, &self.arithmetic.read()?);
-        if let Some(Full { values, exact, limit, loops }) = &self.full {
-            properties.extend(rounding::judge_exact(values, &exact.read()?));
+        let mut properties = rounding::judge(&self.operands, &self.dispatches[0].read()?);
+        if let [_, exact, loops @ ..] = &self.dispatches[..] {
+            properties.extend(rounding::judge_exact(&self.values, &exact.read()?));
             let answers = loops.iter().map(Dispatch::read).collect::<Result<Vec<_>, _>>()?;
-            properties.push(loops::judge(*limit, &answers));
+            properties.push(loops::judge(self.limit, &answers));
         }
         Ok(SelfTestReport::new(properties))
     }
-}
-
-impl Full {
-    fn new(device: &Device, count: usize, checks: &Checks) -> Self {
-        let values = records::values(count);
-        let kernel = TestKernel::<_, Exact>::new(device, Probe::Exact, checks);
-        let exact = kernel.dispatch(device, &SelfTest::default(), &values, checks);
-        let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops, checks);
-        let limit = iteration_limit(device);
-        // Only the number of inputs matters, because the kernel does not read them.
-        let invocations = [0_u32; loops::INVOCATIONS as usize];
-        let loops = loops::runs(limit)
-            .iter()
-            .map(|uniform| kernel.dispatch(device, uniform, &invocations, checks))
-            .collect();
-        Self { values, exact, limit, loops }
-    }
-}
-
-/// A kernel of the self-test, built in the same way as those of a renderer.
-struct TestKernel<Input, Answer> {
-    pipeline: ComputePipeline,
-    layout: BindGroupLayout,
-    records: PhantomData<(Input, Answer)>,
 }
 
 /// A dispatch of a kernel, with its pipeline and buffers.
@@ -122,51 +81,49 @@ struct Dispatch {
     workgroups: u32,
 }
 
-impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
-    fn new(device: &Device, probe: Probe, checks: &Checks) -> Self {
-        let layout = checks.create(device, || layout_of::<Input, Answer>(device));
-        let pipeline = pipeline(device, &self_test_kernel(probe), &[&layout], checks);
-        Self { pipeline, layout, records: PhantomData }
-    }
-
-    /// Creates a dispatch with one invocation for each input.
-    fn dispatch(
-        &self,
-        device: &Device,
-        uniform: &SelfTest,
-        inputs: &[Input],
-        checks: &Checks,
-    ) -> Dispatch {
-        checks.create(device, || {
-            let filled = |label, bytes: &[u8], usage| {
-                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size: bytes.len() as u64,
-                    usage,
-                    mapped_at_creation: true,
-                });
-                // If the buffer could not be created, the enclosing error scope has recorded it.
-                if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
-                    target.copy_from_slice(bytes);
-                }
-                buffer.unmap();
-                buffer
-            };
-            let uniform = filled("pinhole self-test", bytes_of(uniform), BufferUsages::UNIFORM);
-            let input =
-                filled("pinhole self-test inputs", cast_slice(inputs), BufferUsages::STORAGE);
-            let (label, size) =
-                ("pinhole self-test answers", (inputs.len() * size_of::<Answer>()) as u64);
-            let answers =
-                buffer(device, label, size, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-            let readable = ReadableBuffer::new(device, label, size);
-            let bound = [&uniform, &input, &answers].map(Buffer::as_entire_binding);
-            let group = numbered_group(device, "pinhole self-test", &self.layout, bound);
-            let pipeline = self.pipeline.clone();
-            let workgroups = (inputs.len() as u32).div_ceil(WORKGROUP);
-            Dispatch { pipeline, group, answers, readable, workgroups }
-        })
-    }
+/// Dispatches of a kernel, one for each record, with one invocation for each input. The kernel is built in the same way as
+/// those of a renderer, and has one bind group: the record, and an input and a result for each invocation.
+fn dispatches<Input: Pod, Answer: Pod>(
+    device: &Device,
+    checks: &Checks,
+    entry_point: &'static str,
+    records: &[SelfTest],
+    inputs: &[Input],
+) -> Vec<Dispatch> {
+    let label = "pinhole self-test";
+    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
+    let layout = checks.create(device, || layout(device, label, &kinds));
+    let pipeline = pipeline(device, &Kernel::new(entry_point, &[]), &[&layout], checks);
+    let filled = |bytes: &[u8], usage| {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.len() as u64,
+            usage,
+            mapped_at_creation: true,
+        });
+        // If the buffer could not be created, the enclosing error scope has recorded it.
+        if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
+            target.copy_from_slice(bytes);
+        }
+        buffer.unmap();
+        buffer
+    };
+    let dispatch = |record: &SelfTest| {
+        let record = filled(bytes_of(record), BufferUsages::UNIFORM);
+        let input = filled(cast_slice(inputs), BufferUsages::STORAGE);
+        let size = (inputs.len() * size_of::<Answer>()) as u64;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        let answers = buffer(device, "pinhole self-test answers", size, usage);
+        let bound = [&record, &input, &answers].map(Buffer::as_entire_binding);
+        Dispatch {
+            pipeline: pipeline.clone(),
+            group: numbered_group(device, label, &layout, bound),
+            answers,
+            readable: ReadableBuffer::new(device, "pinhole self-test answers", size),
+            workgroups: (inputs.len() as u32).div_ceil(WORKGROUP),
+        }
+    };
+    records.iter().map(|record| checks.create(device, || dispatch(record))).collect()
 }
 
 impl Dispatch {
@@ -183,13 +140,6 @@ impl Dispatch {
     fn read<Answer: Pod>(&self) -> Result<Vec<Answer>, GpuError> {
         self.readable.read(<[Answer]>::to_vec)
     }
-}
-
-/// Layout of bind group 0 of a kernel of the self-test: the shared record, and an input and a result for each
-/// invocation.
-fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
-    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
-    layout(device, "pinhole self-test", &kinds)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Kernels, whose source is the concatenation of a list of parts.
 
-use super::part::Part;
+use super::part::{Part, parts};
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 
@@ -34,13 +34,20 @@ fn is_choice(part: &str) -> bool {
 }
 
 impl Kernel {
-    pub(in crate::gpu) const fn new(entry_point: &'static str, parts: Vec<Part>) -> Self {
-        Self { entry_point, parts, constants: Vec::new() }
+    /// The kernel of the list in `shaders/kernels.txt` with the name of its entry point. `choices` are names in the list that
+    /// begin with `$`, and the lists that stand for them.
+    pub(in crate::gpu) fn new(entry_point: &'static str, choices: &[(&str, &'static str)]) -> Self {
+        Self { entry_point, parts: parts(entry_point, choices), constants: Vec::new() }
     }
 
-    /// The kernel with the values of some more constants.
+    /// The kernel with the values of those of some constants that it declares.
     pub(in crate::gpu) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
-        self.constants.extend(constants);
+        let is_declared = |(name, _): &Constant| {
+            let declaration = format!("override {name}:");
+            self.parts.iter().any(|part| part.source.contains(&declaration))
+        };
+        let declared: Vec<_> = constants.into_iter().filter(is_declared).collect();
+        self.constants.extend(declared);
         self
     }
 
@@ -66,7 +73,7 @@ impl Kernel {
     /// The kernel with one more part.
     #[cfg(test)]
     pub(in crate::gpu) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
-        self.parts.push(Part::whole(file, source));
+        self.parts.push(Part::of(file, source));
         self
     }
 

@@ -120,7 +120,9 @@ pub(in crate::gpu) fn layout_of(
     label: &str,
     kinds: &[(u32, BindingType)],
 ) -> BindGroupLayout {
-    let entries: Vec<_> = kinds.iter().map(|(binding, ty)| entry(*binding, *ty)).collect();
+    let visibility = wgpu::ShaderStages::COMPUTE;
+    let entry = |&(binding, ty)| BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let entries: Vec<_> = kinds.iter().map(entry).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries: &entries,
@@ -136,10 +138,6 @@ fn word_buffers(structure: Structure) -> Vec<BindingType> {
             vec![storage::<[u32; 4]>(true)]
         }
     }
-}
-
-fn entry(binding: u32, ty: BindingType) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
 }
 
 /// Binding type of a uniform record. Because of the minimum size, wgpu compares the sizes of the record and of the WGSL

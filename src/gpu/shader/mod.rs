@@ -1,7 +1,7 @@
 //! Shaders. The source of a kernel is the concatenation of a list of parts.
 //!
 //! WGSL has no modules, and the order of its declarations does not matter, so a list of parts serves as a module
-//! system. The comment at the start of each part lists what it provides and needs. A test compares the lists with the
+//! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and needs. A test compares the lists with the
 //! source, and writes the tables of `shaders/README.md`.
 
 pub(super) mod formats;
@@ -14,11 +14,11 @@ pub(super) mod records;
 mod row_order;
 
 pub(super) use kernel::{Constant, Kernel};
-pub(super) use part::{Part, part};
+pub(super) use part::Part;
 #[cfg(test)]
 pub(super) use part::{VARIANT, variants};
 pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
-    BrickPass, Probe, camera_constant, camera_parts, camera_rays, color_target, data_layers,
-    probe_kernel, self_test_kernel, shade_kernel, structure_parts, trace_kernel,
+    BrickPass, camera_constant, color_target, data_layers, probe_kernel, shade_kernel,
+    structure_parts, trace_kernel,
 };

@@ -1,6 +1,8 @@
 //! Parts of kernels. A part is a WGSL file of the folder `shaders`, or a variant of such a file.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// The start of the line that begins a variant in its file. The rest of the line is the name of the variant.
 pub(in crate::gpu) const VARIANT: &str = "//// ";
@@ -15,34 +17,77 @@ pub(in crate::gpu) struct Part {
     skipped: usize,
 }
 
-/// Creates a part from its file and, if the file has variants, the name of the variant.
-macro_rules! part {
-    ($file:literal) => {
-        $crate::gpu::shader::Part::whole(
-            $file,
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $file)),
-        )
-    };
-    ($file:literal, $variant:literal) => {
-        $crate::gpu::shader::Part::variant(
-            concat!($file, "#", $variant),
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $file)),
-        )
+macro_rules! files {
+    ($($folder:literal: $($file:literal)+;)+) => {
+        &[$($((
+            concat!($folder, "/", $file, ".wgsl"),
+            include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"), "/shaders/", $folder, "/", $file, ".wgsl"
+            )),
+        ),)+)+]
     };
 }
-pub(in crate::gpu) use part;
+
+/// The paths of all files relative to `shaders`, and their texts.
+const FILES: &[(&str, &str)] = files! {
+    "accel": "ball_grid" "ball_list" "balls" "brick" "cell_words" "excluded" "grid_ray" "leaf" "list"
+        "nested_ball_cell" "nested_grid" "ray_query" "slab" "spend" "wide_group" "wide_node" "wide_tree";
+    "camera": "camera_ray" "entry" "film" "film_sample" "filter" "fisheye" "orthographic" "panorama" "pinhole"
+        "ray" "thin-lens";
+    "host": "clip_depth" "composite" "cover" "covered" "farthest" "hide" "host_color" "host_depth" "host_view"
+        "limit" "mean" "overlay" "picture_depth" "resolve";
+    "live": "light" "records" "reproject" "show" "trace" "view";
+    "math": "disk" "fence" "luminance" "sampling" "trigonometry" "trigonometry_inverse" "turns" "warp";
+    "path": "accumulate" "address" "advance" "begin_path" "bounce" "bsdf" "by_chance" "choices"
+        "departed_shape" "departure" "dielectric" "direct" "direct_light" "extend" "film_sums" "first_hit" "hit_before"
+        "leave" "medium" "microfacet" "noise" "occlude" "queue" "scatter" "scatter_light" "schedule" "seen_light"
+        "start" "state" "surface_point" "vertex" "whole_paths";
+    "primary": "color_target" "data_layers" "denoise" "entry" "hit_before" "hits" "schedule" "shade"
+        "shade_entry" "shading" "status" "trace";
+    "scene": "appearance" "appearance_words" "emitter" "emitters" "enter" "environment" "frame" "lamp"
+        "lighting" "lighting_records" "material" "recolor" "records" "sky" "sphere";
+    "self_test": "arithmetic" "exact" "loops" "records";
+    "studio": "ambient" "ambient_light" "catcher" "faded" "gather" "hidden_light" "hide" "illuminate"
+        "lamp_light" "one_ground" "one_pass" "one_surface" "reflected" "seen" "shadow" "surface";
+};
+
+/// The lists of parts.
+const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/kernels.txt"));
+
+/// The parts that are named in a list of `shaders/kernels.txt`. `choices` are names that begin with `$`, and the lists that
+/// stand for them.
+pub(super) fn parts(names: &'static str, choices: &[(&str, &'static str)]) -> Vec<Part> {
+    static BY_NAME: LazyLock<HashMap<&str, &str>> =
+        LazyLock::new(|| LISTS.split("\n\n").filter_map(|list| list.split_once(':')).collect());
+    let expanded = names.split_whitespace().flat_map(|name| {
+        let choice = choices.iter().find(|(choice, _)| *choice == name);
+        match choice.map(|(_, list)| list).or(BY_NAME.get(name)) {
+            Some(&list) => parts(list, choices),
+            None => vec![Part::named(name)],
+        }
+    });
+    expanded.collect()
+}
 
 impl Part {
-    pub(in crate::gpu) const fn whole(name: &'static str, source: &'static str) -> Self {
-        Self { name, source: Cow::Borrowed(source), skipped: 0 }
+    /// A file of the folder, or one of its variants. The source of one that does not exist is empty, which a test of all
+    /// kernels detects.
+    pub(in crate::gpu) fn named(name: &'static str) -> Self {
+        let file = name.split('#').next();
+        let text =
+            FILES.iter().find(|(known, _)| Some(*known) == file).map_or("", |(_, text)| text);
+        Self::of(name, text)
     }
 
-    /// The variant with the given name. Its source is empty if the file has no such variant, which a test of all
-    /// kernels detects.
-    pub(in crate::gpu) fn variant(name: &'static str, file: &'static str) -> Self {
-        let wanted = name.split_once('#').map(|(_, variant)| variant);
-        let found = variants(file).find(|(variant, ..)| Some(*variant) == wanted);
-        let (_, source, skipped) = found.unwrap_or_default();
+    /// The part with this name of a file with this text.
+    pub(in crate::gpu) fn of(name: &'static str, text: &'static str) -> Self {
+        let (source, skipped) = match name.split_once('#') {
+            None => (text, 0),
+            Some((_, wanted)) => {
+                let found = variants(text).find(|(variant, ..)| *variant == wanted);
+                found.map(|(_, source, skipped)| (source, skipped)).unwrap_or_default()
+            }
+        };
         Self { name, source: Cow::Borrowed(source), skipped }
     }
 
@@ -84,9 +129,9 @@ mod tests {
 
     #[test]
     fn a_variant_knows_its_lines() {
-        let part = Part::variant("a.wgsl#two", FILE);
+        let part = Part::of("a.wgsl#two", FILE);
         assert_eq!((part.file(), part.source.as_ref()), ("a.wgsl", "fn b() {}\n"));
         assert_eq!(FILE.lines().nth(part.line_in_file(1) - 1), Some("fn b() {}"));
-        assert!(Part::variant("a.wgsl#three", FILE).source.is_empty());
+        assert!(Part::of("a.wgsl#three", FILE).source.is_empty());
     }
 }

@@ -43,7 +43,7 @@ pub(crate) struct LitFrame {
     /// The state of all paths, slot by slot.
     pub(crate) paths: Buffer,
     variations: Buffer,
-    pub(super) lit: LightingBuffers,
+    pub(crate) lit: LightingBuffers,
     pub(crate) tiles: Vec<LitTile>,
     /// Read-back buffer of the status word, which is nonzero if an invocation reached its iteration limit.
     pub(crate) spent_back: ReadableBuffer,
@@ -106,7 +106,7 @@ impl LitFrame {
         check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
-        let lit = LightingBuffers::new(make, &passes.layouts, lighting).await?;
+        let lit = LightingBuffers::new(make, &passes.layouts, lighting, None).await?;
         scoped(device, || {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let parameters = make.buffer(
@@ -181,10 +181,7 @@ impl LitFrame {
         place: usize,
         parameters: &[DispatchParameters],
     ) {
-        let mut bytes = vec![0_u8; parameters.len() * self.parameter_stride];
-        for (target, dispatch) in bytes.chunks_mut(self.parameter_stride).zip(parameters) {
-            target[..size_of::<DispatchParameters>()].copy_from_slice(bytemuck::bytes_of(dispatch));
-        }
+        let bytes = strided(parameters, self.parameter_stride);
         queue.write_buffer(&self.parameters, u64::from(self.parameter_offset(place, 0)), &bytes);
     }
 
@@ -209,17 +206,6 @@ impl LitFrame {
             }
         }
         differs
-    }
-
-    /// Queues other light, as [`LightingBuffers::set`] does.
-    pub(crate) async fn set_lighting(
-        &mut self,
-        make: Make<'_>,
-        passes: &LitPasses,
-        lighting: &LightingData,
-        is_new: bool,
-    ) -> Result<(), GpuError> {
-        self.lit.set(make, &passes.layouts, lighting, is_new).await
     }
 
     /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
@@ -262,10 +248,10 @@ impl LitFrame {
 }
 
 /// The bytes of records that lie so many bytes apart.
-fn strided(frames: &Frames, stride: usize) -> Vec<u8> {
-    let mut bytes = vec![0_u8; frames.len() * stride];
-    for (target, frame) in bytes.chunks_mut(stride).zip(frames) {
-        target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
+fn strided<Record: bytemuck::Pod>(records: &[Record], stride: usize) -> Vec<u8> {
+    let mut bytes = vec![0_u8; records.len() * stride];
+    for (target, record) in bytes.chunks_mut(stride).zip(records) {
+        target[..size_of::<Record>()].copy_from_slice(bytemuck::bytes_of(record));
     }
     bytes
 }
@@ -283,14 +269,6 @@ pub(crate) struct LightingBuffers {
 }
 
 impl LightingBuffers {
-    pub(crate) async fn new(
-        make: Make<'_>,
-        layouts: &LitLayouts,
-        lighting: &LightingData,
-    ) -> Result<Self, GpuError> {
-        Self::with(make, layouts, lighting, None).await
-    }
-
     /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
     /// the sky are uploaded if `is_new` says that they may be others.
     pub(crate) async fn set(
@@ -302,7 +280,7 @@ impl LightingBuffers {
     ) -> Result<(), GpuError> {
         if is_new || self.tables.size() != lighting.table_bytes() {
             let kept = (!is_new).then_some(&*self);
-            *self = Self::with(make, layouts, lighting, kept).await?;
+            *self = Self::new(make, layouts, lighting, kept).await?;
         } else {
             let queue = make.queue;
             queue.write_buffer(&self.record, 0, bytemuck::bytes_of(&lighting.parameters));
@@ -312,7 +290,7 @@ impl LightingBuffers {
     }
 
     /// Creates the buffers, with the emitters and the sky that are kept.
-    async fn with(
+    pub(crate) async fn new(
         make: Make<'_>,
         layouts: &LitLayouts,
         lighting: &LightingData,

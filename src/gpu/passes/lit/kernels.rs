@@ -1,11 +1,12 @@
-//! The kernels of lit pictures. `shaders/README.md` lists them.
+//! The kernels of lit pictures. `shaders/README.md` lists them, and `shaders/kernels.txt` their parts.
+
+use std::collections::HashSet;
 
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::scene_summary::ExcludeBy;
-use crate::gpu::shader::{
-    BrickPass, Constant, Kernel, Part, camera_constant, camera_parts, part, structure_parts,
-};
+use crate::gpu::shader::BrickPass::{First, Later};
+use crate::gpu::shader::{BrickPass, Constant, Kernel, camera_constant, structure_parts};
 
 /// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,6 +16,18 @@ pub(crate) enum Mode {
 }
 
 impl Mode {
+    /// All of them.
+    fn all() -> impl Iterator<Item = Self> {
+        let paths = OnePass::ALL.into_iter().filter_map(|pass| match pass.mode() {
+            Self::Path(materials, sources, _) => Some((materials, sources)),
+            Self::Studio => None,
+        });
+        let paths = paths.flat_map(|(materials, sources)| {
+            [SkyKind::Plain, SkyKind::Image].map(|sky| Self::Path(materials, sources, sky))
+        });
+        std::iter::once(Self::Studio).chain(paths)
+    }
+
     /// Whether paths sample lights.
     pub(crate) fn samples_light(self) -> bool {
         matches!(self, Self::Path(_, Sources::Any, _))
@@ -30,7 +43,7 @@ impl Mode {
     }
 
     /// The constants of `path/choices.wgsl`.
-    pub(super) fn constants(self) -> [Constant; 2] {
+    fn constants(self) -> [Constant; 2] {
         [
             ("ANY_MATERIALS", u32::from(self.has_medium())),
             ("SAMPLES_LIGHT", u32::from(self.samples_light())),
@@ -60,7 +73,7 @@ pub(crate) enum SkyKind {
 }
 
 /// The paths that a dispatch processes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Schedule {
     /// One path for each pixel and each sample in flight.
     Pixels,
@@ -74,287 +87,166 @@ impl Schedule {
     }
 }
 
-/// The kernel that starts paths with camera rays.
-pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
-    let mut parts = paths();
-    parts.extend([
-        part!("path/address.wgsl"),
-        part!("scene/lighting.wgsl"),
-        part!("math/sampling.wgsl"),
-        part!("camera/filter.wgsl"),
-        part!("camera/film_sample.wgsl"),
-        part!("path/choices.wgsl"),
-        part!("path/direct_light.wgsl"),
-        part!("path/medium.wgsl"),
-        part!("path/start.wgsl"),
-    ]);
-    parts.extend(camera_parts());
-    Kernel::new("start", parts)
-        .with(mode.constants())
-        .with([camera_constant(camera), Schedule::Pixels.constant()])
+/// The pictures of which one pass takes whole samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum OnePass {
+    /// A studio of opaque spheres with lamps at the eye or infinitely far away, without a size and without shadows; all
+    /// surfaces are matt, and there is no ground.
+    Sharp,
+    /// A studio of opaque spheres with any lamps without a ground.
+    Lamps,
+    /// A studio of opaque spheres with any lamps and a ground.
+    Ground,
+    /// Paths under a sky without an image.
+    Paths(Materials, Sources),
 }
 
-/// The kernel that finds the nearest sphere of every path's ray.
-pub(super) fn extend_kernel(
-    structure: Structure,
-    exclude_by: ExcludeBy,
-    brick_pass: BrickPass,
-    schedule: Schedule,
-) -> Kernel {
-    let mut parts = paths();
-    parts.extend(excluded_parts());
-    parts.extend([
-        part!("accel/spend.wgsl"),
-        part!("accel/brick.wgsl"),
-        part!("path/first_hit.wgsl"),
-        part!("path/hit_before.wgsl"),
-        part!("path/extend.wgsl"),
-    ]);
-    parts.extend(structure_parts(structure));
-    let constants = [exclude_by.constant(), brick_pass.constant(), schedule.constant()];
-    Kernel::new("extend", parts).with(constants)
-}
-
-/// The kernel that finds whether sampled lights are occluded.
-pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy, mode: Mode) -> Kernel {
-    let mut parts = paths();
-    parts.extend([
-        part!("path/choices.wgsl"),
-        part!("accel/spend.wgsl"),
-        part!("accel/brick.wgsl"),
-        part!("scene/emitter.wgsl"),
-    ]);
-    parts.extend(excluded_with_light());
-    parts.extend(structure_parts(structure));
-    parts.push(part!("path/occlude.wgsl"));
-    Kernel::new("occlude", parts)
-        .with(mode.constants())
-        .with([exclude_by.constant(), Schedule::Queue.constant()])
-}
-
-/// The kernel of studios that finds whether a light is hidden.
-pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
-    let mut parts = hidden_light(structure);
-    parts.extend([part!("scene/lamp.wgsl"), part!("studio/shadow.wgsl")]);
-    Kernel::new("shadow", parts).with([exclude_by.constant(), Schedule::Queue.constant()])
-}
-
-/// The kernel of studios that finds whether directions of ambient light are occluded.
-pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
-    let mut parts = hidden_light(structure);
-    parts.push(part!("studio/ambient.wgsl"));
-    Kernel::new("ambient", parts).with([exclude_by.constant(), Schedule::Queue.constant()])
-}
-
-/// The parts that exclude the shape on which a ray starts, and the emitter that it is directed to.
-pub(super) fn excluded_with_light() -> [Part; 2] {
-    [part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "departed-and-light")]
-}
-
-/// The parts that exclude the shape on which a ray starts.
-pub(super) fn excluded_parts() -> [Part; 2] {
-    [part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "departed")]
-}
-
-fn hidden_light(structure: Structure) -> Vec<Part> {
-    let mut parts = paths();
-    parts.push(part!("path/address.wgsl"));
-    parts.extend(light_search(structure));
-    parts.push(part!("studio/hide.wgsl"));
-    parts
-}
-
-/// The parts that find whether a light is hidden from a surface.
-pub(super) fn light_search(structure: Structure) -> Vec<Part> {
-    let mut parts = sampled_search(structure, excluded_parts());
-    parts.push(part!("studio/hidden_light.wgsl"));
-    parts
-}
-
-/// The parts that take directions by chance, and find what is along them. `excluded` are those that exclude shapes.
-pub(super) fn sampled_search(structure: Structure, excluded: [Part; 2]) -> Vec<Part> {
-    let mut parts = Vec::from(excluded);
-    parts.extend([
-        part!("accel/spend.wgsl"),
-        part!("accel/brick.wgsl"),
-        part!("math/trigonometry.wgsl"),
-        part!("scene/lighting.wgsl"),
-        part!("math/sampling.wgsl"),
-        part!("math/disk.wgsl"),
-        part!("math/warp.wgsl"),
-    ]);
-    parts.extend(structure_parts(structure));
-    parts
-}
-
-/// The kernel of studios that computes surfaces from hits.
-pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
-    let mut parts = shading();
-    parts.extend([
-        part!("scene/appearance_words.wgsl", "alone"),
-        part!("scene/appearance.wgsl"),
-        part!("path/vertex.wgsl"),
-        part!("scene/material.wgsl"),
-        part!("studio/faded.wgsl"),
-        part!("studio/surface.wgsl"),
-    ]);
-    Kernel::new("surface", parts).with([schedule.constant()])
-}
-
-/// The kernel of studios that adds the contributions of some lights.
-pub(super) fn illuminate_kernel() -> Kernel {
-    let mut parts = studio_light();
-    parts.extend([
-        part!("scene/appearance_words.wgsl", "alone"),
-        part!("scene/appearance.wgsl"),
-        part!("path/vertex.wgsl"),
-        part!("scene/material.wgsl"),
-        part!("path/microfacet.wgsl"),
-        part!("studio/reflected.wgsl"),
-        part!("studio/illuminate.wgsl"),
-    ]);
-    Kernel::new("illuminate", parts).with([Schedule::Queue.constant()])
-}
-
-/// The kernel of studios that adds ambient light from some directions.
-pub(super) fn gather_kernel() -> Kernel {
-    let mut parts = studio_light();
-    parts.push(part!("studio/gather.wgsl"));
-    Kernel::new("gather", parts).with([Schedule::Queue.constant()])
-}
-
-/// The kernel that shades hits and scatters paths.
-pub(super) fn scatter_kernel(
-    schedule: Schedule,
-    materials: Materials,
-    sources: Sources,
-    sky: SkyKind,
-) -> Kernel {
-    let mut parts = shading();
-    parts.extend([
-        part!("math/sampling.wgsl"),
-        part!("math/disk.wgsl"),
-        part!("math/warp.wgsl"),
-        part!("scene/appearance_words.wgsl", "alone"),
-        part!("scene/emitter.wgsl"),
-        part!("path/scatter.wgsl"),
-    ]);
-    parts.extend(scattering(sky));
-    let mode = Mode::Path(materials, sources, sky);
-    Kernel::new("scatter", parts).with(mode.constants()).with([schedule.constant()])
-}
-
-/// The parts that say what becomes of a path at a surface.
-pub(super) fn scattering(sky: SkyKind) -> Vec<Part> {
-    let mut parts = vec![
-        part!("scene/appearance.wgsl"),
-        part!("path/vertex.wgsl"),
-        part!("scene/material.wgsl"),
-        part!("path/surface_point.wgsl"),
-        part!("scene/emitters.wgsl"),
-        part!("scene/lamp.wgsl"),
-        part!("path/by_chance.wgsl"),
-        part!("path/bounce.wgsl"),
-        part!("path/leave.wgsl"),
-        part!("path/choices.wgsl"),
-        part!("path/direct_light.wgsl"),
-        part!("path/medium.wgsl"),
-        part!("path/microfacet.wgsl"),
-        part!("path/bsdf.wgsl"),
-        part!("path/dielectric.wgsl"),
-        part!("path/scatter_light.wgsl"),
-        part!("path/direct.wgsl"),
+impl OnePass {
+    /// All of them.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Sharp,
+        Self::Lamps,
+        Self::Ground,
+        Self::Paths(Materials::Matt, Sources::None),
+        Self::Paths(Materials::Matt, Sources::Any),
+        Self::Paths(Materials::Any, Sources::None),
+        Self::Paths(Materials::Any, Sources::Any),
     ];
-    match sky {
-        SkyKind::Plain => parts.push(part!("scene/sky.wgsl", "plain")),
-        SkyKind::Image => parts.extend(sky_image()),
+
+    /// Whether the samples are paths.
+    pub(super) fn is_paths(self) -> bool {
+        matches!(self, Self::Paths(..))
     }
-    parts
+
+    /// The properties of its lighting.
+    fn mode(self) -> Mode {
+        match self {
+            Self::Paths(materials, sources) => Mode::Path(materials, sources, SkyKind::Plain),
+            Self::Sharp | Self::Lamps | Self::Ground => Mode::Studio,
+        }
+    }
+
+    fn entry_point(self) -> &'static str {
+        if self.is_paths() { "whole_paths" } else { "one_pass" }
+    }
 }
 
-/// The kernel that accumulates samples.
-pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
-    let mut parts = paths();
-    parts.extend([
-        part!("path/choices.wgsl"),
-        part!("path/direct_light.wgsl"),
-        part!("math/luminance.wgsl"),
-        part!("path/film_sums.wgsl"),
-        part!("path/accumulate.wgsl"),
-    ]);
-    Kernel::new("accumulate", parts).with(mode.constants()).with([Schedule::Pixels.constant()])
+/// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
+/// two of the appearance, and those of the structure.
+pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
+    let of_structure = if structure == Structure::List { 2 } else { 3 };
+    5 + of_structure <= limits.max_storage_buffers_per_shader_stage
 }
 
-/// The kernel that computes the numbers of workgroups of the next indirect dispatches.
-pub(super) fn advance_kernel() -> Kernel {
-    let mut parts = base();
-    parts.push(part!("path/advance.wgsl"));
-    Kernel::new("advance", parts)
+/// The properties in which sets of passes differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct LitKey {
+    pub(crate) camera: CameraKind,
+    pub(crate) mode: Mode,
+    pub(crate) structure: Structure,
+    /// The structure of the spheres that cast shadows.
+    pub(crate) occluders: Structure,
+    /// How rays exclude the sphere on which they start, among all spheres and among those that cast shadows.
+    pub(crate) exclude_by: [ExcludeBy; 2],
+    /// Whether the scene has several bricks.
+    pub(crate) several_bricks: bool,
+    /// The kind of picture, if one pass takes whole samples, which needs one brick.
+    pub(crate) one_pass: Option<OnePass>,
 }
 
-/// The kernel that sums variances and luminances of pixels.
-pub(super) fn noise_kernel() -> Kernel {
-    let mut parts = base();
-    parts.extend([
-        part!("math/luminance.wgsl"),
-        part!("path/film_sums.wgsl"),
-        part!("path/noise.wgsl"),
-    ]);
-    Kernel::new("noise", parts)
+/// The entry point of a pass's kernel, the paths that it processes, and whether it searches the first brick.
+pub(super) type PassName = (&'static str, Schedule, BrickPass);
+
+impl LitKey {
+    /// The keys of all pictures of scenes with these structures.
+    pub(super) fn all(structures: &[Structure]) -> impl Iterator<Item = Self> {
+        let one_pass = OnePass::ALL.into_iter().map(|pass| (pass.mode(), Some(pass)));
+        let modes = Mode::all().map(|mode| (mode, None)).chain(one_pass);
+        modes.flat_map(move |(mode, one_pass)| {
+            structures.iter().flat_map(move |&structure| {
+                ExcludeBy::ALL.into_iter().flat_map(move |exclude_by| {
+                    CameraKind::ALL.iter().map(move |&camera| Self {
+                        camera,
+                        mode,
+                        structure,
+                        occluders: structure,
+                        exclude_by: [exclude_by; 2],
+                        several_bricks: true,
+                        one_pass,
+                    })
+                })
+            })
+        })
+    }
+
+    /// The passes that take samples of the pictures.
+    pub(super) fn passes(&self) -> Vec<PassName> {
+        use Schedule::{Pixels, Queue};
+        if let Some(pass) = self.one_pass {
+            return vec![(pass.entry_point(), Pixels, First)];
+        }
+        let steps: &[PassName] = match self.mode {
+            Mode::Studio => &[
+                ("surface", Pixels, First),
+                ("surface", Queue, First),
+                ("shadow", Queue, First),
+                ("illuminate", Queue, First),
+                ("ambient", Queue, First),
+                ("gather", Queue, First),
+            ],
+            Mode::Path(..) => {
+                &[("scatter", Pixels, First), ("scatter", Queue, First), ("occlude", Queue, First)]
+            }
+        };
+        let later: &[PassName] = &[("extend", Pixels, Later), ("extend", Queue, Later)];
+        let common = [
+            ("start", Pixels, First),
+            ("extend", Pixels, First),
+            ("extend", Queue, First),
+            ("accumulate", Pixels, First),
+        ];
+        [&common[..], steps, if self.several_bricks { later } else { &[] }].concat()
+    }
+
+    /// Whether a pass searches the spheres that cast shadows.
+    pub(super) fn finds_occluders((entry_point, ..): PassName) -> bool {
+        matches!(entry_point, "occlude" | "shadow" | "ambient")
+    }
+
+    /// The kernel of a pass.
+    pub(super) fn kernel(&self, name @ (entry_point, schedule, brick_pass): PassName) -> Kernel {
+        let [of_all, of_occluders] = self.exclude_by;
+        let (structure, exclude_by) = match Self::finds_occluders(name) {
+            true => (self.occluders, of_occluders),
+            false => (self.structure, of_all),
+        };
+        let sky = match self.mode {
+            Mode::Path(.., SkyKind::Image) => "sky-image",
+            _ => "plain-sky",
+        };
+        let is_pass = |pass| u32::from(self.one_pass == Some(pass));
+        Kernel::new(entry_point, &[structure_parts(structure), ("$sky", sky)])
+            .with(self.mode.constants())
+            .with([camera_constant(self.camera), exclude_by.constant()])
+            .with([("IS_SHARP", is_pass(OnePass::Sharp)), ("HAS_GROUND", is_pass(OnePass::Ground))])
+            .with([brick_pass.constant(), schedule.constant()])
+    }
 }
 
-fn sky_image() -> Vec<Part> {
-    vec![
-        part!("math/turns.wgsl"),
-        part!("math/trigonometry_inverse.wgsl"),
-        part!("scene/environment.wgsl"),
-        part!("scene/sky.wgsl", "image"),
-    ]
-}
+/// The pass that computes the numbers of workgroups of the next indirect dispatches, and the one that sums variances and
+/// luminances of pixels.
+pub(super) const OF_ALL: [PassName; 2] =
+    [("advance", Schedule::Pixels, First), ("noise", Schedule::Pixels, First)];
 
-/// What kernels have in which every invocation processes a path.
-fn paths() -> Vec<Part> {
-    let mut parts = base();
-    parts.push(part!("path/schedule.wgsl"));
-    parts
-}
-
-/// What all kernels of lit pictures have.
-pub(super) fn base() -> Vec<Part> {
-    vec![
-        part!("scene/records.wgsl"),
-        part!("scene/lighting_records.wgsl"),
-        part!("scene/frame.wgsl"),
-        part!("math/fence.wgsl"),
-        part!("camera/ray.wgsl"),
-        part!("scene/enter.wgsl"),
-        part!("scene/sphere.wgsl"),
-        part!("path/state.wgsl"),
-        part!("path/departure.wgsl"),
-        part!("path/queue.wgsl"),
-        part!("primary/schedule.wgsl"),
-    ]
-}
-
-fn shading() -> Vec<Part> {
-    let mut parts = paths();
-    parts.extend([
-        part!("path/address.wgsl"),
-        part!("math/trigonometry.wgsl"),
-        part!("scene/lighting.wgsl"),
-    ]);
-    parts
-}
-
-fn studio_light() -> Vec<Part> {
-    let mut parts = shading();
-    parts.extend([
-        part!("math/sampling.wgsl"),
-        part!("math/disk.wgsl"),
-        part!("math/warp.wgsl"),
-        part!("math/luminance.wgsl"),
-        part!("scene/lamp.wgsl"),
-        part!("studio/catcher.wgsl"),
-    ]);
-    parts
+/// The kernels for every camera, structure, kind of lighting and schedule.
+pub(super) fn kernels() -> Vec<Kernel> {
+    let mut known = HashSet::new();
+    // Where there are several passes, none depends on both a camera and a structure.
+    let keys = LitKey::all(Structure::WITH_KERNELS).filter(|key| {
+        let is_first = key.camera == CameraKind::Pinhole || key.structure == Structure::List;
+        key.one_pass.is_some() || is_first
+    });
+    let kernels = keys
+        .flat_map(|key| key.passes().into_iter().chain(OF_ALL).map(move |name| key.kernel(name)));
+    kernels.filter(|kernel| known.insert((kernel.name(), kernel.constants.clone()))).collect()
 }

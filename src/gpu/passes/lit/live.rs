@@ -11,15 +11,14 @@ use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::kernels::{base, light_search};
-use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::passes::lit::kernels::{LitKey, OnePass};
 use crate::gpu::passes::lit::passes::LitLayouts;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
-    Kernel, camera_constant, camera_rays, color_target, data_layers, part, pipeline, pipeline_with,
+    Kernel, camera_constant, color_target, data_layers, pipeline, pipeline_with, structure_parts,
 };
 
 /// The properties in which sets of passes differ.
@@ -65,58 +64,22 @@ pub(crate) struct LivePasses {
 }
 
 /// The kernel that traces the rays of a frame.
-pub(crate) fn live_kernel(key: LiveKey) -> Kernel {
-    let mut parts = base();
-    parts.extend(light_search(key.structure));
-    // The functions that cameras use are among the parts of lights.
-    parts.extend(camera_rays());
-    parts.extend([
-        part!("camera/film.wgsl"),
-        part!("scene/appearance_words.wgsl", "beside-structure"),
-        part!("scene/appearance.wgsl"),
-        part!("path/vertex.wgsl"),
-        part!("scene/material.wgsl"),
-        part!("math/luminance.wgsl"),
-        part!("path/microfacet.wgsl"),
-        part!("scene/lamp.wgsl"),
-        part!("studio/faded.wgsl"),
-        part!("studio/seen.wgsl"),
-        part!("studio/reflected.wgsl"),
-        part!("live/records.wgsl"),
-        part!("live/light.wgsl"),
-        part!("live/trace.wgsl"),
-        part!("studio/catcher.wgsl"),
-        part!("studio/one_ground.wgsl"),
-    ]);
-    Kernel::new("live", parts).with([
+fn live_kernel(key: LiveKey) -> Kernel {
+    Kernel::new("live", &[structure_parts(key.structure)]).with([
         camera_constant(key.camera),
         key.exclude_by.constant(),
         ("HAS_GROUND", u32::from(key.has_ground)),
     ])
 }
 
-/// The kernel that averages over frames.
-pub(crate) fn reproject_kernel() -> Kernel {
-    let parts =
-        vec![part!("live/records.wgsl"), part!("live/view.wgsl"), part!("live/reproject.wgsl")];
-    Kernel::new("reproject", parts)
-}
-
 /// The kernel that averages over neighbours and writes the picture.
-pub(crate) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
-    let parts = vec![
-        part!("live/records.wgsl"),
-        part!("live/view.wgsl"),
-        part!("live/show.wgsl"),
-        color_target(color),
-        data_layers(has_data),
-    ];
-    Kernel::new("show", parts)
+fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
+    Kernel::new("show", &[color_target(color), data_layers(has_data)])
 }
 
 /// All kernels of live pictures.
 pub(crate) fn live_kernels() -> Vec<Kernel> {
-    let mut kernels = vec![reproject_kernel()];
+    let mut kernels = vec![Kernel::new("reproject", &[])];
     for &color in ColorTarget::ALL {
         kernels.extend([false, true].map(|has_data| show_kernel(color, has_data)));
     }
@@ -134,8 +97,8 @@ pub(crate) fn live_kernels() -> Vec<Kernel> {
 
 impl LiveKey {
     /// The key for a studio that one pass can take whole samples of.
-    pub(crate) fn new(of: &super::LitKey) -> Option<Self> {
-        let super::LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
+    pub(crate) fn new(of: &LitKey) -> Option<Self> {
+        let LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
         one_pass.filter(|pass| !pass.is_paths()).map(|studio| Self {
             camera,
             structure,
@@ -172,7 +135,8 @@ impl LivePasses {
         let brick = &scene.brick[0].1;
         let groups = [&lit.samples, brick, &lit.lighting, &scene.appearance];
         let live = pipeline(device, &live_kernel(key).edited(edits)?, &groups, &checks);
-        let reproject = pipeline(device, &reproject_kernel().edited(edits)?, &[&known], &checks);
+        let reproject =
+            pipeline(device, &Kernel::new("reproject", &[]).edited(edits)?, &[&known], &checks);
         let show = show_kernel(color, has_data).edited(edits)?;
         let show = pipeline_with(device, &show, &[Some(&known), None, Some(targets)], &checks);
         checks.passed().await?;

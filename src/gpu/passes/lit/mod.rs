@@ -13,7 +13,6 @@ mod frame;
 mod kernels;
 mod lighting;
 mod live;
-mod one_pass;
 mod passes;
 mod plan;
 mod recorder;
@@ -29,26 +28,15 @@ use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::passes::visible_bricks::VisibleRegion;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::Kernel;
 use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
-
-use crate::accel::Structure;
-use crate::camera::CameraKind;
-use crate::gpu::passes::lit::kernels::{
-    Materials, Schedule, SkyKind, Sources, accumulate_kernel, advance_kernel, ambient_kernel,
-    extend_kernel, gather_kernel, illuminate_kernel, noise_kernel, occlude_kernel, scatter_kernel,
-    shadow_kernel, start_kernel, surface_kernel,
-};
-use crate::gpu::passes::lit::live::live_kernels;
-use crate::gpu::passes::lit::one_pass::OnePass;
-use crate::gpu::scene::scene_summary::ExcludeBy;
-use crate::gpu::shader::{BrickPass, Kernel};
 pub(crate) use frame::LightingBuffers;
 pub(crate) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
-pub(crate) use kernels::Mode;
+pub(crate) use kernels::{LitKey, Mode};
 pub(crate) use lighting::LightingData;
 pub(crate) use live::{LiveKey, LivePasses, LiveView};
-pub(crate) use passes::{LitKey, LitLayouts, LitPasses};
+pub(crate) use passes::{LitLayouts, LitPasses};
 pub(crate) use recorder::Recorder;
 pub(crate) use records::LitSizes;
 pub(crate) use round::{Attempt, Moment, Round, Step};
@@ -92,7 +80,7 @@ impl<'a> LitScene<'a> {
                 .one_pass(all.bricks.len())
                 .filter(|pass| !pass.is_paths() || all.shape.paths_in_one_pass)
                 .filter(|_| lighting.loops_of_path() <= round::MOST_LOOPS)
-                .filter(|_| one_pass::one_pass_fits(all.structure(), limits))
+                .filter(|_| kernels::one_pass_fits(all.structure(), limits))
                 .filter(|_| {
                     let rays = lighting.rays_of_sample();
                     all.rays_at_once(rays) == rays
@@ -124,40 +112,7 @@ impl<'a> LitScene<'a> {
 
 /// Returns one kernel for every camera, structure, kind of lighting and schedule.
 pub(crate) fn all_kernels() -> Vec<Kernel> {
-    const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
-    let mut modes = vec![Mode::Studio];
-    for materials in [Materials::Matt, Materials::Any] {
-        for sources in [Sources::None, Sources::Any] {
-            for sky in [SkyKind::Plain, SkyKind::Image] {
-                modes.push(Mode::Path(materials, sources, sky));
-            }
-        }
-    }
-    let mut kernels = vec![advance_kernel(), noise_kernel(), illuminate_kernel(), gather_kernel()];
-    for &mode in &modes {
-        kernels.push(accumulate_kernel(mode));
-        if let Mode::Path(materials, sources, sky) = mode {
-            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, materials, sources, sky)));
-        }
-        let cameras = CameraKind::ALL.iter();
-        kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
-    }
-    for (&structure, exclude_by) in Structure::WITH_KERNELS
-        .iter()
-        .flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
-    {
-        for brick_pass in [BrickPass::First, BrickPass::Later] {
-            kernels
-                .extend(SCHEDULES.map(|by| extend_kernel(structure, exclude_by, brick_pass, by)));
-        }
-        let cameras = CameraKind::ALL.iter();
-        kernels.extend(cameras.flat_map(|camera| {
-            OnePass::ALL.map(|pass| pass.kernel(*camera, structure, exclude_by))
-        }));
-        kernels.extend(modes.iter().map(|mode| occlude_kernel(structure, exclude_by, *mode)));
-        kernels.extend([shadow_kernel, ambient_kernel].map(|of| of(structure, exclude_by)));
-    }
-    kernels.extend(live_kernels());
-    kernels.extend(SCHEDULES.map(surface_kernel));
-    kernels
+    let mut all = kernels::kernels();
+    all.extend(live::live_kernels());
+    all
 }

@@ -7,37 +7,17 @@ use wgpu::{
     ComputePipeline, Device,
 };
 
-use crate::accel::Structure;
-use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::kernels::{self, Mode, Schedule, SkyKind};
-use crate::gpu::passes::lit::one_pass::OnePass;
+use crate::gpu::passes::lit::kernels::{LitKey, Mode, OF_ALL, PassName, SkyKind};
 use crate::gpu::passes::lit::records::{
     DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD,
 };
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::profile::PassNames;
-use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
-use crate::gpu::shader::{BrickPass, Kernel, pipeline, records};
-
-/// The properties in which sets of passes differ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct LitKey {
-    pub(crate) camera: CameraKind,
-    pub(crate) mode: Mode,
-    pub(crate) structure: Structure,
-    /// The structure of the spheres that cast shadows.
-    pub(crate) occluders: Structure,
-    /// How rays exclude the sphere on which they start, among all spheres and among those that cast shadows.
-    pub(crate) exclude_by: [ExcludeBy; 2],
-    /// Whether the scene has several bricks.
-    pub(crate) several_bricks: bool,
-    /// The kind of picture, if one pass takes whole samples, which needs one brick.
-    pub(crate) one_pass: Option<OnePass>,
-}
+use crate::gpu::shader::{pipeline, records};
 
 /// Layouts of bind group 0 of most passes (`frame`), of `advance`, and of passes over sums (`film`), and of groups 2
 /// and 3.
@@ -52,56 +32,17 @@ pub(crate) struct LitLayouts {
     pub(super) sky: BindGroupLayout,
 }
 
-/// A pass over the camera rays of all pixels, and one over lists of paths that continue.
-#[derive(Debug)]
-pub(super) struct BySchedule {
-    pub(super) pixels: Pass,
-    pub(super) queue: Pass,
-}
-
 /// The passes of lit pictures for a device, camera, kind of lighting and structure.
 #[derive(Debug)]
 pub(crate) struct LitPasses {
-    pub(super) layouts: LitLayouts,
-    pub(super) of_samples: SamplePasses,
+    pub(super) key: LitKey,
+    pub(crate) layouts: LitLayouts,
+    /// The passes that take samples.
+    of_samples: HashMap<PassName, Pass>,
     /// The pass that computes the numbers of workgroups of indirect dispatches.
     pub(crate) advance: Pass,
     /// The pass that sums variances and luminances of pixels.
     pub(crate) noise: Pass,
-}
-
-/// The passes that take samples.
-#[derive(Debug)]
-pub(super) enum SamplePasses {
-    /// One pass takes whole samples.
-    One(Pass),
-    /// Several passes take samples step by step.
-    Steps(Box<StepPasses>),
-}
-
-/// The passes that take samples step by step.
-#[derive(Debug)]
-pub(super) struct StepPasses {
-    pub(super) start: Pass,
-    /// Passes for the first brick, and for later bricks.
-    pub(super) extend: (BySchedule, Option<BySchedule>),
-    pub(super) shade: ShadePasses,
-    pub(super) accumulate: Pass,
-}
-
-#[derive(Debug)]
-pub(super) struct StudioPasses {
-    pub(super) surface: BySchedule,
-    pub(super) shadow: Pass,
-    pub(super) illuminate: Pass,
-    pub(super) ambient: Pass,
-    pub(super) gather: Pass,
-}
-
-#[derive(Debug)]
-pub(super) enum ShadePasses {
-    Studio(StudioPasses),
-    Path { scatter: BySchedule, occlude: Pass },
 }
 
 impl LitLayouts {
@@ -151,18 +92,6 @@ impl LitPasses {
     /// Builds all pipelines.
     pub(crate) async fn new(device: &Device, key: LitKey, edits: &Edits) -> Result<Self, GpuError> {
         let checks = Checks::default();
-        let passes = Self::begin(device, key, edits, &checks)?;
-        checks.passed().await?;
-        Ok(passes)
-    }
-
-    /// Begins to build all pipelines. Whether the device accepts them is known when the checks have passed.
-    fn begin(
-        device: &Device,
-        key: LitKey,
-        edits: &Edits,
-        checks: &Checks,
-    ) -> Result<Self, GpuError> {
         let options = RendererOptions {
             cameras: Vec::new(),
             structures: vec![key.structure, key.occluders],
@@ -170,72 +99,35 @@ impl LitPasses {
         };
         let scene = checks.create(device, || Layouts::new(device, &options));
         let layouts = checks.create(device, || LitLayouts::new(device));
-        let build = |kernel: Kernel, groups: &[&BindGroupLayout]| {
-            Pass::new(device, kernel, groups, edits, checks)
-        };
-        let both = |kernel: &dyn Fn(Schedule) -> Kernel, groups: &[&BindGroupLayout]| {
-            Ok::<_, GpuError>(BySchedule {
-                pixels: build(kernel(Schedule::Pixels), groups)?,
-                queue: build(kernel(Schedule::Queue), groups)?,
-            })
-        };
-        let brick = |index: usize| &scene.brick[index].1;
-        let surfaces = &scene.surface;
         let LitLayouts { frame, advance, film, samples, lighting, sky } = &layouts;
-        let [exclude_by, light_exclude_by] = key.exclude_by;
-        if let Some(pass) = key.one_pass {
-            let kernel = pass.kernel(key.camera, key.structure, exclude_by);
-            let groups = [samples, brick(0), lighting, &scene.appearance];
-            return Ok(Self {
-                of_samples: SamplePasses::One(build(kernel, &groups)?),
-                advance: build(kernels::advance_kernel(), &[advance])?,
-                noise: build(kernels::noise_kernel(), &[film])?,
-                layouts,
-            });
-        }
-        let (occluders, lit_brick) = (key.occluders, [frame, brick(1), lighting]);
-        let extend = |brick_pass| {
-            let kernel = |by| kernels::extend_kernel(key.structure, exclude_by, brick_pass, by);
-            both(&kernel, &[frame, brick(0)])
-        };
-        let shade = match key.mode {
-            Mode::Studio => ShadePasses::Studio(StudioPasses {
-                surface: both(&kernels::surface_kernel, &[frame, surfaces, lighting])?,
-                shadow: build(kernels::shadow_kernel(occluders, light_exclude_by), &lit_brick)?,
-                illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, lighting])?,
-                ambient: build(kernels::ambient_kernel(occluders, light_exclude_by), &lit_brick)?,
-                gather: build(kernels::gather_kernel(), &[frame, surfaces, lighting])?,
-            }),
-            Mode::Path(surface, sources, kind) => {
-                let kernel = |by| kernels::scatter_kernel(by, surface, sources, kind);
-                let mut groups = vec![frame, surfaces, lighting];
-                if kind == SkyKind::Image {
-                    groups.push(sky);
+        let brick = |index: usize| &scene.brick[index].1;
+        let build = |name: PassName| {
+            let kernel = key.kernel(name).edited(edits)?;
+            let groups = match name.0 {
+                "advance" => vec![advance],
+                "accumulate" | "noise" => vec![film],
+                "extend" => vec![frame, brick(0)],
+                "one_pass" | "whole_paths" => vec![samples, brick(0), lighting, &scene.appearance],
+                _ if LitKey::finds_occluders(name) => vec![frame, brick(1), lighting],
+                "scatter" if matches!(key.mode, Mode::Path(.., SkyKind::Image)) => {
+                    vec![frame, &scene.surface, lighting, sky]
                 }
-                ShadePasses::Path {
-                    scatter: both(&kernel, &groups)?,
-                    occlude: build(
-                        kernels::occlude_kernel(occluders, light_exclude_by, key.mode),
-                        &lit_brick,
-                    )?,
-                }
-            }
+                _ => vec![frame, &scene.surface, lighting],
+            };
+            let pipeline = pipeline(device, &kernel, &groups, &checks);
+            Ok::<_, GpuError>(Pass { name: kernel.entry_point, pipeline })
         };
-        let start = kernels::start_kernel(key.camera, key.mode);
-        Ok(Self {
-            of_samples: SamplePasses::Steps(Box::new(StepPasses {
-                start: build(start, &[frame, surfaces, lighting])?,
-                extend: (
-                    extend(BrickPass::First)?,
-                    key.several_bricks.then(|| extend(BrickPass::Later)).transpose()?,
-                ),
-                shade,
-                accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
-            })),
-            advance: build(kernels::advance_kernel(), &[advance])?,
-            noise: build(kernels::noise_kernel(), &[film])?,
-            layouts,
-        })
+        let of_samples = key.passes().into_iter().map(|name| Ok((name, build(name)?)));
+        let of_samples: HashMap<_, _> = of_samples.collect::<Result<_, GpuError>>()?;
+        let [advance, noise] = OF_ALL.map(build);
+        let (advance, noise) = (advance?, noise?);
+        checks.passed().await?;
+        Ok(Self { key, layouts, of_samples, advance, noise })
+    }
+
+    /// A pass that takes samples.
+    pub(super) fn of_samples(&self, name: PassName) -> Result<&Pass, GpuError> {
+        self.of_samples.get(&name).ok_or(GpuError::OtherRenderer)
     }
 }
 
@@ -272,19 +164,6 @@ pub(crate) enum Extent<'a> {
 }
 
 impl Pass {
-    /// Builds the pipeline. `groups` are the layouts of its bind groups, in order. Whether the device accepts it is
-    /// known when the checks have passed.
-    pub(super) fn new(
-        device: &Device,
-        kernel: Kernel,
-        groups: &[&BindGroupLayout],
-        edits: &Edits,
-        checks: &Checks,
-    ) -> Result<Self, GpuError> {
-        let name = kernel.entry_point;
-        Ok(Self { name, pipeline: pipeline(device, &kernel.edited(edits)?, groups, checks) })
-    }
-
     /// Records one dispatch, and notes its name. Nothing is submitted.
     pub(super) fn record(
         &self,
@@ -316,9 +195,9 @@ impl Pass {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kernels::{Materials, Sources};
-    use super::super::one_pass::one_pass_fits;
+    use super::super::kernels::one_pass_fits;
     use super::*;
+    use crate::accel::Structure;
     use crate::gpu::headless::waiting::Wait;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
@@ -327,40 +206,11 @@ mod tests {
     fn every_pass_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
-        let mut modes = vec![Mode::Studio];
-        for surfaces in [Materials::Matt, Materials::Any] {
-            for sources in [Sources::None, Sources::Any] {
-                for sky in [SkyKind::Plain, SkyKind::Image] {
-                    modes.push(Mode::Path(surfaces, sources, sky));
-                }
-            }
-        }
-        for mode in modes {
-            for &camera in CameraKind::ALL {
-                // A structure with the most buffers.
-                let structure = Structure::NestedGrid;
-                let (occluders, several_bricks) = (structure, true);
-                for exclude_by in ExcludeBy::ALL {
-                    let exclude_by = [exclude_by; 2];
-                    let key = LitKey {
-                        camera,
-                        mode,
-                        structure,
-                        occluders,
-                        exclude_by,
-                        several_bricks,
-                        one_pass: None,
-                    };
-                    LitPasses::new(&device, key, &Edits::default()).wait().unwrap();
-                    assert!(one_pass_fits(structure, &device.limits()));
-                    for pass in OnePass::ALL {
-                        let key = LitKey { one_pass: Some(pass), ..key };
-                        if mode == Mode::Studio {
-                            LitPasses::new(&device, key, &Edits::default()).wait().unwrap();
-                        }
-                    }
-                }
-            }
+        // A structure with the most buffers.
+        let structure = Structure::NestedGrid;
+        assert!(one_pass_fits(structure, &device.limits()));
+        for key in LitKey::all(&[structure]) {
+            LitPasses::new(&device, key, &Edits::default()).wait().unwrap();
         }
     }
 }

@@ -131,7 +131,6 @@ mod tests {
         opacity: f32,
         size: u32,
         settings: &RenderSettings,
-        layers: LayerSet,
         device_type: DeviceType,
     ) -> RenderPlan {
         let spheres: Vec<Sphere> = (0..1000)
@@ -152,7 +151,7 @@ mod tests {
             scene: &scene,
             view: View::new(&camera, film),
             settings,
-            layers,
+            layers: LayerSet::COLOR,
             host_bytes_per_pixel: 16,
         };
         RenderPlan::of_lit(&request, structures, &device)
@@ -168,7 +167,7 @@ mod tests {
     #[test]
     fn a_tile_takes_its_paths_and_every_pixel_its_sums() {
         let settings = RenderSettings::studio();
-        let plan = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
+        let plan = planned(1.0, 512, &settings, GPU);
         assert_eq!((plan.tile_size, plan.tile_count), ([512, 256], 2));
         let pixels = 1 << 18;
         // Four samples of every pixel of a tile are in flight, with ten vectors each.
@@ -183,15 +182,13 @@ mod tests {
         assert_eq!(plan.host_bytes, (12 + 16) * pixels);
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
 
-        let software = planned(1.0, 512, &settings, LayerSet::COLOR, DeviceType::Cpu);
+        let software = planned(1.0, 512, &settings, DeviceType::Cpu);
         assert_eq!(software.host_bytes, plan.host_bytes + plan.device_bytes);
     }
 
     #[test]
     fn paths_have_only_the_slots_that_the_lighting_needs() {
-        let at_most = |settings: &RenderSettings| {
-            bytes(&planned(1.0, 512, settings, LayerSet::COLOR, GPU), "paths")
-        };
+        let at_most = |settings: &RenderSettings| bytes(&planned(1.0, 512, settings, GPU), "paths");
         let lighting = RenderSettings::path();
         let sky_alone = RenderSettings { lights: Vec::new(), ..RenderSettings::path() };
         assert_eq!(at_most(&RenderSettings::studio()), 160 << 19);
@@ -203,7 +200,7 @@ mod tests {
     #[test]
     fn a_gpu_with_memory_of_its_own_has_more_paths() {
         let studio = &RenderSettings::studio();
-        let plan = |device| planned(1.0, 4096, studio, LayerSet::COLOR, device);
+        let plan = |device| planned(1.0, 4096, studio, device);
         let [small, large] = [GPU, DeviceType::DiscreteGpu].map(plan);
         assert!(bytes(&large, "paths") > bytes(&small, "paths"));
         assert!(large.tile_count < small.tile_count);
@@ -212,7 +209,7 @@ mod tests {
 
     #[test]
     fn large_pictures_are_divided_into_tiles() {
-        let plan = planned(1.0, 4096, &RenderSettings::studio(), LayerSet::COLOR, GPU);
+        let plan = planned(1.0, 4096, &RenderSettings::studio(), GPU);
         assert!(bytes(&plan, "paths") <= 160 << 19);
         assert!(plan.tile_count >= 32);
         assert!(bytes(&plan, "sums") >= 48 << 24, "those of all tiles stay");
@@ -225,8 +222,8 @@ mod tests {
     #[test]
     fn shadows_of_some_spheres_have_a_structure_of_their_own() {
         let settings = RenderSettings::studio();
-        let opaque = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
-        let clear = planned(0.5, 64, &settings, LayerSet::COLOR, GPU);
+        let opaque = planned(1.0, 64, &settings, GPU);
+        let clear = planned(0.5, 64, &settings, GPU);
         assert_eq!(bytes(&opaque, "spheres"), 16_000);
         assert_eq!(bytes(&clear, "spheres"), 16_000 + 14_400);
     }
@@ -234,10 +231,10 @@ mod tests {
     #[test]
     fn an_outline_needs_the_layers_that_it_is_computed_from() {
         let mut settings = RenderSettings::studio();
-        let before = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
+        let before = planned(1.0, 512, &settings, GPU);
         let studio = Studio { outline: Some(Outline::default()), ..Studio::default() };
         settings.integrator = Integrator::Studio(studio);
-        let after = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
+        let after = planned(1.0, 512, &settings, GPU);
         let layers = outline::LAYERS.bytes_per_pixel() - Layer::Color.bytes_per_pixel();
         assert_eq!(after.host_bytes, before.host_bytes + (layers << 18));
     }
@@ -246,7 +243,7 @@ mod tests {
     #[test]
     fn emitters_are_bounded_by_the_layers_of_a_texture() {
         let settings = RenderSettings::path();
-        let mut plan = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
+        let mut plan = planned(1.0, 64, &settings, GPU);
         assert_eq!(bytes(&plan, emitter_table::NAME), 0);
         plan.tile_textures.extend(emitter_table::planned(3 * 300_000_000));
         let limits = Limits::default();
@@ -262,9 +259,9 @@ mod tests {
         let light =
             SkyLight::Image { environment: environment.into(), strength: 1.0, rotation: 0.0 };
         let sky = Sky { light, is_visible: true };
-        let studio = planned(1.0, 64, &RenderSettings::studio(), LayerSet::COLOR, GPU);
+        let studio = planned(1.0, 64, &RenderSettings::studio(), GPU);
         let settings = RenderSettings { sky, ..RenderSettings::path() };
-        let path = planned(1.0, 16, &settings, LayerSet::COLOR, GPU);
+        let path = planned(1.0, 16, &settings, GPU);
         assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 << 19));
         assert_eq!(bytes(&path, "sky shares"), 4 * (513 + 1025 * 512));
         let low = Limits { max_storage_buffer_binding_size: 6 << 20, ..Limits::default() };

@@ -6,12 +6,12 @@ use wgpu::BindGroup;
 
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::frame::Area;
+use crate::gpu::passes::lit::kernels::{LitKey, Mode, Schedule};
 use crate::gpu::passes::lit::lighting::LightingData;
-use crate::gpu::passes::lit::passes::{
-    BySchedule, LitKey, LitPasses, Pass, SamplePasses, ShadePasses, StepPasses, StudioPasses,
-};
+use crate::gpu::passes::lit::passes::{LitPasses, Pass};
 use crate::gpu::passes::lit::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::BrickPass;
 
 /// A dispatch of a round.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +67,12 @@ pub(super) enum Work {
     Sums,
     /// Whole samples of all pixels.
     Samples,
+}
+
+impl Work {
+    fn schedule(self) -> Schedule {
+        if matches!(self, Self::List(_)) { Schedule::Queue } else { Schedule::Pixels }
+    }
 }
 
 /// Stages of a sample after which its state can be recorded.
@@ -151,19 +157,20 @@ impl<'a> Round<'a> {
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
         };
-        let passes = match &self.passes.of_samples {
-            SamplePasses::One(pass) => return Ok(self.one_pass(pass, dispatch)),
-            SamplePasses::Steps(passes) => passes,
-        };
-        let mut steps = Steps { round: *self, passes, in_flight: count, steps: Vec::new() };
-        let first = &self.scene.bricks[0].surface_group;
-        steps.push(&passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
-        steps.mark(Moment::Started);
-        match &passes.shade {
-            ShadePasses::Studio(passes) => steps.studio(dispatch, passes)?,
-            ShadePasses::Path { scatter, occlude } => steps.path(dispatch, scatter, occlude)?,
+        let LitPasses { key, .. } = self.passes;
+        if key.one_pass.is_some() {
+            let pass = self.passes.of_samples(key.passes()[0])?;
+            return Ok(self.one_pass(pass, dispatch));
         }
-        steps.push(&passes.accumulate, dispatch, None, Work::Sums);
+        let mut steps = Steps { round: *self, in_flight: count, steps: Vec::new() };
+        let first = &self.scene.bricks[0].surface_group;
+        steps.push("start", dispatch, Some(first), Work::Pixels(Area::Whole))?;
+        steps.mark(Moment::Started);
+        match key.mode {
+            Mode::Studio => steps.studio(dispatch)?,
+            Mode::Path(..) => steps.path(dispatch)?,
+        }
+        steps.push("accumulate", dispatch, None, Work::Sums)?;
         steps.mark(Moment::Accumulated);
         Ok(steps.steps)
     }
@@ -204,13 +211,25 @@ impl<'a> Round<'a> {
 
 struct Steps<'a> {
     round: Round<'a>,
-    passes: &'a StepPasses,
     in_flight: u32,
     steps: Vec<Step<'a>>,
 }
 
 impl<'a> Steps<'a> {
+    /// Adds a dispatch of the pass with an entry point.
     fn push(
+        &mut self,
+        entry_point: &'static str,
+        dispatch: DispatchParameters,
+        brick: Option<&'a BindGroup>,
+        work: Work,
+    ) -> Result<(), GpuError> {
+        let name = (entry_point, work.schedule(), BrickPass::First);
+        self.push_pass(self.round.passes.of_samples(name)?, dispatch, brick, work);
+        Ok(())
+    }
+
+    fn push_pass(
         &mut self,
         pass: &'a Pass,
         dispatch: DispatchParameters,
@@ -230,20 +249,6 @@ impl<'a> Steps<'a> {
         });
     }
 
-    /// Adds a dispatch that traces rays in a brick.
-    fn push_search(
-        &mut self,
-        pass: &'a Pass,
-        dispatch: DispatchParameters,
-        brick: &'a BindGroup,
-        work: Work,
-    ) {
-        self.push(pass, dispatch, Some(brick), work);
-        if let Some(last) = self.steps.last_mut() {
-            last.is_search = true;
-        }
-    }
-
     /// Sets the number of rays of the last dispatches, one for each brick of the occluders.
     fn set_rays(&mut self, rays: u32) {
         let count = self.round.occluders.bricks.len();
@@ -258,26 +263,33 @@ impl<'a> Steps<'a> {
 
     /// Adds the search for the hits of all rays: over pixels for camera rays, over lists for others.
     fn extend(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
-        let (first, later) = &self.passes.extend;
+        let work = work_of(dispatch, Area::Visible);
         for (index, brick) in self.round.scene.bricks.iter().enumerate() {
-            let by = match (index, later) {
-                (0, _) => first,
-                (_, Some(later)) => later,
-                (_, None) => return Err(GpuError::OtherRenderer),
-            };
-            let (pass, work) = by_surface(by, dispatch, Area::Visible);
-            self.push_search(pass, dispatch, &brick.trace_group, work);
+            let brick_pass = if index == 0 { BrickPass::First } else { BrickPass::Later };
+            let pass = self.round.passes.of_samples(("extend", work.schedule(), brick_pass))?;
+            self.push_pass(pass, dispatch, Some(&brick.trace_group), work);
+            self.mark_search();
         }
         Ok(())
     }
 
-    /// Adds a dispatch for every brick, which shades the hits in the brick.
-    fn shade(&mut self, by: &'a BySchedule, dispatch: DispatchParameters) {
-        for brick in &self.round.scene.bricks {
-            // Pixels outside the visible region show the background.
-            let (pass, work) = by_surface(by, dispatch, Area::Whole);
-            self.push(pass, dispatch, Some(&brick.surface_group), work);
+    /// The last dispatch traces rays.
+    fn mark_search(&mut self) {
+        if let Some(last) = self.steps.last_mut() {
+            last.is_search = true;
         }
+    }
+
+    /// Adds a dispatch for every brick, which shades the hits in the brick.
+    fn shade(
+        &mut self,
+        entry_point: &'static str,
+        dispatch: DispatchParameters,
+    ) -> Result<(), GpuError> {
+        // Pixels outside the visible region show the background.
+        let work = work_of(dispatch, Area::Whole);
+        let mut bricks = self.round.scene.bricks.iter();
+        bricks.try_for_each(|b| self.push(entry_point, dispatch, Some(&b.surface_group), work))
     }
 
     /// The parameters of the passes over a surface. From the second surface on, the list of paths is counted first.
@@ -297,44 +309,42 @@ impl<'a> Steps<'a> {
 
     fn advance(&mut self, dispatch: DispatchParameters) {
         let dispatch = DispatchParameters { count: 0, first: [0, 0], ..dispatch };
-        self.push(&self.round.passes.advance, dispatch, None, Work::Advance);
+        self.push_pass(&self.round.passes.advance, dispatch, None, Work::Advance);
     }
 
     /// Adds the search for occluders for all paths in the list of light.
-    fn search_occluders(&mut self, pass: &'a Pass, dispatch: DispatchParameters, area: Area) {
+    fn search_occluders(
+        &mut self,
+        entry_point: &'static str,
+        dispatch: DispatchParameters,
+        area: Area,
+    ) -> Result<(), GpuError> {
         for brick in &self.round.occluders.bricks {
-            self.push_search(pass, dispatch, &brick.trace_group, Work::List(area));
+            self.push(entry_point, dispatch, Some(&brick.trace_group), Work::List(area))?;
+            self.mark_search();
         }
+        Ok(())
     }
 
-    fn path(
-        &mut self,
-        dispatch: DispatchParameters,
-        scatter: &'a BySchedule,
-        occlude: &'a Pass,
-    ) -> Result<(), GpuError> {
+    fn path(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let lighting = self.round.lighting;
         for surface in 0..=lighting.max_surfaces {
             let dispatch = self.surface(dispatch, surface, surface == lighting.max_surfaces);
             self.extend(dispatch)?;
             self.mark(Moment::Extended);
-            self.shade(scatter, dispatch);
+            self.shade("scatter", dispatch)?;
             self.mark(Moment::Shaded);
             if lighting.parameters.source_count > 0 && surface < lighting.max_surfaces {
                 let dispatch = DispatchParameters { list: LIST_OF_LIGHT, ..dispatch };
                 self.advance(dispatch);
-                self.search_occluders(occlude, dispatch, Area::Visible);
+                self.search_occluders("occlude", dispatch, Area::Visible)?;
                 self.mark(Moment::Occluded);
             }
         }
         Ok(())
     }
 
-    fn studio(
-        &mut self,
-        dispatch: DispatchParameters,
-        passes: &'a StudioPasses,
-    ) -> Result<(), GpuError> {
+    fn studio(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let lighting = self.round.lighting;
         let first = &self.round.scene.bricks[0].surface_group;
         let lights = lighting.casts_shadow.len() as u32;
@@ -344,7 +354,7 @@ impl<'a> Steps<'a> {
             let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.max_surfaces);
             self.extend(dispatch)?;
             self.mark(Moment::Extended);
-            self.shade(&passes.surface, dispatch);
+            self.shade("surface", dispatch)?;
             self.mark(Moment::Shaded);
             if lights == 0 && directions == 0 {
                 continue;
@@ -357,17 +367,14 @@ impl<'a> Steps<'a> {
                     |light: &u32| lighting.has_shadows && lighting.casts_shadow[*light as usize];
                 let casting: Vec<u32> = (light..light + count).filter(casts).collect();
                 for &light in &casting {
-                    self.search_occluders(
-                        &passes.shadow,
-                        DispatchParameters { light, ..dispatch },
-                        Area::Occluders,
-                    );
+                    let dispatch = DispatchParameters { light, ..dispatch };
+                    self.search_occluders("shadow", dispatch, Area::Occluders)?;
                 }
                 if !casting.is_empty() {
                     self.mark(Moment::Shadowed);
                 }
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push(&passes.illuminate, dispatch, Some(first), Work::List(Area::Whole));
+                self.push("illuminate", dispatch, Some(first), Work::List(Area::Whole))?;
                 self.mark(Moment::Illuminated);
             }
             for light in (0..directions).step_by(BITS) {
@@ -375,12 +382,12 @@ impl<'a> Steps<'a> {
                 for first in (light..light + count).step_by(at_once as usize) {
                     let count = (light + count - first).min(at_once);
                     let dispatch = DispatchParameters { light: first, count, ..dispatch };
-                    self.search_occluders(&passes.ambient, dispatch, Area::Occluders);
+                    self.search_occluders("ambient", dispatch, Area::Occluders)?;
                     self.set_rays(count);
                 }
                 self.mark(Moment::Searched);
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push(&passes.gather, dispatch, Some(first), Work::List(Area::Whole));
+                self.push("gather", dispatch, Some(first), Work::List(Area::Whole))?;
                 self.mark(Moment::Gathered);
             }
         }
@@ -388,11 +395,7 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// The pass and its work for a surface: camera rays are processed by pixels, and all others by lists.
-fn by_surface(by: &BySchedule, dispatch: DispatchParameters, area: Area) -> (&Pass, Work) {
-    if dispatch.surface == 0 {
-        (&by.pixels, Work::Pixels(area))
-    } else {
-        (&by.queue, Work::List(Area::Visible))
-    }
+/// The work for a surface: camera rays are processed by pixels, and all others by lists.
+fn work_of(dispatch: DispatchParameters, area: Area) -> Work {
+    if dispatch.surface == 0 { Work::Pixels(area) } else { Work::List(Area::Visible) }
 }
