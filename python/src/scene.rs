@@ -5,7 +5,7 @@ use crate::look::SceneText;
 use pinhole::color_by::{ColorBy, ColorKey, JoinedKeys};
 use pinhole::load::Loaded;
 use pinhole::scene::material::SurfaceProperties;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, SceneFile};
+use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::{Appearance, Colors, LinearRgb, Scene};
 
 /// A scene, and what is known about its spheres.
@@ -83,11 +83,7 @@ fn dressed(mut loaded: Loaded, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Out
 fn applied(loaded: Loaded, file: &SceneFile, data: &Data, text: &SceneText) -> Outcome<Made> {
     let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
     let applied = data.apply(loaded).map_err(Fault::input)?;
-    let scene = match applied.spheres {
-        DataSpheres::Spheres(spheres) => file.scene(&spheres),
-        DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
-        DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
-    };
+    let scene = file.scene_of(applied.spheres, color);
     let scene = scene.map_err(|error| text.fault(&error))?.with_added(applied.added.len());
     Ok(Made { scene, key: applied.color_key, notes: applied.notes })
 }

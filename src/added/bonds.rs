@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec3, I64Vec3};
 
-use super::spheres::{AddError, Added, Base, Look, string_between, string_count};
+use super::spheres::{AddError, AddedSpheres, Base, Look, string_between, string_count};
 use crate::load::{Covalent, covalent};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{listed, shortened};
@@ -74,7 +74,7 @@ fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
 }
 
 impl Bonds {
-    pub(super) fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
+    pub(super) fn add(&self, base: &Base<'_>, added: &mut AddedSpheres) -> Result<(), AddError> {
         let count = base.spheres.len();
         let points: Vec<DVec3> = (0..count).map(|index| center(base.spheres, index).0).collect();
         let bonds = match self.length {

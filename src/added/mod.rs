@@ -10,7 +10,7 @@ mod spheres;
 
 pub use bonds::{BondLength, Bonds};
 pub(crate) use spheres::Base;
-pub use spheres::{AddError, Added};
+pub use spheres::{AddError, AddedSpheres};
 
 use glam::DVec3;
 
@@ -66,8 +66,8 @@ impl Additions {
         }
     }
 
-    pub(crate) fn add(&self, base: &Base<'_>) -> Result<Added, AddError> {
-        let mut added = Added::default();
+    pub(crate) fn add(&self, base: &Base<'_>) -> Result<AddedSpheres, AddError> {
+        let mut added = AddedSpheres::default();
         if let Some(bonds) = &self.bonds {
             bonds.add(base, &mut added)?;
         }
@@ -105,7 +105,7 @@ impl CellEdges {
         Self { width: Some(width) }
     }
 
-    fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
+    fn add(&self, base: &Base<'_>, added: &mut AddedSpheres) -> Result<(), AddError> {
         let edges = base.cell.ok_or_else(|| {
             AddError(
                 "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"

@@ -13,7 +13,7 @@ use crate::scene::{Appearance, Colors};
 
 /// The spheres that were added, after those of the data.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Added {
+pub struct AddedSpheres {
     spheres: Vec<[f64; 4]>,
     /// One after the other, how many spheres have one look, and which.
     runs: Vec<(usize, Look)>,
@@ -51,7 +51,7 @@ impl<'a> Base<'a> {
     }
 }
 
-impl Added {
+impl AddedSpheres {
     /// The number of spheres that were added.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -22,7 +22,7 @@ impl ColorBy {
     /// numbers for which nothing is chosen that needs a scale.
     pub(super) fn are_categories(
         &self,
-        found: &column::Found<'_>,
+        found: &column::NamedColumn<'_>,
         values: &[f64],
         left_out: &[bool],
     ) -> bool {

@@ -12,7 +12,7 @@ pub const BUILT_IN: [&str; 5] = ["index", "radius", "x", "y", "z"];
 /// A column that was found.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Found<'a> {
+pub struct NamedColumn<'a> {
     /// Its name, spelled as in the data.
     pub name: String,
     /// One value for each sphere.
@@ -66,15 +66,18 @@ pub fn column<'a>(
     name: &str,
     spheres: &SphereArray,
     columns: &'a [Column],
-) -> Result<Found<'a>, ColumnError> {
+) -> Result<NamedColumn<'a>, ColumnError> {
     let name = name.trim();
     if let Some(column) = named(name, columns) {
         check_count(column, spheres)?;
-        return Ok(Found { name: column.name.clone(), values: Cow::Borrowed(&column.values) });
+        return Ok(NamedColumn {
+            name: column.name.clone(),
+            values: Cow::Borrowed(&column.values),
+        });
     }
     if let Some(built_in) = BUILT_IN.into_iter().find(|known| known.eq_ignore_ascii_case(name)) {
         let values = built_in_values(built_in, spheres);
-        return Ok(Found { name: built_in.to_owned(), values: owned(values) });
+        return Ok(NamedColumn { name: built_in.to_owned(), values: owned(values) });
     }
     let inside = name.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
     if let Some((vector, components)) = inside.and_then(|name| components(name.trim(), columns)) {
@@ -83,7 +86,7 @@ pub fn column<'a>(
         }
         let [(_, x), (_, y), (_, z)] = components;
         let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
-        return Ok(Found { name: format!("|{vector}|"), values: owned(lengths.collect()) });
+        return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
     }
     Err(unknown(name, columns))
 }
@@ -97,7 +100,7 @@ pub fn numbers<'a>(
     spheres: &SphereArray,
     columns: &'a [Column],
 ) -> Result<(String, Cow<'a, [f64]>), ColumnError> {
-    let Found { name, values } = column(name, spheres, columns)?;
+    let NamedColumn { name, values } = column(name, spheres, columns)?;
     match values {
         Cow::Borrowed(ColumnValues::Numbers(values)) => Ok((name, Cow::Borrowed(values))),
         Cow::Owned(ColumnValues::Numbers(values)) => Ok((name, Cow::Owned(values))),

@@ -6,7 +6,7 @@ use super::column::numbers;
 use super::error::ColorByError;
 use super::number::short;
 use super::{ColorBy, ColorKey, Coloring, is_kept};
-use crate::added::{Added, Additions, Base};
+use crate::added::{AddedSpheres, Additions, Base};
 use crate::image::color::LinearRgb;
 use crate::load::{Column, Loaded};
 use crate::scene::material::{Material, SurfaceProperties};
@@ -38,7 +38,7 @@ pub struct RadiusBy {
 
 /// What columns gave to spheres; see [`Mapping::apply`].
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mapped {
+pub struct MappedColumns {
     coloring: Option<Coloring>,
     opacities: Option<Vec<u8>>,
     strengths: Option<Strengths>,
@@ -73,8 +73,8 @@ impl Mapping {
         spheres: &mut SphereArray,
         columns: &[Column],
         left_out: &[bool],
-    ) -> Result<Mapped, ColorByError> {
-        let mut mapped = Mapped::default();
+    ) -> Result<MappedColumns, ColorByError> {
+        let mut mapped = MappedColumns::default();
         if let Some(by) = &self.color {
             let mut coloring = by.apply(spheres, columns, left_out)?;
             mapped.notes.append(&mut coloring.notes);
@@ -101,7 +101,11 @@ impl Mapping {
     ///
     /// # Errors
     /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
-    pub fn scene(&self, loaded: Loaded, color: LinearRgb) -> Result<(Scene, Mapped), ColorByError> {
+    pub fn scene(
+        &self,
+        loaded: Loaded,
+        color: LinearRgb,
+    ) -> Result<(Scene, MappedColumns), ColorByError> {
         let (scene, mapped, _) = self.scene_with(loaded, color, &Additions::default())?;
         Ok((scene, mapped))
     }
@@ -116,7 +120,7 @@ impl Mapping {
         mut loaded: Loaded,
         color: LinearRgb,
         additions: &Additions,
-    ) -> Result<(Scene, Mapped, Added), ColorByError> {
+    ) -> Result<(Scene, MappedColumns, AddedSpheres), ColorByError> {
         let mut mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
         if self.radius.is_none() {
             additions.shrink(&mut loaded);
@@ -171,7 +175,7 @@ fn set_radii(
     Ok(())
 }
 
-impl Mapped {
+impl MappedColumns {
     /// What the colours mean, if columns gave colours.
     #[must_use]
     pub fn key(&self) -> Option<&ColorKey> {

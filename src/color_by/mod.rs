@@ -29,7 +29,7 @@ pub use column::ColumnError;
 pub use error::ColorByError;
 pub use joined::JoinedKeys;
 pub use key::{Category, ColorKey, ColorScale, KeyKind};
-pub use mapping::{EmissionBy, Mapped, Mapping, RadiusBy};
+pub use mapping::{EmissionBy, MappedColumns, Mapping, RadiusBy};
 pub use maps::{MapError, MapName};
 pub use scale::{Limit, Limits, Scale, ScaleError};
 

@@ -143,46 +143,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn known_elements() {
-        for (species, radius, color) in [
-            ("H", 1.20, [255, 255, 255]),
-            ("O", 1.50, [255, 13, 13]),
-            ("C", 1.77, [144, 144, 144]),
-            ("Fe", 2.44, [224, 102, 51]),
-            ("Es", 2.70, [179, 31, 212]),
-        ] {
-            let found = appearance(species);
-            assert!((found.radius - radius).abs() < 1e-12, "{species}");
-            assert_eq!(found.color.to_srgb8(), color, "{species}");
-            assert!(found.is_element, "{species}");
-        }
-    }
-
-    #[test]
-    fn ways_to_write_a_species() {
-        for (species, element) in [
-            ("fe", "Fe"),
-            ("CL", "Cl"),
-            ("O1", "O"),
-            ("Na+", "Na"),
-            ("Fe3+", "Fe"),
-            ("8", "O"),
-            ("D", "H"),
-        ] {
-            assert_eq!(appearance(species), appearance(element), "{species}");
-        }
-    }
-
-    #[test]
-    fn species_that_are_not_elements_are_pink() {
-        for species in ["Xx", "0", "119", "", "bead"] {
-            let found = appearance(species);
-            assert_eq!(found.color.to_srgb8(), FALLBACK_COLOR, "{species}");
-            assert!(!found.is_element, "{species}");
-        }
-    }
-
-    #[test]
     fn the_table_has_plausible_radii_and_the_known_gaps() {
         let gaps: Vec<_> =
             (1..).zip(VAN_DER_WAALS).filter(|(_, r)| *r == 0.0).map(|(z, _)| z).collect();

@@ -5,9 +5,6 @@
 
 pub(super) mod data;
 pub(super) mod dump;
-#[cfg(test)]
-#[allow(clippy::float_cmp, reason = "the answers are exact")]
-mod tests;
 
 use super::error::LoadError;
 use super::loaded::ColumnValues;

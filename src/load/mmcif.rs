@@ -7,8 +7,6 @@
 //!
 //! Positions that are fractions of the cell give the atoms that the file lists; its symmetry is not applied.
 
-#[cfg(test)]
-mod tests;
 mod tokens;
 
 use std::collections::HashSet;

@@ -42,8 +42,6 @@ mod rows;
 mod source;
 mod spacing;
 mod table;
-#[cfg(test)]
-mod tests;
 mod topology;
 #[cfg(feature = "vtk")]
 mod vtk;

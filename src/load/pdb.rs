@@ -11,15 +11,13 @@
 //! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
 
 mod record;
-#[cfg(test)]
-mod tests;
 
 use std::io;
 
 use super::Loaded;
 use super::atoms::{Atom, Atoms};
 use super::error::{LoadError, Place};
-use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
+use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
 use super::source::LineReader;
 use crate::text::without_byte_order_mark;
 use record::{Kind, Lines, Record, cell_of, hybrid36};
@@ -32,15 +30,7 @@ use record::{Kind, Lines, Record, cell_of, hybrid36};
 /// # Errors
 /// If the text is not a valid PDB file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
-    let bytes = without_byte_order_mark(bytes);
-    let mut reader = Reader { frame, ..Reader::default() };
-    for (line, text) in Lines::new(bytes) {
-        reader.take(line, text)?;
-    }
-    if reader.first_atom.is_none() {
-        return Err(no_atoms());
-    }
-    reader.finish(frame)
+    read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
 pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };

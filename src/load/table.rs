@@ -1,9 +1,6 @@
 //! Makes spheres of a table of points: recognises by their names which columns are positions, radii, colours, opacities
 //! and chemical elements. All formats with named columns share these rules, so that a name means the same in each.
 
-#[cfg(test)]
-mod tests;
-
 use glam::DVec3;
 
 use super::elements::{UnknownSpecies, appearance};

@@ -5,8 +5,6 @@
 //! and arrays of cells, are not used, and a note says so.
 
 mod document;
-#[cfg(test)]
-mod tests;
 
 use std::borrow::Cow;
 use std::collections::HashSet;

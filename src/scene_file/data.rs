@@ -9,7 +9,7 @@ use serde::{Deserialize, de};
 use toml::Spanned;
 
 use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
-use crate::added::{AddError, Added, Additions, Base, BondLength, Bonds, CellEdges};
+use crate::added::{AddError, AddedSpheres, Additions, Base, BondLength, Bonds, CellEdges};
 use crate::color_by::Mapping;
 use crate::image::color::LinearRgb;
 use crate::load::{Labels, Loaded};
@@ -248,9 +248,9 @@ pub(super) fn add_spheres(
     spheres: &mut Vec<Sphere>,
     loaded: &Loaded,
     kept: &[usize],
-) -> Result<Added, AddError> {
+) -> Result<AddedSpheres, AddError> {
     if additions.is_empty() {
-        return Ok(Added::default());
+        return Ok(AddedSpheres::default());
     }
     let place = |sphere: &Sphere| {
         let [x, y, z] = sphere.center;

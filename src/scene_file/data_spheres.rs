@@ -2,23 +2,21 @@
 
 use super::data::{Data, Element, add_spheres};
 use super::span::DEFAULT_COLOR;
-use crate::added::{AddError, Added};
-use crate::color_by::{ColorByError, ColorKey, Mapped, Mapping};
+use crate::added::{AddError, AddedSpheres};
+use crate::color_by::{ColorByError, ColorKey, MappedColumns, Mapping};
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::select::{Kept, SelectError};
+use crate::select::{KeptSpheres, SelectError};
 
 /// The spheres of a scene's data.
 #[derive(Clone, Debug)]
 pub enum DataSpheres {
     /// Spheres with their own colours and surface properties.
     Spheres(Vec<Sphere>),
-    /// Centres and radii alone; the scene gives all of them the same colour and surface properties.
-    Array(SphereArray),
-    /// Centres and radii, and what columns decide; the scene gives the rest.
-    Mapped(SphereArray, Box<Mapped>),
+    /// Centres and radii, and what columns decide; the scene gives the rest, to all the same.
+    Array(SphereArray, Box<MappedColumns>),
 }
 
 /// The spheres of a scene's data, with all that the keys of the scene file say about them.
@@ -32,9 +30,9 @@ pub struct AppliedData {
     /// Notes for the user, such as names that do not occur in the data.
     pub notes: Vec<String>,
     /// What the selection kept, if there is one.
-    pub kept: Option<Kept>,
+    pub kept: Option<KeptSpheres>,
     /// What was added to the spheres of the data.
-    pub added: Added,
+    pub added: AddedSpheres,
 }
 
 /// An error of applying the keys of a scene file to its data.
@@ -82,11 +80,14 @@ impl Data {
             loaded.spheres.scale_radii(self.radius_scale);
             notes.extend_from_slice(mapped.notes());
             let color_key = mapped.key().cloned();
-            let spheres = match self.mapping.is_empty() {
-                true => DataSpheres::Array(loaded.spheres),
-                false => DataSpheres::Mapped(loaded.spheres, Box::new(mapped)),
-            };
-            return Ok(AppliedData { spheres, color_key, notes, kept, added: Added::default() });
+            let spheres = DataSpheres::Array(loaded.spheres, Box::new(mapped));
+            return Ok(AppliedData {
+                spheres,
+                color_key,
+                notes,
+                kept,
+                added: AddedSpheres::default(),
+            });
         }
         let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &is_left_out)?;

@@ -26,7 +26,6 @@ use toml::Spanned;
 use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
-use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::light::environment::Environment;
@@ -34,7 +33,6 @@ use crate::light::{Sky, SkyLight};
 use crate::render::{Integrator, RenderSettings, SettingsError, Shading};
 use crate::scene::material::Material;
 use crate::scene::sphere::Sphere;
-use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Colors, Scene, SceneError};
 use crate::style::{Style, fit};
 use annotations::read_annotations;
@@ -137,29 +135,17 @@ impl SceneFile {
         Scene::new(&spheres).map_err(|error| self.spanned(&error))
     }
 
-    /// Makes the scene like [`SceneFile::scene`], from data without colours. All spheres of the data get the `color`,
-    /// and the surface properties that the file gives. If the file has no spheres of its own, the data is not copied.
+    /// Makes the scene like [`SceneFile::scene`], from what [`Data::apply`] returns. Spheres without a colour of their
+    /// own get the `color`, and the surface properties that the file gives. If the file has no spheres of its own, an
+    /// array is not copied.
     ///
     /// # Errors
     /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
-    pub fn scene_with_array(
-        &self,
-        data: SphereArray,
-        color: LinearRgb,
-    ) -> Result<Scene, SceneFileError> {
-        self.scene_with_mapped(data, &Mapped::default(), color)
-    }
-
-    /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
-    ///
-    /// # Errors
-    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
-    pub fn scene_with_mapped(
-        &self,
-        data: SphereArray,
-        mapped: &Mapped,
-        color: LinearRgb,
-    ) -> Result<Scene, SceneFileError> {
+    pub fn scene_of(&self, data: DataSpheres, color: LinearRgb) -> Result<Scene, SceneFileError> {
+        let (data, mapped) = match data {
+            DataSpheres::Spheres(spheres) => return self.scene(&spheres),
+            DataSpheres::Array(data, mapped) => (data, mapped),
+        };
         let surface = self.data().map(|data| data.surface).unwrap_or_default();
         if self.spheres.is_empty() {
             let appearance = mapped.appearance(data.len(), Colors::One(color), surface);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::parse::{Comparison, Expression, Operand, Operator, SelectError, Value, error_at};
 use crate::color_by::ColumnError;
-use crate::color_by::column::{Found, column};
+use crate::color_by::column::{NamedColumn, column};
 use crate::load::{Column, ColumnValues, Labels};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{listed, one_line, shortened};
@@ -23,7 +23,7 @@ struct Data<'a> {
 enum Side<'a> {
     Number(f64),
     Text,
-    Column(Found<'a>),
+    Column(NamedColumn<'a>),
     /// A word that is neither a number nor the name of a column.
     Unknown(ColumnError),
 }
@@ -115,7 +115,7 @@ impl<'a> Data<'a> {
     ) -> Result<Numbers<'a>, SelectError> {
         let problem = match side {
             Side::Number(number) => return Ok(Numbers::One(number)),
-            Side::Column(Found { values, .. }) => match values {
+            Side::Column(NamedColumn { values, .. }) => match values {
                 Cow::Borrowed(ColumnValues::Numbers(values)) => {
                     return Ok(Numbers::Column(Cow::Borrowed(values)));
                 }
@@ -216,7 +216,7 @@ impl Value {
 
 /// The name and the texts of a column of text.
 fn texts<'a>(side: &'a Side<'_>) -> Option<(&'a str, &'a Labels)> {
-    let Side::Column(Found { name, values, .. }) = side else { return None };
+    let Side::Column(NamedColumn { name, values, .. }) = side else { return None };
     match values.as_ref() {
         ColumnValues::Labels(labels) => Some((name, labels)),
         ColumnValues::Numbers(_) => None,

@@ -42,7 +42,7 @@ pub struct Selection {
 /// What a selection kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Kept {
+pub struct KeptSpheres {
     /// The number of spheres that are kept.
     pub kept: usize,
     /// The number of spheres before.
@@ -90,7 +90,7 @@ impl Selection {
     /// # Errors
     /// Returns the errors of [`Selection::matches`], and an error if no sphere of several matches. Then nothing is
     /// changed.
-    pub fn apply(&self, loaded: &mut Loaded) -> Result<Kept, SelectError> {
+    pub fn apply(&self, loaded: &mut Loaded) -> Result<KeptSpheres, SelectError> {
         let (is_kept, notes) = self.matches(&loaded.spheres, &loaded.columns)?;
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
         if kept == 0 && of > 0 {
@@ -104,6 +104,6 @@ impl Selection {
             }
             loaded.keep(&is_kept);
         }
-        Ok(Kept { kept, of, notes })
+        Ok(KeptSpheres { kept, of, notes })
     }
 }

@@ -1,10 +1,12 @@
-//! Files of spheres and scene files that are refused, and damaged files of every format.
+//! Files of spheres and what they hold, those and scene files that are refused, and damaged files of every format.
 
 use std::path::Path;
 
 use fastrand::Rng;
-use pinhole::load::{self, FORMATS, Options};
+use pinhole::load::{self, ColumnValues, FORMATS, Labels, Loaded, Options};
+use pinhole::scene::sphere_array::SphereArray;
 use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
+use pinhole::{LinearRgb, Sphere};
 use tempfile::TempDir;
 
 use crate::cases::{Case, answered};
@@ -14,11 +16,25 @@ use crate::support::effort::tries;
 
 #[test]
 fn refused_files() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/refused");
+    compare("refused", answer);
+}
+
+#[test]
+fn accepted_files() {
+    compare("accepted", contents);
+}
+
+/// Compares a folder of cases with what is found, or writes it.
+fn compare(folder: &str, answer: fn(&Case<'_>) -> String) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(folder);
     for entry in std::fs::read_dir(folder).unwrap() {
         let file = entry.unwrap().path();
         let text = std::fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
         let found = answered(&text, answer);
+        if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some() {
+            std::fs::write(&file, &found).unwrap();
+            continue;
+        }
         for (found, expected) in found.lines().zip(text.lines()) {
             assert_eq!(found, expected, "{}", file.display());
         }
@@ -45,13 +61,7 @@ fn answer(Case { files, arguments }: &Case<'_>) -> String {
         let error = scene_file_error(str::from_utf8(bytes).unwrap()).unwrap();
         return format!("exit code 1\nerror: {name}: {error}\n");
     }
-    let words = arguments.split(' ');
-    let flag = |name| words.clone().skip_while(|word| *word != name).nth(1);
-    let mut options = Options::default();
-    options.frame = flag("--frame").map(|frame| frame.parse().unwrap());
-    options.radius = flag("--radius").map(|radius| radius.parse().unwrap());
-    options.columns = flag("--columns")
-        .map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
+    let options = options(arguments);
     let error = load::from_bytes(bytes, name, &options).unwrap_err();
     // Of a file that is opened, frame by frame if it has any, the same is said.
     let folder = TempDir::new().unwrap();
@@ -61,6 +71,74 @@ fn answer(Case { files, arguments }: &Case<'_>) -> String {
     // A radius that contradicts the file is wrong usage.
     let code = if options.radius.is_some() { 2 } else { 1 };
     format!("exit code {code}\nerror: {name}: {error}\n")
+}
+
+fn options(arguments: &str) -> Options {
+    let words = arguments.split(' ');
+    let flag = |name| words.clone().skip_while(|word| *word != name).nth(1);
+    let mut options = Options::default();
+    options.frame = flag("--frame").map(|frame| frame.parse().unwrap());
+    options.radius = flag("--radius").map(|radius| radius.parse().unwrap());
+    options.columns = flag("--columns")
+        .map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
+    options
+}
+
+/// What a file holds. Several files of one case are different ways to write the same.
+fn contents(Case { files, arguments }: &Case<'_>) -> String {
+    let read = |(name, bytes): &(&str, Vec<u8>)| {
+        load::from_bytes(bytes, name, &options(arguments)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    };
+    let loaded = read(&files[0]);
+    for (number, file) in files.iter().enumerate() {
+        // As text, because a missing number is not equal to itself.
+        assert_eq!(written(&read(file)), written(&loaded), "file {number} of {arguments}");
+    }
+    written(&loaded)
+}
+
+fn written(loaded: &Loaded) -> String {
+    let width = if matches!(loaded.spheres, SphereArray::F32(_)) { 32 } else { 64 };
+    let columns = loaded.columns.iter().map(|column| match &column.values {
+        ColumnValues::Labels(labels) => format!(" {} {:?}", column.name, labels.names),
+        _ => format!(" {}", column.name),
+    });
+    let columns: String = columns.collect();
+    let mut lines = vec![format!("{} spheres of f{width};{columns}", loaded.spheres.len())];
+    let white = LinearRgb::WHITE;
+    for (index, Sphere { center: [x, y, z], radius, .. }) in
+        loaded.spheres.with_color(white).enumerate()
+    {
+        let mut line = format!("{x} {y} {z} radius {radius}");
+        if let Some(colors) = &loaded.colors {
+            let srgb = colors[index].to_srgb8();
+            line += &match LinearRgb::from_srgb8(srgb) == colors[index] {
+                true => format!(" color {srgb:?}"),
+                false => format!(" color {:?}", colors[index]),
+            };
+        }
+        if let Some(opacities) = &loaded.opacities {
+            line += &format!(" opacity {}", opacities[index]);
+        }
+        for column in &loaded.columns {
+            line += &match &column.values {
+                ColumnValues::Labels(Labels { names, indices }) => {
+                    format!(" {:?}", names[indices[index] as usize])
+                }
+                ColumnValues::Numbers(numbers) => format!(" {}", numbers[index]),
+                other => format!(" {other:?}"),
+            };
+        }
+        lines.push(line);
+    }
+    if let Some(cell) = loaded.cell {
+        // Cosines may differ in the last digit from one system to another.
+        let cell = cell.map(|edge| edge.map(|x| (x * 1e9).round() / 1e9 + 0.0));
+        lines.push(format!("cell {cell:?} from {:?}", loaded.cell_origin));
+    }
+    lines.extend(loaded.frames.map(|frames| format!("frames: {frames}")));
+    lines.extend(loaded.notes.iter().map(|note| format!("note: {note}")));
+    lines.join("\n") + "\n"
 }
 
 #[test]

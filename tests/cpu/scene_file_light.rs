@@ -217,7 +217,8 @@ fn arrays_get_the_common_surface_properties() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
         let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
-        let scene = file.scene_with_array(spheres, LinearRgb::WHITE).unwrap();
+        let scene =
+            file.scene_of(DataSpheres::Array(spheres, Box::default()), LinearRgb::WHITE).unwrap();
         let last = scene.len() as u32 - 1;
         assert_eq!(scene.surface(last).opacity, 0.5);
         assert_eq!(scene.surface(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });

@@ -111,7 +111,7 @@ fn every_declared_column_and_the_cell_are_kept() {
     assert_eq!(loaded.labels("fixed").unwrap().indices, [0, 1]);
 }
 
-/// Names mean what they mean in all tables, of which `load/table/tests.rs` has more, and what is not used is said.
+/// Names mean what they mean in all tables, of which `tests/files/accepted/csv.txt` has more, and what is not used is said.
 #[test]
 fn columns_are_used_or_noted() {
     let one = |columns: &str, values: &str| {

@@ -18,19 +18,19 @@ use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::load::{self, Column, Loaded};
 use pinhole::scene::Scene;
-use pinhole::scene_file::{AppliedData, Data, DataSpheres, IntegratorKind, SceneFile};
-use pinhole::select::{Kept, Selection};
+use pinhole::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
+use pinhole::select::{KeptSpheres, Selection};
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {
     pub(crate) file: Arc<SceneFile>,
     pub(crate) scene: Scene,
-    pub(crate) found: Found,
+    pub(crate) found: Facts,
 }
 
 /// What was found beside the spheres.
 #[derive(Default)]
-pub(crate) struct Found {
+pub(crate) struct Facts {
     pub(crate) notes: Vec<String>,
     pub(crate) files: Vec<PathBuf>,
     pub(crate) sky_image: Option<PathBuf>,
@@ -41,27 +41,11 @@ pub(crate) struct Found {
     pub(crate) kinds: Option<ColorBy>,
     /// Where the size of the picture comes from.
     pub(crate) size_from: String,
-    pub(crate) kept: Option<Kept>,
+    pub(crate) kept: Option<KeptSpheres>,
     pub(crate) bonds: Option<usize>,
     /// The columns of the data that is drawn, if they were asked for.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
     pub(crate) columns: Vec<Column>,
-}
-
-/// The data of a scene file.
-struct FoundData {
-    spheres: DataSpheres,
-    /// What colors mean, if a column gives them.
-    color_key: Option<ColorKey>,
-    /// The color of spheres without one.
-    color: LinearRgb,
-    notes: Vec<String>,
-    has_atoms: bool,
-    kept: Option<Kept>,
-    bonds: Option<usize>,
-    /// The number of spheres that were added at the end.
-    added: usize,
-    columns: Vec<Column>,
 }
 
 /// Where the data of a scene file is, and the options for reading it.
@@ -126,7 +110,7 @@ impl Source {
         }
         let file = self.scene_of_data()?;
         let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
-        let found = Found {
+        let found = Facts {
             notes,
             files,
             has_atoms,
@@ -135,7 +119,7 @@ impl Source {
             kept,
             bonds,
             columns,
-            ..Found::default()
+            ..Facts::default()
         };
         self.prepared(file, scene, found)
     }
@@ -157,7 +141,7 @@ impl Source {
         }
         let scene = bricks.stand_in(self.color_of_all())?;
         let (files, has_atoms) = (vec![self.path.clone()], bricks.has_atoms());
-        let found = Found { files, has_atoms, ..Found::default() };
+        let found = Facts { files, has_atoms, ..Facts::default() };
         self.prepared(self.scene_of_data()?, scene, found)
     }
 
@@ -190,19 +174,8 @@ impl Source {
 
     /// Reads a scene from the text of a scene file, and its data.
     pub(crate) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
-        let file_name = || self.path.display().to_string();
         let file = self.parsed(text)?;
-        let FoundData {
-            spheres: data,
-            color_key,
-            color,
-            notes,
-            has_atoms,
-            kept,
-            bonds,
-            added,
-            columns,
-        } = self.data_of(&file)?;
+        let (scene, found) = self.scene_of(&file)?;
         let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
@@ -212,25 +185,7 @@ impl Source {
             self.options.topology.clone().or_else(|| topology.map(|file| self.resolve(file)));
         let files = [Some(self.path.clone()), data_file, topology, sky_image.clone()];
         let files = files.into_iter().flatten().collect();
-        let scene = match data {
-            DataSpheres::Spheres(spheres) => file.scene(&spheres),
-            DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
-            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
-        };
-        let scene = scene.with_context(file_name)?.with_added(added);
-        let found = Found {
-            notes,
-            files,
-            sky_image,
-            has_atoms,
-            color_key,
-            kinds: None,
-            size_from: String::new(),
-            kept,
-            bonds,
-            columns,
-        };
-        self.prepared(file, scene, found)
+        self.prepared(file, scene, Facts { files, sky_image, ..found })
     }
 
     /// The scene file that stands for a data file: its style.
@@ -245,9 +200,9 @@ impl Source {
     }
 
     /// Applies the flags for the film and the background.
-    fn prepared(&self, file: SceneFile, scene: Scene, found: Found) -> Result<Contents, Failure> {
+    fn prepared(&self, file: SceneFile, scene: Scene, found: Facts) -> Result<Contents, Failure> {
         let (file, size_from) = self.with_film(file)?;
-        Ok(Contents { file: Arc::new(file), scene, found: Found { size_from, ..found } })
+        Ok(Contents { file: Arc::new(file), scene, found: Facts { size_from, ..found } })
     }
 
     /// Gives a scene file the film and the background of the flags. Also returns where the film's size comes from.
@@ -282,7 +237,9 @@ impl Source {
         }
     }
 
-    fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
+    /// Makes the scene of a scene file, and of its data if it has any.
+    fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Facts), Failure> {
+        let file_name = || self.path.display().to_string();
         let Some(DataPlace { data, path, format, options }) = self.data_place(file)? else {
             let flags = &self.options;
             let given = [
@@ -298,43 +255,22 @@ impl Source {
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok(FoundData {
-                    spheres: DataSpheres::Spheres(Vec::new()),
-                    color_key: None,
-                    color: default_color(),
-                    notes: Vec::new(),
-                    has_atoms: false,
-                    kept: None,
-                    bonds: None,
-                    added: 0,
-                    columns: Vec::new(),
-                }),
+                None => Ok((file.scene(&[]).with_context(file_name)?, Facts::default())),
             };
         };
         let in_scene = || self.in_scene();
         let loaded =
             self.read_data(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
         let has_atoms = loaded.labels("species").is_some();
-        let mapping = self.color.apply_to(&data.mapping)?;
-        let additions = self.structure.additions(&data.additions, false);
-        let has_bonds = additions.bonds.is_some();
-        let select = self.structure.select.clone().or(data.select);
-        let (color, radius) = (options.color, options.radius);
-        let columns = self.columns_of(&loaded, select.as_ref());
-        let data = Data { mapping, color, radius, select, additions, ..data };
+        let data = self.with_flags(data)?;
+        let columns = self.columns_of(&loaded, data.select.as_ref());
         let AppliedData { spheres, color_key, notes, kept, added, .. } =
             data.apply(loaded).with_context(in_scene)?;
-        Ok(FoundData {
-            spheres,
-            color_key,
-            color: color.unwrap_or_else(default_color),
-            notes,
-            has_atoms,
-            kept,
-            bonds: has_bonds.then_some(added.bonds()),
-            added: added.len(),
-            columns,
-        })
+        let scene = file.scene_of(spheres, data.color.unwrap_or_else(default_color));
+        let scene = scene.with_context(file_name)?.with_added(added.len());
+        let bonds = data.additions.bonds.is_some().then_some(added.bonds());
+        let found = Facts { notes, has_atoms, color_key, kept, bonds, columns, ..Facts::default() };
+        Ok((scene, found))
     }
 
     /// Finds the data of a scene file; `None` if it has none.

@@ -7,7 +7,7 @@ use anyhow::{Context, Error, Result};
 
 use super::{Input, read};
 use crate::failure::Failure;
-use crate::input::contents::{Contents, Found};
+use crate::input::contents::{Contents, Facts};
 use crate::input::source::Source;
 use crate::progress;
 use crate::read_file::Format;
@@ -115,7 +115,7 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, found } = contents;
-        let Found {
+        let Facts {
             notes,
             files,
             sky_image,

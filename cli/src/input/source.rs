@@ -165,8 +165,7 @@ impl Source {
         file: &SceneFile,
         kinds: Option<ColorBy>,
     ) -> Result<Option<Data>, Failure> {
-        let flags = self.options.clone();
-        let mut data = match self.format {
+        let data = match self.format {
             Format::Data(format) => Data {
                 format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
                 ..Data::of_file(self.path.to_string_lossy())
@@ -182,6 +181,14 @@ impl Source {
                 }
             }
         };
+        let mut data = self.with_flags(data)?;
+        data.mapping.color = data.mapping.color.or(kinds);
+        Ok(Some(data))
+    }
+
+    /// Returns the keys of data with the flags in their place.
+    pub(super) fn with_flags(&self, mut data: Data) -> Result<Data, Failure> {
+        let flags = self.options.clone();
         data.frame = flags.frame.or(data.frame);
         data.radius = flags.radius.or(data.radius);
         data.color = flags.color.or(data.color);
@@ -191,10 +198,9 @@ impl Source {
             data.columns = flags.columns;
         }
         data.mapping = self.color.apply_to(&data.mapping)?;
-        data.mapping.color = data.mapping.color.or(kinds);
         data.select = self.structure.select.clone().or(data.select);
         data.additions = self.structure.additions(&data.additions, false);
-        Ok(Some(data))
+        Ok(data)
     }
 
     pub(crate) fn data_format(&self) -> Option<&'static load::Format> {

@@ -214,33 +214,3 @@ pub(super) fn cell_of(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, Load
     let (lengths, angles) = ([a, b, c], [alpha, beta, gamma]);
     cell_edges(lengths, angles).map_err(|message| LoadError::line(record.line, message))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn decimal_then_capitals_then_small_letters() {
-        for (text, number) in [
-            ("0", 0),
-            ("-999", -999),
-            ("9999", 9999),
-            ("A000", 10_000),
-            ("A001", 10_001),
-            ("A00Z", 10_035),
-            ("A010", 10_036),
-            ("ZZZZ", 1_223_055),
-            ("a000", 1_223_056),
-            ("zzzz", 2_436_111),
-        ] {
-            assert_eq!(hybrid36(text.as_bytes()), Some(number), "{text}");
-        }
-    }
-
-    #[test]
-    fn neither() {
-        for text in ["", "A00", "A0a0", "a0A0", "A 00", "1A00", "A00-", "*", "****", "1.5", "--1"] {
-            assert_eq!(hybrid36(text.as_bytes()), None, "{text}");
-        }
-    }
-}
