@@ -121,21 +121,23 @@ fn read_png(bytes: &[u8]) -> Result<PictureFile, LoadError> {
 
 #[cfg(feature = "exr")]
 fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
-    use std::cell::RefCell;
+    use std::cell::{Cell, RefCell};
 
-    use exr::meta::MetaData;
     use exr::meta::attribute::{AttributeValue, SampleType};
     use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
+    use super::environment::Watched;
     use crate::write::exr::CERTIFICATE;
 
     let failed = |error: exr::error::Error| damaged("OpenEXR", &error);
     let written = "one part with R, G, B and A in f32 and ZIP compression";
     let kind = |found: &str| of_other_kind("OpenEXR", found, written);
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
-    let [header] = &*meta.headers else {
-        return Err(kind(&format!("{} parts", meta.headers.len())));
+    // The reader of environments, so that the decoder is compiled once.
+    let at_end = Cell::new(false);
+    let file = exr::block::read(Watched::new(bytes, &at_end), false).map_err(failed)?;
+    let [header] = file.headers() else {
+        return Err(kind(&format!("{} parts", file.headers().len())));
     };
     if header.deep || header.compression != Compression::ZIP16 {
         return Err(kind(&format!("the compression {}", header.compression)));
@@ -169,7 +171,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
         .all_attributes()
         // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
-        .from_buffered(Cursor::new(bytes))
+        .from_chunks(file)
         .map_err(failed)?;
     let certificate = match image.layer_data.attributes.other.get(&Text::new_or_panic(CERTIFICATE))
     {

@@ -1,5 +1,6 @@
 //! All passes that a lit picture needs.
 
+use std::collections::HashMap;
 use std::num::NonZeroU64;
 
 use wgpu::{
