@@ -2,7 +2,8 @@
 
 use wgpu::ComputePassDescriptor;
 
-use crate::camera::View;
+use crate::accel::BrickKind;
+use crate::camera::{Camera, View};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
@@ -16,6 +17,7 @@ use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_bricks::traced_pixels;
 use crate::gpu::profile::PassNames;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::formats::ColorTarget;
 use crate::image::{Image, LayerSet};
 use crate::render::PrimarySettings;
 use crate::verify::TracedPixel;
@@ -28,6 +30,39 @@ pub(crate) struct Output<'a> {
 }
 
 impl Headless {
+    /// The options of a renderer for pictures of a scene without data layers.
+    pub(crate) fn options_for(&self, scene: &SceneBuffers, camera: &dyn Camera) -> RendererOptions {
+        self.options_of(&scene.kinds(), scene.bricks.len() > 1, camera)
+    }
+
+    /// The options of a renderer for pictures without data layers, of bricks of these kinds, of which there may be
+    /// several.
+    pub(crate) fn options_of(
+        &self,
+        kinds: &[BrickKind],
+        several_bricks: bool,
+        camera: &dyn Camera,
+    ) -> RendererOptions {
+        let mut structures: Vec<_> = kinds.iter().map(|kind| kind.structure).collect();
+        let mut primitives: Vec<_> = kinds.iter().map(|kind| kind.primitive).collect();
+        // Equal options have equal lists.
+        structures.sort_by_key(|structure| structure.name());
+        structures.dedup();
+        primitives.sort_by_key(|primitive| primitive.name());
+        primitives.dedup();
+        RendererOptions {
+            color: ColorTarget::Linear32,
+            cameras: vec![camera.kind()],
+            structures,
+            primitives,
+            several_bricks,
+            device_type: Some(self.info.device_type),
+            edits: self.edits.replacements.clone(),
+            rewrite: self.edits.rewrite.clone(),
+            ..RendererOptions::default()
+        }
+    }
+
     /// Renders a picture with a ray through the centre of every pixel.
     pub(crate) async fn render_primary(
         &self,

@@ -7,53 +7,13 @@ use std::thread::JoinHandle;
 
 use wgpu::Device;
 
-use crate::accel::BrickKind;
-use crate::camera::Camera;
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::Headless;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::headless::waiting::Wait;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::profile::Profile;
-use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::shader::formats::ColorTarget;
-
-impl Headless {
-    /// The options of a renderer for pictures of a scene without data layers.
-    pub(crate) fn options_for(&self, scene: &SceneBuffers, camera: &dyn Camera) -> RendererOptions {
-        self.options_of(&scene.kinds(), scene.bricks.len() > 1, camera)
-    }
-
-    /// The options of a renderer for pictures without data layers, of bricks of these kinds, of which there may be
-    /// several.
-    pub(crate) fn options_of(
-        &self,
-        kinds: &[BrickKind],
-        several_bricks: bool,
-        camera: &dyn Camera,
-    ) -> RendererOptions {
-        let mut structures: Vec<_> = kinds.iter().map(|kind| kind.structure).collect();
-        let mut primitives: Vec<_> = kinds.iter().map(|kind| kind.primitive).collect();
-        // Equal options have equal lists.
-        structures.sort_by_key(|structure| structure.name());
-        structures.dedup();
-        primitives.sort_by_key(|primitive| primitive.name());
-        primitives.dedup();
-        RendererOptions {
-            color: ColorTarget::Linear32,
-            cameras: vec![camera.kind()],
-            structures,
-            primitives,
-            several_bricks,
-            device_type: Some(self.info.device_type),
-            edits: self.edits.replacements.clone(),
-            rewrite: self.edits.rewrite.clone(),
-            ..RendererOptions::default()
-        }
-    }
-}
 
 /// The renderers that have been built so far.
 #[derive(Debug, Default)]
