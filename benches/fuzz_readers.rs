@@ -63,7 +63,7 @@ fn run(format: &'static Format, count: u64, first: u64) -> u64 {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     let seeds = seeds::of(format, folder.path());
-    assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds.rs", format.name);
+    assert!(!seeds.is_empty(), "{}: give it a file in tests/files/good", format.name);
     let start = Instant::now();
     let mut failed = 0;
     let (mut slowest, mut most) = ((Duration::ZERO, 0), (0, 0));

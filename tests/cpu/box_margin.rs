@@ -9,8 +9,8 @@ use pinhole::glam::DVec3;
 use pinhole::internals::NO_HIT;
 use pinhole::verify::TracedRay;
 
-use crate::legal_device::{Habit, LegalDevice};
 use crate::support::effort::tries;
+use crate::support::legal_device::{Habit, LegalDevice};
 
 /// The error of the length of a direction, in units of 2⁻²³: three roundings of the square, halved; a root, a reciprocal
 /// and a product.

@@ -146,7 +146,7 @@ fn every_format_has_good_files() {
     let folder = TempDir::new().unwrap();
     for format in FORMATS {
         let seeds = seeds::of(format, folder.path());
-        assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds.rs", format.name);
+        assert!(!seeds.is_empty(), "{}: give it a file in tests/files/good", format.name);
         for (index, seed) in seeds.into_iter().enumerate() {
             let options = seed.options.with_format(format);
             let loaded = load::from_bytes(&seed.bytes, "", &options);

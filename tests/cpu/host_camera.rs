@@ -6,7 +6,7 @@ use pinhole::camera::{
 };
 use pinhole::glam;
 
-use crate::support::hosts::{Convention, from_rows, view};
+use crate::support::hosts::{Convention, changes, from_rows, view};
 
 fn in_cube(random: &mut fastrand::Rng) -> DVec3 {
     DVec3::from_array([(); 3].map(|()| 2.0 * random.f64() - 1.0))
@@ -27,25 +27,7 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
     let mut projection = convention.projection([low.x, high.x, low.y, high.y], range, into);
     let mut view = view(&random_pose(random), into);
     match random.u8(0..7) {
-        // A scene placed in the host's world, smaller and turned.
-        0 => {
-            view *= DMat4::from_scale_rotation_translation(
-                DVec3::splat(0.1),
-                glam::DQuat::from_rotation_y(1.0),
-                DVec3::new(1.0, -2.0, 0.5),
-            );
-        }
-        // Mirrored, as for a reflecting plane.
-        1 => view *= DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)),
-        // Stretched and sheared.
-        2 => {
-            view *= DMat4::from_cols(
-                DVec4::new(1.5, 0.2, 0.0, 0.0),
-                DVec4::new(0.0, 1.0, -0.3, 0.0),
-                DVec4::new(0.1, 0.0, 0.8, 0.0),
-                DVec4::W,
-            );
-        }
+        change @ 0..3 => view *= changes()[usize::from(change) + 1],
         // A screen that is turned by a quarter.
         3 => projection = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2) * projection,
         // An oblique near plane.

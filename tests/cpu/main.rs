@@ -34,8 +34,6 @@ mod files;
 mod framing;
 mod generate;
 mod host_camera;
-mod legal_cameras;
-mod legal_device;
 mod light;
 mod npy;
 mod pages;

@@ -5,8 +5,8 @@ use pinhole::internals::NO_HIT;
 use pinhole::verify::{Checker, Outcome, Recording, TracedPixel, TracedRay, Verdict};
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
 
-use crate::legal_device::{Habit, LegalDevice};
-use crate::scene::spheres_of;
+use crate::support::legal_device::{Habit, LegalDevice};
+use crate::support::spheres_of;
 use crate::verify::{certify, legal_recording};
 
 /// What is found where a pixel with a hit, or one with a miss, was spoilt.

@@ -6,8 +6,8 @@ use pinhole::{
     Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu,
 };
 
-use crate::scene::spheres_of;
 use crate::support::compare::{Picture, Violation, compare};
+use crate::support::spheres_of;
 use crate::support::{View, shaded};
 
 fn headlight() -> RenderSettings {

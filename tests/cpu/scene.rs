@@ -1,7 +1,6 @@
 //! Scenes: what they accept, in which frame they keep it, what spheres look like, and updates.
 
 use fastrand::Rng;
-use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::glam::DVec3;
 use pinhole::light::emitters::Emitters;
 use pinhole::render::SettingsError;
@@ -14,7 +13,7 @@ use pinhole::{
 };
 
 use crate::run_file::made;
-use crate::support::appearances::{kinds, settings};
+use crate::support::appearances::{Numbers, camera, kinds, settings};
 
 /// A scene of spheres with colours by their numbers.
 pub(crate) fn colored(spheres: &[[f32; 4]], color: impl Fn(usize) -> [f32; 3]) -> Scene {
@@ -23,18 +22,6 @@ pub(crate) fn colored(spheres: &[[f32; 4]], color: impl Fn(usize) -> [f32; 3]) -
         Sphere::new([x, y, z], radius, LinearRgb::new(color(i)).unwrap())
     };
     Scene::new(&spheres.iter().enumerate().map(one).collect::<Vec<_>>()).unwrap()
-}
-
-/// The spheres of a scene one by one, to be changed.
-pub(crate) fn spheres_of(scene: &Scene) -> Vec<Sphere> {
-    let one = |(id, s): (u32, &[f32; 4])| {
-        let [x, y, z, radius] = s.map(f64::from);
-        let center = scene.origin() + DVec3::new(x, y, z);
-        let mut sphere = Sphere::new(center.to_array(), radius, scene.color(id));
-        sphere.surface = scene.surface(id);
-        sphere
-    };
-    (0..).zip(scene.spheres()).map(one).collect()
 }
 
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {
@@ -183,11 +170,6 @@ fn the_first_bad_sphere_of_an_array_is_named_however_many_threads_look() {
             assert!(error.to_string().starts_with(&expected), "{error}");
         }
     }
-}
-
-fn camera() -> PinholeCamera {
-    let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
-    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
 }
 
 fn film() -> Film {
@@ -339,20 +321,12 @@ fn updates_are_as_a_scene_that_was_made_so() {
         for _ in 0..50 {
             let first = random.usize(..scene.len());
             let count = random.usize(..=scene.len() - first);
-            let centers: Vec<[f32; 3]> =
-                (0..count).map(|_| [0; 3].map(|_| random.f32() * 4.0 - 2.0)).collect();
-            let radii: Vec<f32> = (0..count).map(|_| 0.05 + random.f32() * 0.3).collect();
-            let places: Vec<u32> = (0..count).map(|_| random.u32(..40)).collect();
-            let rgba: Vec<[u8; 4]> = (0..count).map(|_| [0; 4].map(|_| random.u8(..))).collect();
-            let colors = match scene.appearance().colors() {
-                Colors::One(_) => None,
-                Colors::Palette { .. } => Some(NewColors::Palette(&places)),
-                Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
-                _ => Some(NewColors::Scalars(&radii)),
-            };
+            let numbers = Numbers::of(&mut random, count);
+            let Numbers { centers, radii, .. } = &numbers;
+            let colors = numbers.colors(&scene);
             let update = SceneUpdate {
                 first: first as u32,
-                centers: random.bool().then_some(Centers::F32(&centers)),
+                centers: random.bool().then_some(Centers::F32(centers)),
                 radii: random.bool().then_some(&radii[..]),
                 colors: colors.filter(|_| random.bool()),
             };

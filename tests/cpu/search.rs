@@ -11,8 +11,8 @@ use pinhole::{
     Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View,
 };
 
-use crate::scene::spheres_of;
 use crate::support::random_light;
+use crate::support::spheres_of;
 
 /// Compares all layers, of which an image compares every number.
 fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) -> Image {

@@ -16,9 +16,9 @@ use pinhole::internals::NO_HIT;
 use pinhole::verify::{Checker, Interval, LegalCameraRay, LegalHits, TracedRay, UploadedView};
 use pinhole::{LinearRgb, Scene};
 
-use crate::legal_device::{Habit, LegalDevice};
 use crate::support::effort::tries;
 use crate::support::hosts::{Convention, view};
+use crate::support::legal_device::{Habit, LegalDevice};
 use crate::verify;
 
 /// How many cases there are if all run.

@@ -15,8 +15,8 @@ use pinhole::verify::{
 };
 use pinhole::{Film, Image, LayerSet, Scene, View};
 
-use crate::legal_device::{Habit, LegalDevice};
 use crate::scene::colored;
+use crate::support::legal_device::{Habit, LegalDevice};
 use crate::support::spheres::{self, Spheres};
 use crate::written::assert_is_not_accused;
 

@@ -15,8 +15,8 @@ use pinhole::{
     cpu,
 };
 
-use crate::scene::{colored, spheres_of};
-use crate::support::spheres;
+use crate::scene::colored;
+use crate::support::{spheres, spheres_of};
 
 /// Every kind of encoding.
 fn encodings() -> Vec<Encoding> {

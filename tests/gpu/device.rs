@@ -17,6 +17,7 @@ use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Colors, Film, LayerSet, LinearRgb, RenderSettings, Scene};
 
+use crate::pictures::go_on;
 use crate::support::View;
 use crate::support::appearances::kinds;
 use crate::{lit_scenes, scenes, trial};
@@ -25,7 +26,6 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("device::an_adapter_is_found_by_a_part_of_its_name", part_of_a_name),
         trial("device::an_unknown_name_lists_the_adapters", unknown_name),
-        trial("device::a_destroyed_device_is_an_error", destroyed),
         trial("device::a_fault_of_the_callers_does_not_outlive_it", callers_fault),
         trial("device::a_device_that_is_destroyed_in_the_middle_of_a_render", lost_midway),
         trial("device::a_device_that_does_not_finish_in_time", too_slow),
@@ -34,12 +34,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("profile::every_pass_and_phase_is_named", named_passes),
         trial("profile::updates_of_colors_are_passes", recolored),
         trial("plan::it_bounds_what_is_built", bounds),
-        trial("self_test::the_adapter_has_all_properties", full),
-        trial("self_test::a_part_is_quick", quick),
+        trial("self_test::the_adapter_has_all_properties", properties),
         trial("self_test::fences_that_a_driver_sees_through_are_found", seen_through),
         trial("device::pictures_do_not_depend_on_how_it_is_opened", opened_otherwise),
         trial("device_shape::a_picture_of_other_tiles_is_the_same", large),
-        trial("device_shape::a_lit_picture_of_other_tiles_is_the_same", large_and_lit),
     ]
 }
 
@@ -63,14 +61,6 @@ fn unknown_name(headless: &'static Headless) {
         }
         other => panic!("{other:?}"),
     }
-}
-
-fn destroyed(_: &'static Headless) {
-    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
-    headless.device().destroy();
-    let view = View::three_spheres();
-    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait();
-    assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
 /// An error that a caller causes on the device does not affect the next render.
@@ -107,8 +97,11 @@ fn lost_midway(_: &'static Headless) {
     });
     assert!(told > 0, "the picture is too small for more than one submission");
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
-    // The device stays lost.
-    let result = render_watched(&headless, |_: &_| Decision::GoOn);
+    // The device stays lost, for pictures in one submission as well.
+    let result = render_watched(&headless, go_on);
+    assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
+    let view = View::three_spheres();
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait();
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
@@ -117,7 +110,7 @@ fn too_slow(_: &'static Headless) {
     let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
     let headless = Headless::open(&options).wait().unwrap();
     // The work of an upload may finish at once, but that of a picture does not.
-    let result = render_watched(&headless, |_: &_| Decision::GoOn);
+    let result = render_watched(&headless, go_on);
     assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
 }
 
@@ -129,8 +122,8 @@ fn stopped(headless: &'static Headless) {
         Decision::Stop
     });
     assert_eq!((result.err(), told), (Some(GpuError::Stopped), 1));
-    let whole = render_watched(headless, |_: &_| Decision::GoOn).unwrap();
-    assert_eq!(whole, render_watched(headless, |_: &_| Decision::GoOn).unwrap());
+    let whole = render_watched(headless, go_on).unwrap();
+    assert_eq!(whole, render_watched(headless, go_on).unwrap());
 }
 
 /// A picture takes at least twelve bytes of host memory for each pixel, which for the largest film is more than the
@@ -186,9 +179,6 @@ fn tiles(mut view: View, size: [u32; 2], layers: LayerSet) -> [u64; 2] {
 
 fn large(_: &'static Headless) {
     assert_eq!(tiles(View::three_spheres(), [1400, 1300], LayerSet::DATA), [2, 1]);
-}
-
-fn large_and_lit(_: &'static Headless) {
     for name in ["path_lobes_and_metals", "studio_opacity"] {
         let [software, gpu] = tiles(lit_scenes::sampled(name, 5), [700, 500], LayerSet::COLOR);
         assert!(gpu < software, "{name}: {gpu} tiles instead of {software}");
@@ -197,19 +187,14 @@ fn large_and_lit(_: &'static Headless) {
 
 const QUICK: &[&str] = &["fence", "add_multiply", "divide", "sqrt", "inverse_sqrt", "dot"];
 
-fn full(headless: &'static Headless) {
-    let report = headless.self_test(SelfTestExtent::Full).wait().unwrap();
-    let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
+fn properties(headless: &'static Headless) {
     let rest = ["subnormals", "comparison_and_conversion", "loops", "fence_in_trace"];
-    assert_eq!(names, [QUICK, &rest].concat());
-    assert!(report.passed(), "{:?}", report.first_failure());
-}
-
-fn quick(headless: &'static Headless) {
-    let report = headless.self_test(SelfTestExtent::Quick).wait().unwrap();
-    let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
-    assert_eq!(names, QUICK);
-    assert!(report.passed(), "{:?}", report.first_failure());
+    for (extent, rest) in [(SelfTestExtent::Quick, &[][..]), (SelfTestExtent::Full, &rest)] {
+        let report = headless.self_test(extent).wait().unwrap();
+        let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
+        assert_eq!(names, [QUICK, rest].concat());
+        assert!(report.passed(), "{:?}", report.first_failure());
+    }
 }
 
 fn fences_in_trace(headless: &Headless) -> TestedProperty {

@@ -17,14 +17,11 @@ use pinhole::image::NO_ID;
 use pinhole::{LayerSet, LinearRgb, RenderSettings, Scene};
 
 use crate::host_program::{Drawing, Host, view_of};
+use crate::support::appearances::settings;
 use crate::support::{View, spheres};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
-    [own(), async_forms()].into_iter().flatten().collect()
-}
-
-fn own() -> Vec<Trial> {
     vec![
         trial("embedding::a_foreign_encoder_gets_the_spheres_in_its_texture", foreign_frame),
         trial("embedding::a_picture_larger_than_one_band", several_bands),
@@ -35,6 +32,10 @@ fn own() -> Vec<Trial> {
         trial("embedding::unfit_targets_are_refused", unfit_targets),
         trial("embedding::what_is_not_ready_is_refused", not_ready),
         trial("embedding::a_lit_picture_in_a_hosts_frame_is_refused", lit_frame),
+        trial("async_forms::they_make_the_pictures_of_the_blocking_forms", same_pictures),
+        trial("async_forms::two_renders_on_one_thread_take_turns", turns),
+        trial("async_forms::a_render_that_is_given_up_blocks_nobody", dropped),
+        trial("async_forms::a_renderer_built_in_pieces_draws_the_spheres", pieces),
     ]
 }
 
@@ -287,24 +288,6 @@ fn not_ready(_: &'static Headless) {
     host.queue.submit([encoder.finish()]);
 }
 
-fn async_forms() -> Vec<Trial> {
-    vec![
-        trial("async_forms::they_make_the_pictures_of_the_blocking_forms", same_pictures),
-        trial("async_forms::two_renders_on_one_thread_take_turns", turns),
-        trial("async_forms::a_render_that_is_given_up_blocks_nobody", dropped),
-        trial("async_forms::a_renderer_built_in_pieces_draws_the_spheres", pieces),
-    ]
-}
-
-fn all_settings() -> [RenderSettings; 3] {
-    let mut studio = RenderSettings::studio();
-    studio.sampling.samples = 3;
-    let mut path = RenderSettings::path();
-    path.sampling.samples = 3;
-    path.is_denoised = true;
-    [RenderSettings::default(), studio, path]
-}
-
 /// Runs a future by an executor that knows nothing of devices, and returns how often the future returned unfinished.
 fn run<T>(future: impl Future<Output = T>) -> (u32, T) {
     let mut future = pin!(future);
@@ -319,7 +302,8 @@ fn run<T>(future: impl Future<Output = T>) -> (u32, T) {
 
 fn same_pictures(headless: &'static Headless) {
     let view = View::three_spheres();
-    for settings in all_settings() {
+    for mut settings in settings() {
+        settings.is_denoised = !settings.integrator.is_primary();
         let expected =
             headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
         let seen = view.seen();
@@ -332,7 +316,7 @@ fn same_pictures(headless: &'static Headless) {
 fn turns(headless: &'static Headless) {
     let view = View::three_spheres();
     let seen = view.seen();
-    let [first, second, _] = all_settings();
+    let [first, second, _] = settings();
     let expected = [&first, &second].map(|settings| {
         headless.render(&view.scene, &seen, settings, LayerSet::COLOR).wait().unwrap()
     });
@@ -359,7 +343,7 @@ fn turns(headless: &'static Headless) {
 fn dropped(headless: &'static Headless) {
     let view = View::three_spheres();
     let seen = view.seen();
-    let [primary, studio, _] = all_settings();
+    let [primary, studio, _] = settings();
     for settings in [primary, studio] {
         let render = || headless.render(&view.scene, &seen, &settings, LayerSet::ALL);
         let (submissions, expected) = run(render());

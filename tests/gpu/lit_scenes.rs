@@ -1,4 +1,4 @@
-//! Small lit scenes. Most are files in `tests/gpu/scenes`: those in `light` use every material, light, sky and kernel, and
+//! Small lit scenes. Most are files in `tests/gpu/scenes`: those in `light` use every material, light, sky and kernel,
 //! each of those in `paths` and `studio` contains something that makes one kind of fault visible. A scene file can say
 //! neither random spheres nor colours of each sphere.
 
@@ -8,12 +8,10 @@ use pinhole::light::LightKind;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::scene::material::Material;
 use pinhole::scene_file::SceneFile;
-use pinhole::{
-    Appearance, Environment, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties, glam,
-};
+use pinhole::{Appearance, Environment, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties};
 
-use crate::support::View;
 use crate::support::random_light::RandomView;
+use crate::support::{View, spheres_of};
 
 impl From<RandomView> for View {
     fn from(RandomView { scene, camera, film, settings, .. }: RandomView) -> Self {
@@ -26,7 +24,7 @@ fn file(of: &str, name: &str) -> PathBuf {
 }
 
 /// The names of the scene files in a folder that start with some letters.
-fn names_of_files(of: &str, start: &str) -> Vec<String> {
+pub(crate) fn names_of_files(of: &str, start: &str) -> Vec<String> {
     let files = std::fs::read_dir(file(of, "")).unwrap().map(|file| file.unwrap().file_name());
     let names = files.map(|name| name.into_string().unwrap());
     let names = names.filter_map(|name| name.strip_suffix(".toml").map(str::to_owned));
@@ -76,12 +74,16 @@ pub(crate) fn view(suite: &str, name: &str) -> View {
     }
 }
 
-/// The spheres of a scene file, and what it shows.
-pub(crate) fn read(of: &str, name: &str) -> (Vec<Sphere>, View) {
+/// The text of a scene file.
+pub(crate) fn text(of: &str, name: &str) -> String {
     let path = file(of, name).with_extension("toml");
     let text = std::fs::read_to_string(&path);
-    let text = text.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let file = SceneFile::parse(&text).unwrap();
+    text.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The spheres of a scene file, and what it shows.
+pub(crate) fn read(of: &str, name: &str) -> (Vec<Sphere>, View) {
+    let file = SceneFile::parse(&text(of, name)).unwrap();
     let scene = file.scene(&[]).unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
     let sky = file.sky_image().map(sky_image);
@@ -157,17 +159,13 @@ fn many_for_paths() -> View {
 /// Many spheres with three copies of each, which have different appearances.
 fn thrice() -> View {
     let view = many_for_paths();
-    let scene = &view.scene;
-    let count = scene.len() as u32;
-    let copy = |(copy, id): (u32, u32)| {
-        let [x, y, z, radius] = scene.spheres()[id as usize].map(f64::from);
-        let look = (id + copy) % count;
-        let center = glam::DVec3::new(x, y, z) + scene.origin();
-        let mut sphere = Sphere::new(center.to_array(), radius, scene.color(look));
-        sphere.surface = scene.surface(look);
+    let spheres = spheres_of(&view.scene);
+    let copy = |(copy, id): (usize, usize)| {
+        let mut sphere = spheres[(id + copy) % spheres.len()];
+        (sphere.center, sphere.radius) = (spheres[id].center, spheres[id].radius);
         sphere
     };
-    let copies = (0..3).flat_map(|copy| (0..count).map(move |id| (copy, id)));
+    let copies = (0..3).flat_map(|copy| (0..spheres.len()).map(move |id| (copy, id)));
     let spheres: Vec<Sphere> = copies.map(copy).collect();
     View { scene: Scene::new(&spheres).unwrap(), ..view }
 }

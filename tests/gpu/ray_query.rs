@@ -8,7 +8,7 @@ use pinhole::accel::AccelChoice;
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, SceneBuffers, Wait};
 use pinhole::{LinearRgb, Scene};
 
-use crate::adversary::{certify_lit_on, certify_on, hits, lit_views, not_accused, seen};
+use crate::adversary::{agree, certify_lit_on, certify_on, hits, lit_views, not_accused, seen};
 use crate::harness::trial_unless;
 use crate::support::spheres;
 use crate::{headless, scenes};
@@ -56,8 +56,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 /// Ray queries choose which spheres are tested; the tests have the same bits.
 fn finds_the_same() -> Result<(), Failed> {
-    let headless = device()?;
-    let scenes = [
+    for (name, spheres) in [
         ("small", spheres::random(6000, 5, |_| 1e-3)),
         ("large", spheres::random(3000, 6, |rng| 0.02 + 0.1 * rng.f32())),
         ("four decades", spheres::four_decades(3000)),
@@ -65,19 +64,8 @@ fn finds_the_same() -> Result<(), Failed> {
         ("mirrored pairs", spheres::mirrored(1000)),
         ("equal pairs", spheres::twice(1000)),
         ("coincident", spheres::coincident(50)),
-    ];
-    for (name, spheres) in scenes {
-        let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
-        seen(&scene, |view| {
-            let expected = hits(headless, &scene, view, AccelChoice::List, 1.0)?;
-            let found = hits(headless, &scene, view, AccelChoice::RayQuery, 1.0)?;
-            let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
-            if different > 0 {
-                Err(format!("{name}: {different} hits differ").into())
-            } else {
-                Ok(())
-            }
-        })?;
+    ] {
+        agree(device()?, name, spheres, &[AccelChoice::RayQuery])?;
     }
     Ok(())
 }

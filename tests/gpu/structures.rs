@@ -82,7 +82,6 @@ pub(crate) fn trials() -> Vec<Trial> {
             })
         })
         .collect();
-    trials.push(trial("structures::a_million_coincident_centres", coincident));
     trials.push(trial("structures::outliers_do_not_show", outliers));
     trials.push(trial("structures::rays_from_afar_need_wider_boxes", unwidened));
     trials.push(trial("structures::slices_do_not_show", slices));
@@ -171,16 +170,6 @@ fn check(headless: &Headless, spheres: Spheres) {
             assert_same(&name, &render(&WEBGPU, &views, &accel), &expected);
         }
     }
-}
-
-/// The grid keeps only the first of a million equal spheres, because only that one can be hit.
-fn coincident(headless: &'static Headless) {
-    let million = vec![[0.5, 0.25, 0.0, 1.0]; 1_000_000];
-    let few = white(million[..100].to_vec());
-    let scene = white(million);
-    let [list, grid] = [(few, AccelChoice::List), (scene, AccelChoice::Grid)]
-        .map(|(scene, choice)| render(headless, &views(&scene), &built(&scene, choice)));
-    assert_same("grid", &grid, &list);
 }
 
 /// A crowd beside an outlier, seen from near and from the outlier's side.

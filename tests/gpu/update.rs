@@ -4,23 +4,18 @@
 use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
-use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
-use pinhole::{Colors, Film, Image, LayerSet, RenderSettings, Scene, View};
+use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View};
 
 use crate::host_program::Host;
 use crate::pictures::go_on;
-use crate::support::appearances::{kinds, settings};
+use crate::support::appearances::{Numbers, camera, kinds, settings};
 use crate::{headless, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
-    [own(), appearances_are_the_same()].into_iter().flatten().collect()
-}
-
-fn own() -> Vec<Trial> {
     let of_kinds = kinds().into_iter().map(|kind| {
         Trial::test(format!("update::{}", kind.name), move || updated(kind.scene.clone()))
     });
@@ -28,27 +23,13 @@ fn own() -> Vec<Trial> {
         trial("update::frames_and_bindings_survive_colors", survives),
         trial("update::colors_of_ranges_in_bricks", in_bricks),
     ];
-    of_kinds.chain(others).collect()
-}
-
-/// An update of all kinds of values, for any spheres.
-struct Numbers {
-    centers: Vec<[f32; 3]>,
-    radii: Vec<f32>,
-    places: Vec<u32>,
-    rgba: Vec<[u8; 4]>,
-}
-
-impl Numbers {
-    fn of(random: &mut Rng, count: usize) -> Self {
-        let all = 0..count;
-        Self {
-            centers: all.clone().map(|_| [0; 3].map(|_| random.f32() * 4.0 - 2.0)).collect(),
-            radii: all.clone().map(|_| 0.1 + random.f32() * 0.3).collect(),
-            places: all.clone().map(|_| random.u32(..40)).collect(),
-            rgba: all.map(|_| [random.u8(..), random.u8(..), 99, random.u8(..) | 0xf0]).collect(),
-        }
-    }
+    let appearances = kinds().into_iter().map(|kind| {
+        Trial::test(format!("appearance::{}", kind.name), move || {
+            let (found, expected) = (pictures(&kind.scene)?, pictures(&kind.expected)?);
+            if found == expected { Ok(()) } else { Err("another picture".into()) }
+        })
+    });
+    of_kinds.chain(others).chain(appearances).collect()
 }
 
 fn shown(
@@ -76,18 +57,13 @@ fn updated(mut scene: Scene) -> Result<(), Failed> {
     for _ in 0..6 {
         let first = random.usize(..scene.len());
         let count = random.usize(1..=scene.len() - first);
-        let Numbers { centers, radii, places, rgba } = Numbers::of(&mut random, count);
-        let colors = match scene.appearance().colors() {
-            Colors::One(_) => None,
-            Colors::Palette { .. } => Some(NewColors::Palette(&places)),
-            Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
-            _ => Some(NewColors::Scalars(&radii)),
-        };
+        let numbers = Numbers::of(&mut random, count);
+        let Numbers { centers, radii, .. } = &numbers;
         let update = SceneUpdate {
             first: first as u32,
-            centers: (random.u8(..3) == 0).then_some(Centers::F32(&centers)),
+            centers: (random.u8(..3) == 0).then_some(Centers::F32(centers)),
             radii: (random.u8(..3) == 0).then_some(&radii[..]),
-            colors,
+            colors: numbers.colors(&scene),
         };
         scene.apply(&update)?;
         headless.update(&mut buffers, &scene, &update).wait()?;
@@ -167,23 +143,6 @@ fn survives(headless: &'static Headless) {
     frame.set_view(queue, &buffers, &view, &settings).unwrap();
     renderer.record(&mut encoder, &buffers, &frame).unwrap();
     host.submit(encoder);
-}
-
-fn appearances_are_the_same() -> Vec<Trial> {
-    kinds()
-        .into_iter()
-        .map(|kind| {
-            Trial::test(format!("appearance::{}", kind.name), move || {
-                let (found, expected) = (pictures(&kind.scene)?, pictures(&kind.expected)?);
-                if found == expected { Ok(()) } else { Err("another picture".into()) }
-            })
-        })
-        .collect()
-}
-
-fn camera() -> PinholeCamera {
-    let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
-    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
 }
 
 /// Pictures with one ray for each pixel, of a studio, and of paths.

@@ -9,19 +9,18 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+    FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::NO_ID;
 use pinhole::verify::conformance::{Answers, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
-use pinhole::{
-    Appearance, Film, Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere, SphereArray,
-};
+use pinhole::{Appearance, Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere, SphereArray};
 
 use crate::planted::{Fault, named, planted};
-use crate::support::{View, shaded, spheres};
-use crate::{headless, planted, scenes};
+use crate::scenes::{self, pinhole, view};
+use crate::support::{View, spheres, spheres_of};
+use crate::{headless, planted};
 
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
@@ -235,16 +234,6 @@ const INPUT_FAULTS: &[(&str, Spoil)] = &[
     }),
 ];
 
-fn spheres_of(scene: &Scene) -> Vec<Sphere> {
-    (0..)
-        .zip(scene.spheres())
-        .map(|(id, [x, y, z, radius])| {
-            let center = [*x, *y, *z].map(f64::from);
-            Sphere::new(center, f64::from(*radius), scene.color(id))
-        })
-        .collect()
-}
-
 /// Records a picture of different spheres than those of the view.
 fn with_spheres(
     view: &mut View,
@@ -295,22 +284,8 @@ fn colored(center: [f64; 3], radius: f64, i: usize) -> Sphere {
     Sphere::new(center, radius, color)
 }
 
-fn view(spheres: &[Sphere], camera: impl Camera + 'static, size: [u32; 2]) -> View {
-    let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
-    View {
-        scene: Scene::new(spheres).unwrap(),
-        camera: Box::new(camera),
-        film: Film::new(size[0], size[1]).unwrap(),
-        settings: shaded(Shading::Headlight, background),
-    }
-}
-
 fn pose(eye: [f64; 3], look_at: [f64; 3]) -> Pose {
     Pose::looking_at(eye, look_at, [0.1, 1.0, 0.2]).unwrap()
-}
-
-fn pinhole(eye: [f64; 3], look_at: [f64; 3], degrees: f64) -> PinholeCamera {
-    PinholeCamera::with_vertical_fov(pose(eye, look_at), f64::to_radians(degrees), 1.2).unwrap()
 }
 
 fn random(count: usize, seed: u64) -> Vec<Sphere> {
@@ -325,7 +300,7 @@ fn random(count: usize, seed: u64) -> Vec<Sphere> {
 
 /// Spheres in several colours, seen from outside, with background around them.
 pub(crate) fn balls() -> View {
-    view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+    view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0, 1.2), [96, 80])
 }
 
 /// Spheres with individual colours.
@@ -345,7 +320,7 @@ pub(crate) fn parallel() -> View {
 
 /// A view through a lens. Recordings use rays through the centre of the lens.
 pub(crate) fn lens() -> View {
-    let pinhole = pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0);
+    let pinhole = pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0, 1.2);
     view(&random(400, 31), ThinLensCamera::new(pinhole, 0.3, 5.0).unwrap(), [96, 80])
 }
 
@@ -369,12 +344,12 @@ pub(crate) fn disk() -> View {
 pub(crate) fn inside() -> View {
     let mut spheres = random(60, 32);
     spheres.push(colored([0.0; 3], 5.0, 3));
-    view(&spheres, pinhole([0.5, 1.0, 3.9], [0.0; 3], 90.0), [96, 80])
+    view(&spheres, pinhole([0.5, 1.0, 3.9], [0.0; 3], 90.0, 1.2), [96, 80])
 }
 
 /// Spheres all around the eye, most of them behind it.
 pub(crate) fn behind() -> View {
-    view(&random(100, 33), pinhole([0.0, 0.0, 1.6], [0.0, 0.0, 4.0], 60.0), [96, 80])
+    view(&random(100, 33), pinhole([0.0, 0.0, 1.6], [0.0, 0.0, 4.0], 60.0, 1.2), [96, 80])
 }
 
 /// Spheres that fill all cells of a grid equally and extend into neighbouring cells.
@@ -387,7 +362,7 @@ pub(crate) fn lattice() -> View {
             colored([*x, *y, *z].map(f64::from), radius, i)
         })
         .collect();
-    view(&spheres, pinhole([-9.0, 15.0, -12.0], [5.0, 5.0, 5.0], 40.0), [96, 80])
+    view(&spheres, pinhole([-9.0, 15.0, -12.0], [5.0, 5.0, 5.0], 40.0, 1.2), [96, 80])
 }
 
 fn in_clusters() -> Vec<Sphere> {
@@ -408,14 +383,14 @@ fn in_clusters() -> Vec<Sphere> {
 
 /// Spheres that form a few dense clusters.
 pub(crate) fn clusters() -> View {
-    view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+    view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0, 1.2), [96, 80])
 }
 
 /// The same spheres, but small in a large box.
 pub(crate) fn far_clusters() -> View {
     let mut spheres = in_clusters();
     spheres.push(colored([40.0, 60.0, 120.0], 0.5, 5));
-    view(&spheres, pinhole([63.0, 42.0, 126.0], [0.0; 3], 1.8), [96, 80])
+    view(&spheres, pinhole([63.0, 42.0, 126.0], [0.0; 3], 1.8, 1.2), [96, 80])
 }
 
 /// Eight copies of each sphere, in shuffled order.
@@ -431,11 +406,11 @@ pub(crate) fn copies() -> View {
             colored(center, 0.45, i)
         })
         .collect();
-    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0), [96, 80])
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0, 1.2), [96, 80])
 }
 
 /// A picture that is larger than one tile.
 pub(crate) fn two_tiles() -> View {
     let spheres = [colored([-1.0, 0.0, 0.0], 0.9, 1), colored([1.0, 0.0, 0.0], 0.9, 2)];
-    view(&spheres, pinhole([0.0, 0.5, 5.0], [0.0; 3], 16.0), [1100, 1000])
+    view(&spheres, pinhole([0.0, 0.5, 5.0], [0.0; 3], 16.0, 1.2), [1100, 1000])
 }

@@ -76,12 +76,8 @@ fn certified(view: &View, image: &Image) -> Result<[WrittenCertificate; 2], Fail
     Ok([certify(Samples::Linear(&light))?, certify(Samples::Encoded(&bytes))?])
 }
 
-fn render(device: &Headless, view: &View) -> Result<Image, Failed> {
-    Ok(device.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait()?)
-}
-
 fn legal(view: &View) -> Result<(), Failed> {
-    let found = certified(view, &render(headless()?, view)?)?;
+    let found = certified(view, &view.picture(headless()?, LayerSet::COLOR))?;
     match found.iter().flat_map(|found| &found.violations).next() {
         None => Ok(()),
         Some(first) => Err(first.to_string().into()),
@@ -89,7 +85,7 @@ fn legal(view: &View) -> Result<(), Failed> {
 }
 
 fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
-    let [found, _] = certified(view, &render(device, view)?)?;
+    let [found, _] = certified(view, &view.picture(device, LayerSet::COLOR))?;
     match found.outcome() {
         Outcome::Violated => Ok(()),
         outcome => Err(format!("the fault was not found: {outcome}").into()),

@@ -1,6 +1,8 @@
 //! Scenes whose spheres look like something in every way that there is, and the same spheres one by one.
 
+use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::render::Sampling;
+use pinhole::scene::NewColors;
 use pinhole::scene::material::Material;
 use pinhole::{
     Appearance, ColorMap, Colors, LinearRgb, RenderSettings, Scene, Sphere, SphereArray,
@@ -107,4 +109,40 @@ fn surfaces() -> Vec<SurfaceProperties> {
         opaque(Material::Dielectric { ior: 1.4, roughness: 0.0, attenuation_distance: Some(0.7) }),
         opaque(Material::Emissive { strength: 2.0 }),
     ]
+}
+
+/// In front of the spheres.
+pub(crate) fn camera() -> PinholeCamera {
+    let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
+}
+
+/// An update of all kinds of values, for any spheres.
+pub(crate) struct Numbers {
+    pub(crate) centers: Vec<[f32; 3]>,
+    pub(crate) radii: Vec<f32>,
+    places: Vec<u32>,
+    pub(crate) rgba: Vec<[u8; 4]>,
+}
+
+impl Numbers {
+    pub(crate) fn of(random: &mut fastrand::Rng, count: usize) -> Self {
+        let all = 0..count;
+        Self {
+            centers: all.clone().map(|_| [0; 3].map(|_| random.f32() * 4.0 - 2.0)).collect(),
+            radii: all.clone().map(|_| 0.1 + random.f32() * 0.3).collect(),
+            places: all.clone().map(|_| random.u32(..40)).collect(),
+            rgba: all.map(|_| [random.u8(..), random.u8(..), 99, random.u8(..) | 0xf0]).collect(),
+        }
+    }
+
+    /// New colours of the kind that a scene has.
+    pub(crate) fn colors(&self, scene: &Scene) -> Option<NewColors<'_>> {
+        match scene.appearance().colors() {
+            Colors::One(_) => None,
+            Colors::Palette { .. } => Some(NewColors::Palette(&self.places)),
+            Colors::Rgba8(_) => Some(NewColors::Rgba8(&self.rgba)),
+            _ => Some(NewColors::Scalars(&self.radii)),
+        }
+    }
 }

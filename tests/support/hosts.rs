@@ -1,7 +1,7 @@
 //! Matrices as host programs make them, written down from their definitions.
 
 use pinhole::camera::{DepthOrder, Pose};
-use pinhole::glam::{DMat4, DVec3, DVec4};
+use pinhole::glam::{DMat4, DQuat, DVec3, DVec4};
 
 /// How a host program computes depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,4 +79,19 @@ pub(crate) fn view(pose: &Pose, into: f64) -> DMat4 {
     let basis = pose.basis();
     let row = |axis: DVec3| axis.extend(-axis.dot(pose.origin()));
     from_rows([row(basis.u()), row(basis.v()), row(-into * basis.w()), DVec4::W])
+}
+
+/// What hosts do to a scene: nothing, mirror it as for a reflecting plane, stretch and shear it, or place it in their world,
+/// smaller and turned.
+pub(crate) fn changes() -> [DMat4; 4] {
+    let mirror = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0));
+    let stretch = DMat4::from_cols(
+        DVec4::new(1.5, 0.2, 0.0, 0.0),
+        DVec4::new(0.0, 1.0, -0.3, 0.0),
+        DVec4::new(0.1, 0.0, 0.8, 0.0),
+        DVec4::W,
+    );
+    let turn = DQuat::from_rotation_y(0.3);
+    let model = DMat4::from_scale_rotation_translation(DVec3::splat(0.1), turn, DVec3::splat(0.4));
+    [DMat4::IDENTITY, mirror, stretch, model]
 }

@@ -1,27 +1,35 @@
 //! Shared by the CPU and the GPU tests.
+#![allow(dead_code, reason = "each test program uses some of it")]
 
-#[allow(dead_code, reason = "each test program uses some of it")]
 pub(crate) mod appearances;
 pub(crate) mod compare;
-#[allow(dead_code, reason = "each test program uses some of it")]
 pub(crate) mod effort;
-#[allow(dead_code, reason = "each test program uses some of it")]
 pub(crate) mod hosts;
-#[allow(dead_code, reason = "each test program uses some of them")]
+pub(crate) mod legal_cameras;
+pub(crate) mod legal_device;
 pub(crate) mod maps;
-#[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod random_light;
-#[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod spheres;
 mod view;
 
-use pinhole::{Integrator, LinearRgb, RenderSettings, Shading};
+use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, Shading, Sphere};
 
 pub(crate) use view::View;
 
 /// Primary rays, shaded over a background.
-#[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) fn shaded(shading: Shading, background: LinearRgb) -> RenderSettings {
     let integrator = Integrator::Primary(shading);
     RenderSettings { integrator, background, ..RenderSettings::default() }
+}
+
+/// The spheres of a scene one by one, to be changed.
+pub(crate) fn spheres_of(scene: &Scene) -> Vec<Sphere> {
+    let one = |(id, s): (u32, &[f32; 4])| {
+        let [x, y, z, radius] = s.map(f64::from);
+        let center = scene.origin() + pinhole::glam::DVec3::new(x, y, z);
+        let mut sphere = Sphere::new(center.to_array(), radius, scene.color(id));
+        sphere.surface = scene.surface(id);
+        sphere
+    };
+    (0..).zip(scene.spheres()).map(one).collect()
 }

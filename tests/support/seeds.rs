@@ -1,7 +1,7 @@
 //! Small good files of every format that can be read, from which the fuzzer makes bad ones.
 //!
-//! A new format gets files in `tests/files/good`, with a row each in [`FILES`]; a test fails until it has. Those of DCD, TRR
-//! and XTC need a topology, and are written by `binary_files`.
+//! A new format gets files in `tests/files/good`; a test fails until it has. Those of DCD, TRR and XTC need a topology, and
+//! are written by `binary_files`.
 
 use std::path::Path;
 
@@ -16,47 +16,29 @@ pub(crate) struct Seed {
     pub(crate) options: Options,
 }
 
-/// A format, a good file, and the names of its columns where they must be given, or `radius` where that must be.
-type File = (&'static str, &'static [u8], &'static str);
-
-const FILES: &[File] = &[
-    ("xyz", include_bytes!("../files/good/water.xyz"), ""),
-    ("xyz", include_bytes!("../files/good/water.xyz.gz"), ""),
-    ("extxyz", include_bytes!("../files/good/columns.extxyz"), ""),
-    ("extxyz", include_bytes!("../files/good/numbers.extxyz"), ""),
-    ("pdb", include_bytes!("../files/good/models.pdb"), ""),
-    ("pdb", include_bytes!("../files/good/one.pdb"), ""),
-    ("lammps-dump", include_bytes!("../files/good/plain.dump"), ""),
-    ("lammps-dump", include_bytes!("../files/good/tilted.dump"), ""),
-    ("lammps-dump", include_bytes!("../files/good/general.dump"), "id type xsu ysu zsu"),
-    ("lammps-data", include_bytes!("../files/good/full.data"), ""),
-    ("lammps-data", include_bytes!("../files/good/sphere.data"), ""),
-    ("lammps-data", include_bytes!("../files/good/bare.data"), "id type q x y z"),
-    ("mmcif", include_bytes!("../files/good/models.cif"), ""),
-    ("mmcif", include_bytes!("../files/good/small.cif"), ""),
-    ("las", include_bytes!("../files/good/old.las"), ""),
-    ("las", include_bytes!("../files/good/new.las"), ""),
-    ("gsd", include_bytes!("../files/good/version1.gsd"), ""),
-    ("gsd", include_bytes!("../files/good/version2.gsd"), ""),
-    ("npy", include_bytes!("../files/good/spheres.npy"), ""),
-    ("npy", include_bytes!("../files/good/columns.npy"), "radius"),
-    ("npy", include_bytes!("../files/good/structured.npy"), ""),
-    ("npz", include_bytes!("../files/good/stored.npz"), ""),
-    ("npz", include_bytes!("../files/good/deflated.npz"), ""),
-    ("npz", include_bytes!("../files/good/centers.npz"), "radius"),
-    ("npz", include_bytes!("../files/good/structured.npz"), ""),
-    ("csv", include_bytes!("../files/good/table.csv"), ""),
-    ("csv", include_bytes!("../files/good/semicolons.csv"), ""),
-    ("csv", include_bytes!("../files/good/bare.csv"), "x y z"),
-    ("ply", include_bytes!("../files/good/text.ply"), ""),
-    ("ply", include_bytes!("../files/good/little.ply"), ""),
-    ("ply", include_bytes!("../files/good/big.ply"), ""),
-    ("raw-f32x4", include_bytes!("../files/good/spheres.bin"), ""),
-    ("vtk", include_bytes!("../files/good/ascii.vtp"), ""),
-    ("vtk", include_bytes!("../files/good/inline.vtp"), ""),
-    ("vtk", include_bytes!("../files/good/compressed.vtp"), ""),
-    ("vtk", include_bytes!("../files/good/appended.vtp"), ""),
+/// Files that must be given the names of their columns, or `radius`.
+const NEEDS: [(&str, &str); 5] = [
+    ("general.dump", "id type xsu ysu zsu"),
+    ("bare.data", "id type q x y z"),
+    ("columns.npy", "radius"),
+    ("centers.npz", "radius"),
+    ("bare.csv", "x y z"),
 ];
+
+/// The names and bytes of the good files of a format, which their extensions tell.
+fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/good");
+    let extensions = if format.name == "raw-f32x4" { &["bin"][..] } else { format.extensions };
+    let names = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
+    let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+    names.sort();
+    names.retain(|name| {
+        let (_, extension) = name.trim_end_matches(".gz").rsplit_once('.').unwrap();
+        extensions.contains(&extension)
+    });
+    let read = |name: String| (name.clone(), std::fs::read(folder.join(name)).unwrap());
+    names.into_iter().map(read).collect()
+}
 
 /// The good files of a format; none if it is unknown here. What they need, such as a topology, is written into the folder.
 pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
@@ -66,17 +48,17 @@ pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
         "xtc" => xtc(folder),
         _ => Vec::new(),
     };
-    for (_, bytes, need) in FILES.iter().filter(|(name, ..)| *name == format.name) {
+    for (name, bytes) in files(format) {
         let mut options = Options::default();
-        match *need {
+        match NEEDS.iter().find(|(file, _)| *file == name).map_or("", |(_, need)| need) {
             "radius" => options.radius = Some(1.0),
             columns => options.columns = columns.split_terminator(' ').map(str::to_owned).collect(),
         }
-        seeds.push(Seed { bytes: bytes.to_vec(), options: options.clone() });
-        if let (Ok(text), "xyz" | "mmcif") = (str::from_utf8(bytes), format.name) {
+        if let (Ok(text), "xyz" | "mmcif") = (str::from_utf8(&bytes), format.name) {
             let bytes = text.replace('\n', "\r\n").into_bytes();
-            seeds.push(Seed { bytes, options });
+            seeds.push(Seed { bytes, options: options.clone() });
         }
+        seeds.push(Seed { bytes, options });
     }
     seeds
 }

@@ -79,16 +79,6 @@ pub(crate) fn geometric(count: i32) -> Spheres {
     (0..count).map(|i| [1.03_f32.powi(i), 0.0, 0.0, 0.01 * 1.03_f32.powi(i)]).collect()
 }
 
-/// A cubic lattice of small spheres, four in each place.
-pub(crate) fn cubic(side: usize) -> Spheres {
-    let sphere = |i: usize| {
-        let [x, y, z] = [i % side, i / side % side, i / (side * side) % side].map(|i| i as f32);
-        let which = i / (side * side * side);
-        [x, y, z, 0.1 + which as f32 * 1e-3]
-    };
-    (0..4 * side * side * side).map(sphere).collect()
-}
-
 /// Face-centred cubic, touching neighbours, with integer centres.
 pub(crate) fn lattice(side: usize) -> Spheres {
     (0..side * side * side)

@@ -4,9 +4,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::sync::Arc;
-use std::task::{Context, Poll, Wake, Waker};
-use std::thread::{Thread, sleep};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use libtest_mimic::Trial;
@@ -254,27 +252,9 @@ pub(crate) fn is_child() -> bool {
         Headless::open(&HeadlessOptions { timeout, ..Default::default() }).wait().unwrap();
     let tested = match form.as_str() {
         "blocking" => headless.self_test(SelfTestExtent::Quick).wait(),
-        _ => to_its_end(headless.self_test(SelfTestExtent::Quick)),
+        _ => pollster::block_on(headless.self_test(SelfTestExtent::Quick)),
     };
     drop(headless);
     println!("{:?}", tested.unwrap_err());
     true
-}
-
-/// Runs a future as a host does, whose thread must not wait within it.
-fn to_its_end<T>(future: impl Future<Output = T>) -> T {
-    struct Unpark(Thread);
-    impl Wake for Unpark {
-        fn wake(self: Arc<Self>) {
-            self.0.unpark();
-        }
-    }
-    let waker = Waker::from(Arc::new(Unpark(std::thread::current())));
-    let mut future = Box::pin(future);
-    loop {
-        match future.as_mut().poll(&mut Context::from_waker(&waker)) {
-            Poll::Ready(result) => return result,
-            Poll::Pending => std::thread::park(),
-        }
-    }
 }

@@ -7,7 +7,6 @@ mod faults;
 #[path = "../../../tests/support/harness.rs"]
 mod harness;
 mod job;
-mod light;
 mod plan;
 mod render;
 mod verify;
@@ -58,14 +57,8 @@ fn main() {
         return;
     }
     harness::run(|| {
-        let groups = [
-            faults::trials(),
-            job::trials(),
-            light::trials(),
-            plan::trials(),
-            render::trials(),
-            verify::trials(),
-        ];
+        let groups =
+            [faults::trials(), job::trials(), plan::trials(), render::trials(), verify::trials()];
         groups.into_iter().flatten().collect()
     });
 }

@@ -14,6 +14,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("plan::it_is_printed_for_people_and_programs", printed),
         trial("plan::what_does_not_fit_is_refused_with_one_line", refused),
         trial("plan::structures_and_limits_change_no_picture", same_picture),
+        trial("plan::it_includes_the_buffers_of_light", light),
+        trial("plan::shadows_follow_the_choice_of_structure", shadows),
         trial("bench::a_file_is_measured_with_two_structures", bench),
         trial_of_signals("interrupt::tracing_is_stopped", stopped),
     ]
@@ -131,4 +133,62 @@ fn stopped(_: &'static Headless) {
         let files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
         assert_eq!(files.len(), 1, "{files:?}");
     }
+}
+
+const SCENE: &str = "[film]\nwidth = 64\nheight = 48\n[camera.pinhole]\neye = [0, 1, 6]\nlook_at = [0, 0, 0]\n\
+                     [ground]\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
+
+fn light(_: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |text: &str| std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    write(SCENE);
+    let plan = |flags: &str| {
+        let report = stdout(&folder, &format!("plan scene.toml --json {flags}"));
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let paths =
+            report["buffers"].as_array().unwrap().iter().find(|buffer| buffer["name"] == "paths");
+        paths.map(|paths| paths["bytes"].as_u64().unwrap())
+    };
+    // The scene has a ground, so it is lit.
+    let state = plan("--size 64x48");
+    assert!(state.is_some_and(|bytes| bytes > 0 && bytes % (16 * 64 * 48) == 0), "{state:?}");
+    write(&SCENE.replace("[ground]\n", ""));
+    assert_eq!(plan("--size 64x48"), None);
+    // The state of a path has nine vectors, and that of a studio sample ten.
+    let path = plan("--size 64x48 --integrator path");
+    assert_eq!(path, state.map(|bytes| bytes / 10 * 9));
+}
+
+/// Every second of 80 spheres casts no shadow in a studio.
+fn shadows(_: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene =
+        "[studio]\n[sampling]\nsamples = 2\n[film]\nwidth = 16\nheight = 12\n".to_owned();
+    for i in 0..80 {
+        let (x, y, opacity) = (i % 10, i / 10, 1.0 - 0.5 * f64::from(i % 2));
+        scene +=
+            &format!("[[spheres]]\ncenter = [{x}, {y}, 0]\nradius = 0.4\nopacity = {opacity}\n");
+    }
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let counts = |flags: &str| {
+        let report = stdout(&folder, &format!("plan scene.toml --json {flags}"));
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let names: Vec<_> = report["buffers"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|buffer| buffer["name"].clone())
+            .collect();
+        ["nodes", "cells"]
+            .map(|name| names.iter().filter(|found| found.as_str().unwrap().contains(name)).count())
+    };
+    assert_eq!(counts("--accel tree"), [2, 0]);
+    assert_eq!(counts("--accel grid"), [0, 2]);
+    assert_eq!(counts("--accel tree --integrator path"), [1, 0]);
+    assert_eq!(counts("--accel tree --integrator primary"), [1, 0]);
+    let pictures = ["tree", "grid", "list"].map(|accel| {
+        stdout(&folder, &format!("render scene.toml -o out.png --accel {accel}"));
+        std::fs::read(folder.path().join("out.png")).unwrap()
+    });
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }

@@ -17,7 +17,6 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("profile::the_table_holds_the_passes_of_the_device", table_of_a_profile),
         trial("render::the_demo_renders_on_the_adapter", demo),
-        trial("render::layers_come_from_the_adapter", layers),
         trial("render::an_exr_holds_what_the_adapter_rendered", exr),
         trial("render::info_lists_the_adapter", info),
         trial("render::self_test_of_the_adapter", self_test),
@@ -37,28 +36,6 @@ fn demo(headless: &'static Headless) {
     let expected: Vec<u8> = expected.color().iter().flat_map(|c| color::to_srgb8(*c)).collect();
     let picture = image::open(folder.path().join("demo.png")).unwrap().to_rgb8();
     assert!(picture.into_raw() == expected, "the demo's picture is not the library's");
-}
-
-fn layers(headless: &'static Headless) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(
-        folder.path().join("scene.toml"),
-        include_str!("../../../examples/three-spheres-orthographic.toml"),
-    )
-    .unwrap();
-    let arguments = "render scene.toml -o out.png --layer depth=depth.npy --layer id=id.npy";
-    succeed(&mut command_on(headless, &folder, arguments));
-
-    let view = View::three_spheres_orthographic();
-    let image =
-        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).wait().unwrap();
-    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-    let depth = read("depth.npy");
-    let depth: Vec<f32> = npyz::NpyFile::new(&depth[..]).unwrap().into_vec().unwrap();
-    assert!(depth == image.depth().unwrap(), "depth");
-    let id = read("id.npy");
-    let id: Vec<u32> = npyz::NpyFile::new(&id[..]).unwrap().into_vec().unwrap();
-    assert!(id == image.id().unwrap(), "id");
 }
 
 fn exr(headless: &'static Headless) {

@@ -3,24 +3,16 @@
 use crate::npy_files::npy;
 use crate::support::{Folder, Run};
 
-/// Random numbers from 0 to 1, the same on every machine (`SplitMix64`).
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (x >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// Spheres of which some are equal, and some lie around others, so that rays hit several at one distance.
 pub(crate) fn spheres(count: usize, origin: [f64; 3]) -> Vec<[f64; 4]> {
-    let mut state = count as u64;
+    let mut random = fastrand::Rng::with_seed(count as u64);
     let mut all: Vec<[f64; 4]> = Vec::new();
     for index in 0..count {
         let sphere = match index % 5 {
-            0 if index > 0 => all[(random(&mut state) * index as f64) as usize],
+            0 if index > 0 => all[random.usize(..index)],
             _ => {
-                let [x, y, z] = origin.map(|origin| origin + random(&mut state));
-                [x, y, z, 0.01 + 0.02 * random(&mut state)]
+                let [x, y, z] = origin.map(|origin| origin + random.f64());
+                [x, y, z, 0.01 + 0.02 * random.f64()]
             }
         };
         all.push(sphere);

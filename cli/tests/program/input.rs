@@ -221,14 +221,6 @@ fn a_dash_writes_the_picture_to_standard_output() {
 }
 
 #[test]
-fn a_new_picture_takes_the_place_of_an_old_one() {
-    let folder = Folder::with(&[("scene.toml", SCENE), ("out.png", "old")]);
-    folder.run("render scene.toml -o out.png --backend cpu").succeeded();
-    assert_eq!(decode(&folder.read("out.png")).0, 40);
-    assert_eq!(folder.files(), ["out.png", "scene.toml"]);
-}
-
-#[test]
 #[cfg(unix)]
 fn a_link_and_permissions_stay() {
     use std::os::unix::fs::PermissionsExt;

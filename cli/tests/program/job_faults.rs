@@ -39,21 +39,18 @@ fn killed_parts_are_rendered_again() {
     let folder = folder();
     let wanted = rendered(&folder);
     split_frames(&folder);
-    let mut random = 7_u64;
+    let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..100 {
-        random =
-            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         // Two parts, so that the first may be whole when the second is not.
-        let first = (random >> 33) % 15;
+        let first = random.usize(..15);
         let mut command = folder.command(&format!("job part job {first}-{} -q", first + 1));
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_micros((random >> 40) % 150_000));
+        std::thread::sleep(Duration::from_micros(random.u64(..150_000)));
         child.kill().unwrap();
         child.wait().unwrap();
-        if random >> 62 == 0 {
-            let unit = first as usize;
+        if random.u8(..4) == 0 {
             // Some are lost again, so that there is always something to do.
-            let _ = fs::remove_file(part(&folder, unit));
+            let _ = fs::remove_file(part(&folder, first));
         }
     }
     let is_there = |unit: &usize| part(&folder, *unit).exists();

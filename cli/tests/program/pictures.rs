@@ -137,23 +137,6 @@ fn flags_make_a_lit_picture() {
     render("--integrator studio --samples 1");
 }
 
-#[test]
-fn layers_of_samples() {
-    let folder = Folder::with(&[("scene.toml", LIT)]);
-    let layers =
-        "--layer samples=s.npy --layer variance=v.npy --layer alpha=a.npy --layer id=i.npy";
-    folder
-        .run(&format!("render scene.toml -o out.png --backend cpu --samples 5 {layers}"))
-        .succeeded();
-    fn read<T: npyz::Deserialize>(folder: &Folder, name: &str) -> Vec<T> {
-        npyz::NpyFile::new(&folder.read(name)[..]).unwrap().into_vec().unwrap()
-    }
-    assert_eq!(read::<u32>(&folder, "s.npy"), vec![5; 24 * 18]);
-    assert!(read::<f32>(&folder, "v.npy").iter().any(|variance| *variance > 0.0));
-    assert!(read::<f32>(&folder, "a.npy").iter().any(|alpha| *alpha > 0.0 && *alpha < 1.0));
-    assert_eq!(read::<u32>(&folder, "i.npy")[9 * 24 + 12], 0);
-}
-
 /// Primary rays can be asked for explicitly; a lit scene is then rendered without light.
 #[test]
 fn primary_rays_are_an_integrator() {
@@ -298,16 +281,6 @@ fn the_background_survives_every_tone_curve() {
             let grey = |pixels: &[u8]| pixels.chunks(3).filter(|p| *p == [0x80; 3]).count();
             assert!(changed.starts_with(&[0x80; 3]), "{style} {flags}: {:?}", &changed[..3]);
             assert!(grey(&changed) >= 300 && plain != changed, "{style} {flags}");
-        }
-    }
-}
-
-#[test]
-fn every_named_view_works_whatever_is_up() {
-    let folder = Folder::with(&DATA);
-    for view in ["x", "-x", "y", "-y", "z", "-z", "iso", "10,-90"] {
-        for up in ["", "--up 0,0,1", "--up 1,0,0"] {
-            picture(&folder, &format!("water.xyz --size 12x9 --samples 1 --view {view} {up}"));
         }
     }
 }

@@ -135,36 +135,34 @@ impl Shot {
     }
 }
 
+/// Sums of numbers of the pixels over each of `count`² blocks of a square picture.
+fn sums<const N: usize>(
+    image: &Image,
+    count: usize,
+    of: impl Fn(usize) -> [f64; N],
+) -> impl Iterator<Item = [f64; N]> {
+    let width = image.width() as usize;
+    let side = width / count;
+    (0..count * count).map(move |block| {
+        let (left, top) = (block % count * side, block / count * side);
+        let pixels = (0..side * side).map(|k| (top + k / side) * width + left + k % side);
+        pixels.map(&of).fold([0.0; N], |a, b| std::array::from_fn(|k| a[k] + b[k]))
+    })
+}
+
+/// The number of pixels of a block.
+fn area(image: &Image, count: usize) -> f64 {
+    (f64::from(image.width()) / count as f64).powi(2)
+}
+
 /// Means of the colour's components over each of `count`² blocks of a square picture.
 pub(crate) fn blocks(image: &Image, count: usize) -> Vec<[f64; 3]> {
-    let side = image.width() as usize / count;
-    let mean = |block: usize| {
-        let (left, top) = (block % count * side, block / count * side);
-        let mut sum = [0.0; 3];
-        for j in top..top + side {
-            for i in left..left + side {
-                let color = image.color()[j * image.width() as usize + i];
-                for (sum, c) in sum.iter_mut().zip(color) {
-                    *sum += f64::from(c);
-                }
-            }
-        }
-        sum.map(|sum| sum / (side * side) as f64)
-    };
-    (0..count * count).map(mean).collect()
+    let sums = sums(image, count, |pixel| image.color()[pixel].map(f64::from));
+    sums.map(|sum| sum.map(|sum| sum / area(image, count))).collect()
 }
 
 /// The standard error of each block's luminance, from the variances of its pixels.
 pub(crate) fn standard_errors(image: &Image, count: usize) -> Vec<f64> {
-    let side = image.width() as usize / count;
-    let error = |block: usize| {
-        let (left, top) = (block % count * side, block / count * side);
-        let rows = top..top + side;
-        let variance = |j: usize| {
-            let row = &image.variance().unwrap()[j * image.width() as usize..];
-            row[left..left + side].iter().map(|v| f64::from(*v)).sum::<f64>()
-        };
-        rows.map(variance).sum::<f64>().sqrt() / (side * side) as f64
-    };
-    (0..count * count).map(error).collect()
+    let sums = sums(image, count, |pixel| [f64::from(image.variance().unwrap()[pixel])]);
+    sums.map(|[sum]| sum.sqrt() / area(image, count)).collect()
 }

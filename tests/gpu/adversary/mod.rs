@@ -9,13 +9,14 @@ use std::sync::LazyLock;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, LitPart, Wait};
+use pinhole::gpu::{Headless, HeadlessOptions, LitPart, Wait};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome,
 };
-use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View};
+use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use crate::any_rounding::{Adversary, Rounding};
+use crate::pictures::go_on;
 use crate::planted::{Fault, planted};
 use crate::support::effort::tries;
 use crate::support::{random_light, spheres};
@@ -105,10 +106,6 @@ pub(crate) fn not_accused(outcome: Outcome, words: &dyn Display) -> Result<(), F
     if outcome == Outcome::Violated { Err(words.to_string().into()) } else { Ok(()) }
 }
 
-fn go_on() -> impl FnMut(&pinhole::gpu::Progress) -> Decision {
-    |_: &_| Decision::GoOn
-}
-
 /// Certifies a view that is cut to a small picture, and perhaps also what `render` makes of it.
 fn certify(
     device: &Device,
@@ -138,20 +135,9 @@ pub(crate) fn certify_on(
 ) -> Result<Certificate, Failed> {
     let support::View { scene, camera, film, settings } = view;
     let seen = View::new(camera.as_ref(), cut(film, side)?);
-    let buffers = upload(headless, scene, &seen, settings, choice)?;
-    let recording = headless.record(&buffers, &seen, settings, &mut go_on()).wait()?;
+    let buffers = headless.upload(scene, &view.planned(headless, choice)).wait()?;
+    let recording = headless.record(&buffers, &seen, settings, &mut go_on).wait()?;
     Ok(Checker::new(scene)?.certify(&recording))
-}
-
-fn upload(
-    headless: &Headless,
-    scene: &Scene,
-    seen: &View<'_>,
-    settings: &pinhole::RenderSettings,
-    choice: AccelChoice,
-) -> Result<pinhole::gpu::SceneBuffers, Failed> {
-    let plan = headless.plan(scene, seen, settings, LayerSet::DATA, choice, 0);
-    Ok(headless.upload(scene, &plan.build(scene)).wait()?)
 }
 
 fn certify_lit(device: &Device, view: &support::View) -> Result<LitCertificate, Failed> {
@@ -165,12 +151,12 @@ pub(crate) fn certify_lit_on(
     choice: AccelChoice,
 ) -> Result<LitCertificate, Failed> {
     let (scene, settings, seen) = (&view.scene, &view.settings, view.seen());
-    let buffers = upload(headless, scene, &seen, settings, choice)?;
+    let buffers = headless.upload(scene, &view.planned(headless, choice)).wait()?;
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
     headless
-        .record_lit(&buffers, &seen, settings, (LitPart::Middle, samples), (each, &mut go_on()))
+        .record_lit(&buffers, &seen, settings, (LitPart::Middle, samples), (each, &mut go_on))
         .wait()?;
     Ok(certificate)
 }
@@ -210,7 +196,7 @@ pub(crate) fn hits(
     let plan = plan.with_box_margin(box_margin);
     let buffers = headless.upload(scene, &plan.build(scene.spheres()).into()).wait()?;
     let recording =
-        headless.record(&buffers, view, &RenderSettings::default(), &mut go_on()).wait()?;
+        headless.record(&buffers, view, &RenderSettings::default(), &mut go_on).wait()?;
     Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
 }
 
@@ -227,30 +213,41 @@ pub(crate) fn seen<T>(
     test(&View::new(&camera, Film::new(112, 112)?))
 }
 
-fn structures_agree() -> Result<(), Failed> {
-    let headless = ALIKE.as_ref()?;
-    // Small spheres in a large box, beside which its margin is not small, and spheres that touch.
-    let scenes = [
-        ("small", spheres::random(6000, 5, |_| 1e-3)),
-        ("four decades", spheres::four_decades(3000)),
-        ("a line that touches", spheres::line(300)),
-        ("mirrored pairs", spheres::mirrored(1000)),
-    ];
-    for (name, spheres) in scenes {
-        let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
-        let expected = seen(&scene, |view| hits(headless, &scene, view, AccelChoice::List, 1.0))?;
-        let misses = expected.iter().filter(|(_, id)| *id == pinhole::image::NO_ID).count();
-        println!("{name}: {} hits", expected.len() - misses);
-        if expected.len() - misses < 40 {
+/// Whether structures find, to the bit, the hits that the list finds.
+pub(crate) fn agree(
+    headless: &Headless,
+    name: &str,
+    spheres: spheres::Spheres,
+    choices: &[AccelChoice],
+) -> Result<(), Failed> {
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
+    seen(&scene, |view| {
+        let expected = hits(headless, &scene, view, AccelChoice::List, 1.0)?;
+        let count = expected.iter().filter(|(_, id)| *id != pinhole::image::NO_ID).count();
+        println!("{name}: {count} hits");
+        if count < 40 {
             return Err(format!("{name}: few hits").into());
         }
-        for choice in [AccelChoice::Grid, AccelChoice::Tree] {
-            let found = seen(&scene, |view| hits(headless, &scene, view, choice, 1.0))?;
+        for choice in choices {
+            let found = hits(headless, &scene, view, *choice, 1.0)?;
             let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
             if different > 0 {
                 return Err(format!("{name}: {different} hits differ in {choice:?}").into());
             }
         }
+        Ok(())
+    })
+}
+
+/// Small spheres in a large box, beside which its margin is not small, and spheres that touch.
+fn structures_agree() -> Result<(), Failed> {
+    for (name, spheres) in [
+        ("small", spheres::random(6000, 5, |_| 1e-3)),
+        ("four decades", spheres::four_decades(3000)),
+        ("a line that touches", spheres::line(300)),
+        ("mirrored pairs", spheres::mirrored(1000)),
+    ] {
+        agree(ALIKE.as_ref()?, name, spheres, &[AccelChoice::Grid, AccelChoice::Tree])?;
     }
     Ok(())
 }

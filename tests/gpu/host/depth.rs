@@ -20,16 +20,15 @@ use crate::support::spheres;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
-    [own(), host_depth()].into_iter().flatten().collect()
-}
-
-fn own() -> Vec<Trial> {
     vec![
         trial("host::depth_out::is_that_of_the_matrices", right),
         trial("host::depth_out::faults_are_found", faults),
         trial("host::depth_out::colors_in_every_kind_of_target", colors),
         trial("host::depth_out::near_and_far_planes", planes),
         trial("host::depth_out::what_does_not_fit_is_refused", refused),
+        trial("host::depth_in::hides_what_is_behind", hides),
+        trial("host::depth_in::faults_are_found", hiding_faults),
+        trial("host::depth_in::a_picture_larger_than_one_band", several_bands),
     ]
 }
 
@@ -282,14 +281,6 @@ fn refused(_: &'static Headless) {
     let mut encoder = stage.host.encoder();
     let mut pass = begin(&mut encoder, &color, None, &depth, Some(1.0));
     assert_eq!(composite.draw(&mut pass, &picture), Err(GpuError::NoCamera));
-}
-
-fn host_depth() -> Vec<Trial> {
-    vec![
-        trial("host::depth_in::hides_what_is_behind", hides),
-        trial("host::depth_in::faults_are_found", hiding_faults),
-        trial("host::depth_in::a_picture_larger_than_one_band", several_bands),
-    ]
 }
 
 /// Number of pixels whose id is not the one that must be there.

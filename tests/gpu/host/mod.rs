@@ -12,17 +12,21 @@ mod triangle;
 
 use libtest_mimic::Trial;
 use pinhole::camera::{Camera, HostCamera, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::glam::{DMat4, DQuat, DVec3, DVec4};
+use pinhole::glam::DVec3;
 use pinhole::gpu::{Headless, Wait};
 use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading};
 
-use crate::support::hosts::{Convention, view};
+use crate::support::hosts::{Convention, changes, view};
 use crate::support::{shaded, spheres};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
+    let own = vec![
+        trial("host::same_picture::as_our_own_cameras", as_our_own),
+        trial("host::same_picture::legal_where_there_is_no_camera_of_our_own", legal),
+    ];
     [
-        same_pictures(),
+        own,
         depth::trials(),
         overlay::trials(),
         triangle::trials(),
@@ -34,13 +38,6 @@ pub(crate) fn trials() -> Vec<Trial> {
     .into_iter()
     .flatten()
     .collect()
-}
-
-fn same_pictures() -> Vec<Trial> {
-    vec![
-        trial("host::same_picture::as_our_own_cameras", as_our_own),
-        trial("host::same_picture::legal_where_there_is_no_camera_of_our_own", legal),
-    ]
 }
 
 fn scene() -> Scene {
@@ -90,19 +87,7 @@ fn legal(headless: &'static Headless) {
     let (scene, film) = (scene(), Film::new(61, 43).unwrap());
     let settings = shaded(Shading::Headlight, LinearRgb::BLACK);
     let mut random = fastrand::Rng::with_seed(7);
-    let mirror = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0));
-    let stretch = DMat4::from_cols(
-        DVec4::new(1.5, 0.2, 0.0, 0.0),
-        DVec4::new(0.0, 1.0, -0.3, 0.0),
-        DVec4::new(0.1, 0.0, 0.8, 0.0),
-        DVec4::W,
-    );
-    let model = DMat4::from_scale_rotation_translation(
-        DVec3::splat(0.1),
-        DQuat::from_rotation_y(0.3),
-        DVec3::splat(0.4),
-    );
-    for (case, change) in [DMat4::IDENTITY, mirror, stretch, model].into_iter().enumerate() {
+    for (case, change) in changes().into_iter().enumerate() {
         for (i, convention) in Convention::ALL.into_iter().enumerate() {
             let pose = random_pose(&mut random);
             let size = if convention.is_orthographic() { 0.8 } else { 0.35 };

@@ -15,13 +15,11 @@ use crate::support::hosts::Convention;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
-    [own(), picked()].into_iter().flatten().collect()
-}
-
-fn own() -> Vec<Trial> {
     vec![
         trial("host::overlay::draws_every_pixel_of_any_camera", every_pixel),
         trial("host::overlay::makes_textures_for_a_renderer", textures),
+        trial("host::pick::gives_id_distance_and_place", picks),
+        trial("host::pick::what_cannot_be_picked_is_an_error", errors),
     ]
 }
 
@@ -118,13 +116,6 @@ fn textures(_: &'static Headless) {
     let error =
         CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None }).wait();
     assert!(matches!(error, Err(GpuError::Target { layer: "color", .. })), "{error:?}");
-}
-
-fn picked() -> Vec<Trial> {
-    vec![
-        trial("host::pick::gives_id_distance_and_place", picks),
-        trial("host::pick::what_cannot_be_picked_is_an_error", errors),
-    ]
 }
 
 fn picks(_: &'static Headless) {

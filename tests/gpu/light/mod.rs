@@ -48,17 +48,13 @@ fn own() -> Vec<Trial> {
     agreements.chain(others).chain(passes::trials()).collect()
 }
 
-fn render(view: &View) -> Result<Image, Failed> {
-    Ok(headless()?.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).wait()?)
-}
-
 fn agree(view: &View) -> Result<(), Failed> {
     let wanted = cpu::render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?;
     agree_with(view, &wanted)
 }
 
 fn agree_with(view: &View, wanted: &Image) -> Result<(), Failed> {
-    let found = render(view)?;
+    let found = view.picture(headless()?, LayerSet::ALL);
     let colors = found.color().iter().zip(wanted.color());
     let differences: Vec<f64> = colors
         .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).abs())).fold(0.0, f64::max))
@@ -104,7 +100,7 @@ fn batches(device: &'static Headless) {
 
 fn denoising(device: &'static Headless) {
     let mut view = lit_scenes::sampled("path_lobes_and_metals", 4);
-    let noisy = render(&view).unwrap();
+    let noisy = view.picture(device, LayerSet::ALL);
     let quiet = device.denoise(&noisy).wait().unwrap();
     let wanted = cpu::denoise(&noisy).unwrap();
     for (a, b) in quiet.color().iter().zip(wanted.color()) {
@@ -113,7 +109,7 @@ fn denoising(device: &'static Headless) {
         }
     }
     view.settings.sampling.samples = 512;
-    let reference = render(&view).unwrap();
+    let reference = view.picture(device, LayerSet::ALL);
     let error = |image: &Image| {
         let squares = image.color().iter().zip(reference.color());
         squares

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use pinhole::camera::CameraKind;
 use pinhole::verify::UploadedView;
 
-use crate::legal_device::{Habit, LegalDevice};
+use super::legal_device::{Habit, LegalDevice};
 
 /// A ray before it is moved to the scene's box.
 pub(crate) struct LegalRay {
@@ -127,7 +127,7 @@ impl LegalDevice {
 
     /// The functions of shaders/math/trigonometry.wgsl.
     fn sin_cos_half_turns(&mut self, half_turns: f32) -> [f32; 2] {
-        let quarters = (2.0 * half_turns).round();
+        let quarters = (2.0 * half_turns).round_ties_even();
         let rest = half_turns - 0.5 * quarters;
         let pi = self.round(PI);
         let angle = self.mul(pi, rest);

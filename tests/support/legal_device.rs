@@ -11,7 +11,7 @@ use pinhole::{Film, Image, Scene};
 /// How it rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Habit {
-    /// As every real device.
+    /// As most real devices, which compute as plain f32 does.
     Nearest,
     /// Always up, or always down: errors add up.
     Up,
@@ -32,6 +32,9 @@ impl LegalDevice {
     /// One of the neighbours of a number, or the number itself if there is such an f32.
     pub(crate) fn round(&mut self, exact: f64) -> f32 {
         let nearest = exact as f32;
+        if self.habit == Habit::Nearest {
+            return nearest;
+        }
         let (down, up) = match f64::from(nearest).total_cmp(&exact) {
             std::cmp::Ordering::Equal => (nearest, nearest),
             std::cmp::Ordering::Less => (nearest, nearest.next_up()),
@@ -39,7 +42,6 @@ impl LegalDevice {
         };
         let habit = self.habit;
         let rounded = match habit {
-            Habit::Nearest => nearest,
             Habit::Up => up,
             Habit::Chosen(_) if self.next_bit() => up,
             Habit::Random if self.random.bool() => up,
@@ -131,7 +133,11 @@ impl LegalDevice {
         let foot = [0, 1, 2].map(|k| self.mul_add(-b, d[k], l[k]));
         let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
         let [fx, fy, fz] = squares(foot, -1.0);
-        let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
+        let discriminant = match self.habit {
+            // As the kernel says it; in any order, it may be otherwise.
+            Habit::Nearest => self.dot(&mut [fx, fy, fz]) + radius * radius,
+            _ => self.dot(&mut [(radius, radius), fx, fy, fz]),
+        };
         let [lx, ly, lz] = squares(l, 1.0);
         let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
         let half_chord = self.sqrt(discriminant.max(0.0));
@@ -182,7 +188,7 @@ impl LegalDevice {
     }
 
     /// The ray of a pixel in the scene's box, and whether it meets that.
-    fn ray(
+    pub(crate) fn ray(
         &mut self,
         kind: CameraKind,
         view: &UploadedView,
