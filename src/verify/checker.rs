@@ -67,8 +67,7 @@ impl<'a> Checker<'a> {
             return certificate;
         }
         let check = PixelCheck {
-            scene: self.scene,
-            candidates: &self.candidates,
+            checker: self,
             model: CameraModel::new(camera.kind, uploaded, film),
             recording,
         };
@@ -119,12 +118,10 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> C
     part
 }
 
-/// The data with which pixels are judged.
 pub(super) struct PixelCheck<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) candidates: &'a Candidates,
-    pub(super) model: CameraModel,
-    pub(super) recording: &'a Recording,
+    checker: &'a Checker<'a>,
+    model: CameraModel,
+    recording: &'a Recording,
 }
 
 /// The result for a legal pixel.
@@ -197,7 +194,7 @@ impl PixelCheck<'_> {
 
         legal.clear();
         if entered.may_hit_box {
-            legal.find(self.candidates, &line);
+            legal.find(&self.checker.candidates, &line);
             legal.miss |= entered.may_miss_box;
         }
         let verdict = Verdict::of(legal);
@@ -277,7 +274,7 @@ impl PixelCheck<'_> {
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
     /// bound.
     fn check_shading(&self, layers: &Layers, ray: &Shaded) -> Result<f64, Mismatch> {
-        let (scene, id) = (self.scene, layers.id);
+        let (scene, id) = (self.checker.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
         let normals = LegalNormals::new(&ray.line, sphere, ray.slack);
         let normal = wide(layers.normal);
@@ -295,7 +292,7 @@ impl PixelCheck<'_> {
 
     /// Adds the deviations of a legal normal and colour.
     fn measure_shading(&self, layers: &Layers, ray: &Shaded, measured: &mut Deviations) {
-        let (scene, id) = (self.scene, layers.id);
+        let (scene, id) = (self.checker.scene, layers.id);
         let normal = wide(layers.normal);
         let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
         if let Some((exact, error)) = normals.only() {
@@ -371,7 +368,7 @@ impl PixelCheck<'_> {
         let ray = self.model.ray(pixel).any(&self.model);
         legal.clear();
         if ray.may_hit_box {
-            legal.find_nearer(self.candidates, &ray.line, ray.slack, |_| false);
+            legal.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
             legal.miss |= ray.may_miss_box;
         }
         legal.start_from(&ray);
@@ -394,7 +391,7 @@ impl PixelCheck<'_> {
     /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not
     /// depend on where the ray enters the scene's box.
     fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
-        let sphere = *self.scene.spheres().get(id as usize)?;
+        let sphere = *self.checker.scene.spheres().get(id as usize)?;
         let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
         let test = SphereTest::new(&ray.line, sphere, ray.slack_of_distance)?.as_the_kernel();
         let closer = test.roots();

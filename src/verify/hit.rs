@@ -10,7 +10,6 @@ use crate::scene::SceneError;
 use crate::verify::rounding::{Interval, U};
 use crate::verify::sphere::{Line, Slack, SphereTest};
 
-/// The largest number of spheres in a leaf.
 const LEAF: usize = 6;
 
 /// Subtrees of up to this number of levels are built by one thread.
@@ -65,7 +64,6 @@ impl Candidates {
         Ok(Self { items, nodes, levels })
     }
 
-    /// The box of all spheres.
     pub(super) fn bounds(&self) -> (Vec3, Vec3) {
         (self.nodes[0].low, self.nodes[0].high)
     }

@@ -55,11 +55,8 @@ impl Line {
 /// How far a ray may be from the one that is checked, because another kernel computed it again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slack {
-    /// The distance across the ray.
     pub(super) across: f64,
-    /// The distance along the ray.
     pub(super) along: f64,
-    /// The difference of the directions.
     pub(super) direction: f64,
 }
 

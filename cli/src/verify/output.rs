@@ -67,7 +67,6 @@ pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure
     Ok(Recorded { run, outputs, light: has_light.then_some(certificate), denoiser, kept })
 }
 
-/// File name of the page in the folder of a report.
 const PAGE: &str = "report.html";
 
 /// The outputs of a check, checked before any work is done.

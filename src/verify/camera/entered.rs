@@ -97,7 +97,6 @@ pub(crate) struct EnteredRay {
     recorded_direction: DVec3,
     /// Distance at which the ray enters the box.
     pub(crate) enter: Interval,
-    /// Legal intervals of the direction's components.
     pub(crate) direction: [Interval; 3],
     /// Whether the device may find that a ray exists and hits the box, and whether it may find the opposite.
     pub(crate) may_hit_box: bool,
@@ -207,7 +206,6 @@ pub(crate) struct AnyRay {
     pub(crate) slack_of_distance: Slack,
     /// The number that a device may add to a distance along the line to get the distance from the camera.
     pub(crate) distance: Interval,
-    /// Legal intervals of the direction's components.
     pub(crate) direction: [Interval; 3],
     /// Whether a device may find that a ray exists and hits the box, and whether it may find the opposite.
     pub(crate) may_hit_box: bool,

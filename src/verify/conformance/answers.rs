@@ -95,7 +95,6 @@ pub(super) fn refused(field: Option<Field>, message: String) -> ConformanceError
 }
 
 impl Answers<'_> {
-    /// Column and row of a pixel.
     pub(super) fn pixel(&self, index: usize) -> [u32; 2] {
         pixel_at(index, self.size[0])
     }

@@ -17,7 +17,6 @@ const EVERYTHING: f64 = 1.0 / EPSILON;
 /// The rounding errors of a search in f64, relative to the longest vector to a sphere: many times what they are.
 const OF_SEARCH: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The data with which pixels are judged.
 pub(super) struct PixelCheck<'a> {
     pub(super) scene: &'a Scene,
     pub(super) candidates: &'a Candidates,

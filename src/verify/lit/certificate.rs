@@ -40,7 +40,6 @@ pub enum LitStage {
 }
 
 impl LitStage {
-    /// The number of stages.
     pub(super) const COUNT: usize = Self::Accumulate as usize + 1;
 
     /// The name in reports.

@@ -8,7 +8,6 @@ use crate::verify::lit::judge::Expected;
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState};
 
-/// The data with which samples are judged.
 pub(crate) struct LitCheck<'a> {
     pub(crate) checker: &'a Checker<'a>,
     pub(crate) inputs: &'a LitInputs,

@@ -204,7 +204,6 @@ impl LitCertificate {
         }
     }
 
-    /// Records the verdict about a stage.
     pub(crate) fn note(
         &mut self,
         stage: LitStage,

@@ -66,7 +66,6 @@ pub(super) fn in_pieces(
     Ok(())
 }
 
-/// A sink that adds bytes to a digest.
 pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<()> {
     |bytes| {
         digest.update(bytes);
@@ -74,7 +73,6 @@ pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<
     }
 }
 
-/// Writes a file with metadata texts and arrays.
 pub(super) fn write(
     mut metadata: BTreeMap<String, String>,
     mut arrays: Vec<Array<'_>>,
@@ -198,7 +196,6 @@ impl<'a> Container<'a> {
         Ok(Self { header: parsed, source: RefCell::new(source), start })
     }
 
-    /// Writes the bytes of an array to a sink.
     pub(super) fn emit(&self, name: &str, sink: &mut Sink<'_>) -> Result<(), RunFileError> {
         let (start, end) = self.info(name)?.data_offsets;
         let mut source = self.source.borrow_mut();
@@ -215,7 +212,6 @@ impl<'a> Container<'a> {
         text(&self.header, key).ok_or_else(|| contradiction(format!("the text `{key}` is missing")))
     }
 
-    /// A text that is a whole number.
     pub(super) fn whole(&self, key: &str) -> Result<u32, RunFileError> {
         let words = || contradiction(format!("the text `{key}` is not a valid number"));
         self.text(key)?.parse().map_err(|_| words())
@@ -229,7 +225,6 @@ impl<'a> Container<'a> {
         self.header.info(name).is_some()
     }
 
-    /// The shape of an array.
     pub(super) fn shape(&self, name: &str) -> Result<&[usize], RunFileError> {
         Ok(&self.info(name)?.shape)
     }

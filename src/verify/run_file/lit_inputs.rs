@@ -125,7 +125,6 @@ fn request<E>(
     Ok(hex(all))
 }
 
-/// The arrays of a view with these names.
 pub(super) fn view_arrays<'a>(
     view: &UploadedView,
     [name, advance]: [&'static str; 2],
@@ -138,7 +137,6 @@ pub(super) fn view_arrays<'a>(
     ]
 }
 
-/// Reads a view from the arrays with these names.
 pub(super) fn view(
     file: &Container<'_>,
     [view, advance]: [&str; 2],
@@ -209,7 +207,6 @@ fn sky(file: &Container<'_>) -> Result<Arc<Environment>, RunFileError> {
     environment.map(Arc::new).map_err(|error| contradiction(format!("the sky: {error}")))
 }
 
-/// A text that is JSON.
 fn json<T: DeserializeOwned>(file: &Container<'_>, key: &str) -> Result<T, RunFileError> {
     serde_json::from_str(file.text(key)?).map_err(|error| {
         contradiction(format!("the text `{key}`: {}", shortened(&error.to_string())))

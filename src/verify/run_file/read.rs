@@ -169,7 +169,6 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     })
 }
 
-/// Reads a picture from the arrays with these names.
 fn image(
     file: &Container<'_>,
     film: &Film,
@@ -186,7 +185,6 @@ fn image(
     .ok_or_else(|| contradiction("the layers have different sizes"))
 }
 
-/// The picture rendered without recording, if there is one.
 fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError> {
     const LAYERS: [&str; 4] =
         ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];

@@ -180,7 +180,6 @@ pub fn write_with(
     container::write(texts, arrays, out)
 }
 
-/// The layers of a picture as arrays with these names.
 fn layers_of<'a>(
     image: &'a Image,
     shape: [usize; 2],

@@ -113,7 +113,6 @@ impl Kernel<'_> {
         self.before.number(slot::ALBEDO) > 0.0
     }
 
-    /// The luminance of ambient light.
     pub(crate) fn ambient_luminance(&self) -> Number {
         luminance(self.lighting().ambient)
     }

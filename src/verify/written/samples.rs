@@ -22,7 +22,6 @@ pub(super) struct LegalColor {
     pub(super) is_hit: bool,
 }
 
-/// The data with which pixels are judged.
 pub(super) struct PictureCheck<'a> {
     checker: &'a Checker<'a>,
     model: CameraModel,
@@ -163,7 +162,6 @@ impl WrittenPicture<'_> {
         Ok((0..self.size[0] as usize * self.size[1] as usize).map(color).collect())
     }
 
-    /// The samples of a pixel.
     pub(super) fn at(&self, index: usize) -> [f64; 4] {
         let mut found = [0.0; 4];
         match self.samples {
