@@ -202,10 +202,6 @@ impl Reader {
 
     /// Returns the atoms of the frame, which is the one with this index in the file.
     fn finish(self, index: usize) -> Result<Loaded, LoadError> {
-        let frames = self.models.max(1);
-        if self.frame >= frames {
-            return Err(LoadError::no_such_frame(self.frame, frames));
-        }
         if self.atoms.is_empty() {
             let message = format!(
                 "frame {index} is the model that begins here, which has no ATOM or HETATM records; choose another frame"
@@ -214,7 +210,6 @@ impl Reader {
         }
         let mut loaded = self.atoms.into_loaded();
         loaded.cell = self.cell;
-        loaded.frames = Some(frames);
         if let Some(line) = self.after_end {
             loaded.notes.push(format!(
                 "the atoms from line {line} on are left out, because they follow the end of the structure; if they \
