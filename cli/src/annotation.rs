@@ -135,9 +135,7 @@ impl AnnotationFlags {
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
     pub(crate) fn apply_to(&self, scene: Encoding) -> Encoding {
-        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
-        // Both were checked, so this does not fail.
-        scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
+        Encoding { dots_per_inch: self.dots_per_inch.or(scene.dots_per_inch), ..scene }
     }
 
     /// The parts of the film that a camera must leave free for the legend. `file` is what a scene file draws.
@@ -292,12 +290,13 @@ impl EncodingFlags {
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
     pub(crate) fn apply_to(self, scene: Encoding) -> Encoding {
-        let encoding = scene
-            .with_bits(self.bits.unwrap_or(scene.bits()))
-            .with_transparent(self.transparent.unwrap_or(scene.transparent()))
-            .with_tone(self.tone.unwrap_or(scene.tone()));
-        // Both exposures were checked, so this does not fail.
-        encoding.with_exposure(self.exposure.unwrap_or(scene.exposure())).unwrap_or(encoding)
+        Encoding {
+            bits: self.bits.unwrap_or(scene.bits),
+            transparent: self.transparent.unwrap_or(scene.transparent),
+            exposure: self.exposure.unwrap_or(scene.exposure),
+            tone: self.tone.unwrap_or(scene.tone),
+            ..scene
+        }
     }
 }
 

@@ -104,7 +104,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         tell(format_args!("note: {note}"));
     }
     // `render` adds this layer too.
-    let alpha = input.encoding.transparent().then_some(Layer::Alpha);
+    let alpha = input.encoding.transparent.then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");

@@ -96,12 +96,12 @@ pub(crate) fn ready(
     }
     input.notes.drain(..).for_each(|note| notes.tell(note));
     let encoding = annotation.apply_to(encoding.apply_to(input.encoding));
-    let encoding = encoding.with_background(input.settings.visible_background());
-    input.settings.is_transparent = encoding.transparent();
+    let encoding = Encoding { background: input.settings.visible_background(), ..encoding };
+    input.settings.is_transparent = encoding.transparent;
     if input.settings.integrator.is_primary() {
         stop_rule.check_without_light()?;
     }
-    input.settings.notes(&input.scene).iter().for_each(|note| notes.tell(note.to_string()));
+    input.settings.notes(&input.scene).into_iter().for_each(|note| notes.tell(note));
     let found = RefCell::new(Vec::new());
     let annotations =
         annotation.for_input(&input, |text| found.borrow_mut().push(text.to_string()))?;

@@ -122,9 +122,9 @@ pub struct WrittenPicture<'a> {
 impl WrittenPicture<'_> {
     /// The number of bytes of a sample, and of channels of a pixel.
     fn layout(&self) -> [usize; 2] {
-        let bytes = self.encoding.bits().bytes();
+        let bytes = self.encoding.bits.bytes();
         match self.samples {
-            Samples::Encoded(_) => [bytes, if self.encoding.transparent() { 4 } else { 3 }],
+            Samples::Encoded(_) => [bytes, if self.encoding.transparent { 4 } else { 3 }],
             Samples::Linear(_) => [1, 4],
         }
     }
@@ -159,7 +159,7 @@ impl WrittenPicture<'_> {
         let [_, channels] = self.layout();
         let white = match self.samples {
             Samples::Linear(_) => 1.0,
-            Samples::Encoded(_) => f64::from(self.encoding.bits().white()),
+            Samples::Encoded(_) => f64::from(self.encoding.bits.white()),
         };
         let color = |index| {
             let [r, g, b, _] = self.at(index, channels);
@@ -234,15 +234,15 @@ impl<'a> Mapping<'a> {
             for (channel, color) in channels.iter_mut().zip(legal.color) {
                 *channel = [color.low, color.high];
             }
-            channels[3] = [if encoding.transparent() { alpha } else { 1.0 }; 2];
+            channels[3] = [if encoding.transparent { alpha } else { 1.0 }; 2];
             return LegalSample(channels);
         };
-        let [low, high] = self.displayed(legal).map(|ends| encode(encoding.bits(), ends));
+        let [low, high] = self.displayed(legal).map(|ends| encode(encoding.bits, ends));
         for channel in 0..3 {
             channels[channel] = [low[channel], high[channel]];
         }
-        if encoding.transparent() {
-            channels[3] = [alpha * f64::from(encoding.bits().white()); 2];
+        if encoding.transparent {
+            channels[3] = [alpha * f64::from(encoding.bits.white()); 2];
         }
         LegalSample(channels)
     }
@@ -251,7 +251,7 @@ impl<'a> Mapping<'a> {
     fn displayed(&self, legal: &LegalColor) -> [[f32; 3]; 2] {
         let encoding = self.picture.encoding;
         let ends = [legal.color.map(|c| down(c.low)), legal.color.map(|c| up(c.high))];
-        if !legal.is_hit && (encoding.transparent() || encoding.kept_background().is_some()) {
+        if !legal.is_hit && (encoding.transparent || encoding.kept_background().is_some()) {
             // The background passes through unchanged, and is black where it is transparent.
             return ends;
         }
