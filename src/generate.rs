@@ -30,22 +30,10 @@ pub enum Kind {
 }
 
 /// Why spheres cannot be generated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum GenerateError {
-    /// More spheres are requested than a scene can have.
-    #[error("{count} spheres are too many; a scene has at most {}", MAX_COUNT)]
-    TooMany {
-        /// The number of spheres requested.
-        count: u64,
-    },
-    /// There is not enough memory.
-    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * BYTES_PER_SPHERE)]
-    Memory {
-        /// The number of spheres requested.
-        count: u64,
-    },
-}
+pub struct GenerateError(String);
 
 /// The largest number of spheres in a scene.
 pub const MAX_COUNT: u64 = u32::MAX as u64 - 1;
@@ -74,9 +62,7 @@ impl Kind {
     /// # Errors
     /// Returns an error if `count` exceeds [`MAX_COUNT`], or if there is not enough memory.
     pub fn spheres(self, count: u64, seed: u64) -> Result<Vec<[f32; 4]>, GenerateError> {
-        if count > MAX_COUNT {
-            return Err(GenerateError::TooMany { count });
-        }
+        check_count(count)?;
         let uniform = Uniform::new(seed);
         match self {
             Self::Random => {
@@ -101,13 +87,29 @@ impl Kind {
     }
 }
 
+/// Checks that a scene can have so many spheres.
+///
+/// # Errors
+/// Returns an error if `count` exceeds [`MAX_COUNT`].
+pub fn check_count(count: u64) -> Result<(), GenerateError> {
+    let message = "spheres are too many; a scene has at most";
+    match count {
+        0..=MAX_COUNT => Ok(()),
+        _ => Err(GenerateError(format!("{count} {message} {MAX_COUNT}"))),
+    }
+}
+
 fn filled(
     count: u64,
     sphere: impl Fn(u64) -> [f64; 4] + Send + Sync,
 ) -> Result<Vec<[f32; 4]>, GenerateError> {
-    let memory = |_| GenerateError::Memory { count };
-    let length = usize::try_from(count).map_err(|_| GenerateError::Memory { count })?;
-    parallel::try_map(length, |i| sphere(i as u64).map(|x| x as f32)).map_err(memory)
+    let length = usize::try_from(count).unwrap_or(usize::MAX);
+    parallel::try_map(length, |i| sphere(i as u64).map(|x| x as f32)).map_err(|_| {
+        let bytes = count * BYTES_PER_SPHERE;
+        GenerateError(format!(
+            "there is not enough memory for {count} spheres, which need {bytes} bytes"
+        ))
+    })
 }
 
 fn random(uniform: &Uniform, i: u64, largest: f64) -> [f64; 4] {
@@ -188,32 +190,27 @@ impl Standard {
     /// The name of the scene.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::R1M => "R1M",
-            Self::R10M => "R10M",
-            Self::L1M => "L1M",
-            Self::C200k => "C200k",
-        }
+        self.row().0
     }
 
     /// The number of spheres.
     #[must_use]
     pub const fn count(self) -> u64 {
-        match self {
-            Self::R1M => 1_000_000,
-            Self::R10M => 10_000_000,
-            Self::L1M => 4 * 63 * 63 * 63,
-            Self::C200k => 200_000,
-        }
+        self.row().1
     }
 
     /// The arrangement of the spheres.
     #[must_use]
     pub const fn kind(self) -> Kind {
+        self.row().2
+    }
+
+    const fn row(self) -> (&'static str, u64, Kind) {
         match self {
-            Self::R1M | Self::R10M => Kind::Random,
-            Self::L1M => Kind::Lattice,
-            Self::C200k => Kind::Clusters,
+            Self::R1M => ("R1M", 1_000_000, Kind::Random),
+            Self::R10M => ("R10M", 10_000_000, Kind::Random),
+            Self::L1M => ("L1M", 4 * 63 * 63 * 63, Kind::Lattice),
+            Self::C200k => ("C200k", 200_000, Kind::Clusters),
         }
     }
 

@@ -288,15 +288,14 @@ impl EncodingFlags {
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
     pub(crate) fn apply_to(self, scene: Encoding) -> Encoding {
-        let encoding = scene
-            .with_bits(self.bits.unwrap_or(scene.bits()))
-            .with_transparent(self.transparent.unwrap_or(scene.transparent()))
-            .with_tone(self.tone.unwrap_or(scene.tone()));
-        // These were checked, so they do not fail.
-        let exposure = self.exposure.unwrap_or(scene.exposure());
-        let encoding = encoding.with_exposure(exposure).unwrap_or(encoding);
-        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
-        encoding.with_dots_per_inch(dots_per_inch).unwrap_or(encoding)
+        Encoding {
+            bits: self.bits.unwrap_or(scene.bits),
+            transparent: self.transparent.unwrap_or(scene.transparent),
+            exposure: self.exposure.unwrap_or(scene.exposure),
+            tone: self.tone.unwrap_or(scene.tone),
+            dots_per_inch: self.dots_per_inch.or(scene.dots_per_inch),
+            ..scene
+        }
     }
 }
 

@@ -70,12 +70,12 @@ impl Written {
         let size = [image.width(), image.height()];
         let samples = if is_png {
             FileSamples::Encoded {
-                bits: encoding.bits(),
-                has_alpha: encoding.transparent(),
+                bits: encoding.bits,
+                has_alpha: encoding.transparent,
                 bytes: png::samples(image, encoding)?,
             }
         } else {
-            let alpha = image.alpha().filter(|_| encoding.transparent());
+            let alpha = image.alpha().filter(|_| encoding.transparent);
             let with_alpha = |(i, [r, g, b]): (usize, &[f32; 3])| {
                 [*r, *g, *b, alpha.map_or(1.0, |alpha| alpha[i])]
             };

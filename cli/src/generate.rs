@@ -18,7 +18,7 @@ use crate::picture::Outputs;
 use crate::progress::{self, tell};
 use crate::render::render;
 use crate::{memory, threads};
-use pinhole::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
+use pinhole::generate::{BYTES_PER_SPHERE, Kind, check_count};
 use pinhole::image::LayerSet;
 use pinhole::write::{npy, raw};
 
@@ -43,9 +43,7 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("{}: this is not a valid kind", args.kind)));
     };
     let count = args.count;
-    if count > MAX_COUNT {
-        return Err(Failure::usage(format!("-n {count}: {}", GenerateError::TooMany { count })));
-    }
+    check_count(count).map_err(|error| Failure::usage(format!("-n {count}: {error}")))?;
     let path: &Path = &args.output;
     let write: fn(&[[f32; 4]], &mut NamedTempFile) -> std::io::Result<()> =
         match extension(path).as_deref() {

@@ -106,7 +106,7 @@ impl Outputs {
 
     pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
         // The exposure and the tone curve of a PNG need what tells the background from the rest.
-        let encoded = if self.format == PictureFormat::Png || encoding.transparent() {
+        let encoded = if self.format == PictureFormat::Png || encoding.transparent {
             encoding.layers()
         } else {
             LayerSet::COLOR

@@ -100,7 +100,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     }
     input.notes.iter().for_each(|note| progress::notes(false)(note));
     // `render` adds this layer too.
-    let alpha = input.encoding.transparent().then_some(Layer::Alpha);
+    let alpha = input.encoding.transparent.then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");

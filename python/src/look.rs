@@ -82,10 +82,9 @@ impl Look {
         let sky = sky.map(environment_of).transpose()?;
         let settings = file.settings(kind, scene, camera.as_ref(), sky);
         let mut settings = settings.map_err(|error| text.fault(&error))?;
-        let encoding = file.encoding.with_background(settings.visible_background());
-        settings.is_transparent = encoding.transparent();
-        let mut notes: Vec<String> =
-            settings.notes(scene).iter().map(ToString::to_string).collect();
+        let encoding = Encoding { background: settings.visible_background(), ..file.encoding };
+        settings.is_transparent = encoding.transparent;
+        let mut notes = settings.notes(scene);
         let middle = scene.bounds_to_frame();
         let middle = 0.5 * (middle.min() + middle.max());
         let view = View::new(camera.as_ref(), film);

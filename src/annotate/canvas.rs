@@ -102,10 +102,8 @@ pub(super) enum Paint {
 pub(super) enum Shape {
     /// A rectangle: left, top, right, bottom.
     Rect { rect: [f32; 4], paint: Paint },
-    /// A bar of whole pixels, with a colour for each row from the top.
-    Rows { left: i64, top: i64, width: i64, colors: Vec<[u8; 3]> },
-    /// A bar of whole pixels, with a colour for each column from the left.
-    Columns { left: i64, top: i64, height: i64, colors: Vec<[u8; 3]> },
+    /// A bar of whole pixels, with a colour for each row from the top, or if it lies for each column from the left.
+    Bar { place: [i64; 2], thickness: i64, colors: Vec<[u8; 3]>, lies: bool },
     /// A disk.
     Disk { center: [f32; 2], radius: f32, paint: Paint },
     /// One line of text, from the start of its baseline.
@@ -165,17 +163,11 @@ impl Block {
                 Shape::Rect { rect: [l, t, r, b], paint } => {
                     fill([l + dx, t + dy, r + dx, b + dy], color(paint), 1.0, canvas);
                 }
-                Shape::Rows { left: l, top: t, width, colors } => {
-                    for (row, color) in colors.iter().enumerate() {
-                        for column in 0..*width {
-                            canvas.blend(left + l + column, top + t + row as i64, *color, 1.0);
-                        }
-                    }
-                }
-                Shape::Columns { left: l, top: t, height, colors } => {
-                    for (column, color) in colors.iter().enumerate() {
-                        for row in 0..*height {
-                            canvas.blend(left + l + column as i64, top + t + row, *color, 1.0);
+                Shape::Bar { place: [x, y], thickness, colors, lies } => {
+                    for (along, color) in (0..).zip(colors) {
+                        for across in 0..*thickness {
+                            let [i, j] = if *lies { [along, across] } else { [across, along] };
+                            canvas.blend(left + x + i, top + y + j, *color, 1.0);
                         }
                     }
                 }

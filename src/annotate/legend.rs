@@ -38,9 +38,79 @@ impl Legend {
         match (&self.key.kind, lies) {
             (KeyKind::Scale(scale), false) => vertical(scale, title, missing, em, size),
             (KeyKind::Scale(scale), true) => horizontal(scale, title, missing, em, size),
-            (KeyKind::Categories(list), false) => categories(list, title, missing, em, size),
-            (KeyKind::Categories(list), true) => in_lines(list, title, missing, em, size),
+            (KeyKind::Categories(list), false) => self.categories(list, em, size),
+            (KeyKind::Categories(list), true) => self.in_lines(list, em, size),
         }
+    }
+
+    /// A list in columns, with the title above.
+    fn categories(&self, list: &[Category], em: f32, [width, height]: [f32; 2]) -> Block {
+        let (missing, mut block) = (self.key.missing, head(self.title(), em));
+        let rows = ((0.8 * height - block.height) / (ROW * em)).max(2.0) as usize;
+        let names = list.iter().map(|category| category.name.as_str()).take(rows * MOST_COLUMNS);
+        let names = names.chain(missing.map(|_| MISSING));
+        let widest = names.map(|name| font::width(name, em)).fold(0.0, f32::max);
+        let column = widest + (INDENT + 1.2) * em;
+        let columns = ((0.5 * width / column) as usize).clamp(1, MOST_COLUMNS);
+        let shown = shown(list, missing, rows * columns);
+        let columns = shown.len().div_ceil(rows);
+        let rows = shown.len().div_ceil(columns.max(1));
+        let top = block.height;
+        for (index, item) in shown.iter().enumerate() {
+            let x = (index / rows) as f32 * column;
+            let y = top + ((index % rows) as f32 + 0.5) * ROW * em;
+            row(&mut block, item, [x, y], em);
+        }
+        block.height = top + rows as f32 * ROW * em;
+        block
+    }
+
+    /// A list in lines, with the title above.
+    fn in_lines(&self, list: &[Category], em: f32, [width, height]: [f32; 2]) -> Block {
+        let (missing, mut block) = (self.key.missing, head(self.title(), em));
+        let (top, room) = (block.height, 0.85 * width);
+        let most_rows = (0.3 * height / (ROW * em)).max(1.0) as usize;
+        let item_width = |(name, color): &Entry| {
+            font::width(name, em) + if color.is_some() { (INDENT + 1.2) * em } else { 1.2 * em }
+        };
+        // As many as fit into the rows.
+        let mut count = list.len() + usize::from(missing.is_some());
+        let lines = loop {
+            let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
+            let mut used = 0.0;
+            for item in shown(list, missing, count) {
+                let width = item_width(&item);
+                if used > 0.0 && used + width > room {
+                    lines.push(Vec::new());
+                    used = 0.0;
+                }
+                used += width;
+                lines.last_mut().into_iter().for_each(|line| line.push(item.clone()));
+            }
+            if lines.len() <= most_rows || count <= 2 {
+                break lines;
+            }
+            count = count.min(lines.len() * 200) * 3 / 4;
+        };
+        let widths = lines.iter().map(|line| line.iter().map(item_width).sum::<f32>() - 1.2 * em);
+        let widths: Vec<f32> = widths.collect();
+        let widest = widths.iter().copied().fold(block.width, f32::max);
+        for shape in &mut block.shapes {
+            if let Shape::Text { text, at, em } = shape {
+                at[0] = 0.5 * (widest - font::width(text, *em));
+            }
+        }
+        for (index, (line, line_width)) in lines.iter().zip(&widths).enumerate() {
+            let y = top + (index as f32 + 0.5) * ROW * em;
+            let mut x = 0.5 * (widest - line_width);
+            for item in line {
+                row(&mut block, item, [x, y], em);
+                x += item_width(item);
+            }
+        }
+        block.width = widest;
+        block.height = top + lines.len() as f32 * ROW * em;
+        block
     }
 }
 
@@ -96,88 +166,6 @@ fn row(block: &mut Block, (name, color): &Entry, [x, y]: [f32; 2], em: f32) {
         }
         None => block.text(name, [x, baseline], em),
     }
-}
-
-/// A list in columns, with the title above.
-fn categories(
-    list: &[Category],
-    title: &str,
-    missing: Option<[u8; 3]>,
-    em: f32,
-    [width, height]: [f32; 2],
-) -> Block {
-    let mut block = head(title, em);
-    let rows = ((0.8 * height - block.height) / (ROW * em)).max(2.0) as usize;
-    let names = list.iter().map(|category| category.name.as_str()).take(rows * MOST_COLUMNS);
-    let names = names.chain(missing.map(|_| MISSING));
-    let widest = names.map(|name| font::width(name, em)).fold(0.0, f32::max);
-    let column = widest + (INDENT + 1.2) * em;
-    let columns = ((0.5 * width / column) as usize).clamp(1, MOST_COLUMNS);
-    let shown = shown(list, missing, rows * columns);
-    let columns = shown.len().div_ceil(rows);
-    let rows = shown.len().div_ceil(columns.max(1));
-    let top = block.height;
-    for (index, item) in shown.iter().enumerate() {
-        let x = (index / rows) as f32 * column;
-        let y = top + ((index % rows) as f32 + 0.5) * ROW * em;
-        row(&mut block, item, [x, y], em);
-    }
-    block.height = top + rows as f32 * ROW * em;
-    block
-}
-
-/// A list in lines, with the title above.
-fn in_lines(
-    list: &[Category],
-    title: &str,
-    missing: Option<[u8; 3]>,
-    em: f32,
-    [width, height]: [f32; 2],
-) -> Block {
-    let mut block = head(title, em);
-    let (top, room) = (block.height, 0.85 * width);
-    let most_rows = (0.3 * height / (ROW * em)).max(1.0) as usize;
-    let item_width = |(name, color): &Entry| {
-        font::width(name, em) + if color.is_some() { (INDENT + 1.2) * em } else { 1.2 * em }
-    };
-    // As many as fit into the rows.
-    let mut count = list.len() + usize::from(missing.is_some());
-    let lines = loop {
-        let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
-        let mut used = 0.0;
-        for item in shown(list, missing, count) {
-            let width = item_width(&item);
-            if used > 0.0 && used + width > room {
-                lines.push(Vec::new());
-                used = 0.0;
-            }
-            used += width;
-            lines.last_mut().into_iter().for_each(|line| line.push(item.clone()));
-        }
-        if lines.len() <= most_rows || count <= 2 {
-            break lines;
-        }
-        count = count.min(lines.len() * 200) * 3 / 4;
-    };
-    let widths = lines.iter().map(|line| line.iter().map(item_width).sum::<f32>() - 1.2 * em);
-    let widths: Vec<f32> = widths.collect();
-    let widest = widths.iter().copied().fold(block.width, f32::max);
-    for shape in &mut block.shapes {
-        if let Shape::Text { text, at, em } = shape {
-            at[0] = 0.5 * (widest - font::width(text, *em));
-        }
-    }
-    for (index, (line, line_width)) in lines.iter().zip(&widths).enumerate() {
-        let y = top + (index as f32 + 0.5) * ROW * em;
-        let mut x = 0.5 * (widest - line_width);
-        for item in line {
-            row(&mut block, item, [x, y], em);
-            x += item_width(item);
-        }
-    }
-    block.width = widest;
-    block.height = top + lines.len() as f32 * ROW * em;
-    block
 }
 
 fn head(title: &str, em: f32) -> Block {

@@ -24,34 +24,16 @@ pub(super) fn vertical(
     let (left, right) = (line, line + bar_width);
     let rows = bar_height as usize;
     // Row 0 is the top.
-    let row_of = |value: f64| {
-        let position = scale.scale().position(value).unwrap_or(0.0);
-        rows - 1 - pixel_of(position, rows)
-    };
+    let middle_of = |value: f64| top + (rows - 1 - pixel_at(scale, value, rows)) as f32 + 0.5;
     let mut colors = bar_colors(scale, rows, &ticks);
     colors.reverse();
-    block.shapes.push(Shape::Rows {
-        left: left as i64,
-        top: top as i64,
-        width: bar_width as i64,
-        colors,
-    });
+    let (place, thickness) = ([left as i64, top as i64], bar_width as i64);
+    block.shapes.push(Shape::Bar { place, thickness, colors, lies: false });
     block.frame([left, top, right, top + bar_height], line);
     block.width = block.width.max(right + line);
-    let tick = |block: &mut Block, value: f64, length: f32| {
-        let middle = top + row_of(value) as f32 + 0.5;
-        let start = (middle - 0.5 * line).round();
-        block.rect([right, start, right + line + length, start + line], Paint::Ink);
-        middle
-    };
-    for value in &ticks.minor {
-        tick(&mut block, *value, (0.22 * em).round());
-    }
+    let text_x = draw_ticks(&mut block, &ticks, right, em, middle_of, false) + 0.35 * em;
     for (value, text) in &ticks.labeled {
-        let length = (0.38 * em).round();
-        let middle = tick(&mut block, *value, length);
-        let x = right + line + length + 0.35 * em;
-        block.text(text, [x, middle + HALF_CAPITAL * em], em);
+        block.text(text, [text_x, middle_of(*value) + HALF_CAPITAL * em], em);
     }
     block.height = top + bar_height + line;
     if let Some(color) = missing {
@@ -60,7 +42,7 @@ pub(super) fn vertical(
         block.rect([left, top, right, bottom], Paint::Color(color));
         block.frame([left, top, right, bottom], line);
         let baseline = 0.5 * (top + bottom) + HALF_CAPITAL * em;
-        block.text(MISSING, [right + line + (0.38 * em).round() + 0.35 * em, baseline], em);
+        block.text(MISSING, [text_x, baseline], em);
         block.height = bottom + line;
     }
     block
@@ -85,8 +67,7 @@ pub(super) fn horizontal(
     let choices = (2..=9).rev().map(|most| Ticks::of(scale.scale(), most));
     let ticks = choices.into_iter().find(fits).unwrap_or_else(|| Ticks::of(scale.scale(), 2));
     let columns = bar_width as usize;
-    let column_of =
-        |value: f64| pixel_of(scale.scale().position(value).unwrap_or(0.0), columns) as f32;
+    let column_of = |value: f64| pixel_at(scale, value, columns) as f32;
     // The first and the last text may reach beyond the bar.
     let overhang = |(value, text): &(f64, String)| {
         let half = 0.5 * font::width(text, em);
@@ -103,27 +84,16 @@ pub(super) fn horizontal(
     block.shapes.append(&mut title_block.shapes);
     let top = title_block.height.round() + line;
     let (left, right, bottom) = (over, over + bar_width, top + bar_height);
-    block.shapes.push(Shape::Columns {
-        left: left as i64,
-        top: top as i64,
-        height: bar_height as i64,
-        colors: bar_colors(scale, columns, &ticks),
-    });
+    let (place, thickness) = ([left as i64, top as i64], bar_height as i64);
+    let colors = bar_colors(scale, columns, &ticks);
+    block.shapes.push(Shape::Bar { place, thickness, colors, lies: true });
     block.frame([left, top, right, bottom], line);
     block.width = right + over;
-    let tick = |block: &mut Block, value: f64, length: f32| {
-        let middle = left + column_of(value) + 0.5;
-        let start = (middle - 0.5 * line).round();
-        block.rect([start, bottom, start + line, bottom + line + length], Paint::Ink);
-        middle
-    };
-    for value in &ticks.minor {
-        tick(&mut block, *value, (0.22 * em).round());
-    }
-    let baseline = bottom + line + (0.38 * em).round() + 1.05 * em;
+    let middle_of = |value: f64| left + column_of(value) + 0.5;
+    let baseline = draw_ticks(&mut block, &ticks, bottom, em, middle_of, true) + 1.05 * em;
     for (value, text) in &ticks.labeled {
-        let middle = tick(&mut block, *value, (0.38 * em).round());
-        block.text(text, [middle - 0.5 * font::width(text, em), baseline], em);
+        let x = middle_of(*value) - 0.5 * font::width(text, em);
+        block.text(text, [x, baseline], em);
     }
     block.height = baseline + 0.1 * em;
     if let Some(color) = missing {
@@ -136,6 +106,26 @@ pub(super) fn horizontal(
         block.text(MISSING, [start, baseline], em);
     }
     block
+}
+
+/// Draws ticks from an edge of a bar, and returns where the long ones end.
+fn draw_ticks(
+    block: &mut Block,
+    ticks: &Ticks,
+    edge: f32,
+    em: f32,
+    middle_of: impl Fn(f64) -> f32,
+    lies: bool,
+) -> f32 {
+    let line = line_width(em);
+    let [short, long] = [0.22, 0.38].map(|length| edge + line + (length * em).round());
+    let minor = ticks.minor.iter().map(|value| (value, short));
+    for (value, end) in minor.chain(ticks.labeled.iter().map(|(value, _)| (value, long))) {
+        let start = (middle_of(*value) - 0.5 * line).round();
+        let upright = [edge, start, end, start + line];
+        block.rect(if lies { [start, edge, start + line, end] } else { upright }, Paint::Ink);
+    }
+    long
 }
 
 /// The title, and the power of ten of the numbers below.
@@ -155,6 +145,11 @@ fn head(title: &str, exponent: i32, em: f32) -> Block {
 fn pixel_of(position: f64, count: usize) -> usize {
     let last = count.saturating_sub(1);
     ((position * last as f64).round() as usize).min(last)
+}
+
+/// The pixel of a bar that is nearest to a number.
+fn pixel_at(scale: &ColorScale, value: f64, count: usize) -> usize {
+    pixel_of(scale.scale().position(value).unwrap_or(0.0), count)
 }
 
 /// The colours of a bar from its low end. The first and the last pixel have the colours of the ends, and one with a tick
@@ -201,6 +196,15 @@ mod tests {
         }
     }
 
+    /// Left and top, thickness and colours.
+    fn bar(block: &Block) -> ([i64; 2], i64, &[[u8; 3]]) {
+        let bar = block.shapes.iter().find_map(|shape| match shape {
+            Shape::Bar { place, thickness, colors, .. } => Some((*place, *thickness, &colors[..])),
+            _ => None,
+        });
+        bar.unwrap()
+    }
+
     /// At every tick, the pixels of the bar have exactly the colour that the map gives for the tick's number, and the
     /// tick is drawn beside them.
     #[test]
@@ -209,11 +213,7 @@ mod tests {
         for scale in scales() {
             let block = vertical(&scale, "title", Some([9; 3]), em, SIZE.map(|side| side as f32));
             let pixel = drawn(&block);
-            let bar = block.shapes.iter().find_map(|shape| match shape {
-                Shape::Rows { left, top, width, colors } => Some((*left, *top, *width, colors)),
-                _ => None,
-            });
-            let (left, top, width, colors) = bar.unwrap();
+            let ([left, top], width, colors) = bar(&block);
             let rows = colors.len();
             assert!((200..400).contains(&rows));
             let ticks = Ticks::of(scale.scale(), (rows as f32 / (2.3 * em)) as usize);
@@ -236,11 +236,7 @@ mod tests {
         for scale in scales() {
             let block = horizontal(&scale, "", None, 14.0, SIZE.map(|side| side as f32));
             let pixel = drawn(&block);
-            let bar = block.shapes.iter().find_map(|shape| match shape {
-                Shape::Columns { left, top, colors, .. } => Some((*left, *top, colors)),
-                _ => None,
-            });
-            let (left, top, colors) = bar.unwrap();
+            let ([left, top], _, colors) = bar(&block);
             let columns = colors.len();
             assert_eq!(pixel(left, top), scale.color_at(0.0));
             assert_eq!(pixel(left + columns as i64 - 1, top), scale.color_at(1.0));

@@ -5,13 +5,13 @@
 //! or darker than the bar; with flat shading they are equal. Layers of data and EXR pictures are never drawn on.
 //!
 //! ```
-//! use pinhole::annotate::{Annotations, Canvas, Label, Position};
+//! use pinhole::annotate::{Annotation, Annotations, Canvas, Label, Position};
 //! use pinhole::image::encoding::Bits;
 //!
 //! let mut rgb = vec![255; 3 * 200 * 100];
 //! let mut canvas = Canvas::new([200, 100], 3, Bits::Eight, &mut rgb).unwrap();
 //! let label = Label { text: "t = 5 µs".to_owned(), position: Position::TOP_LEFT };
-//! Annotations::default().with(label).draw(&mut canvas);
+//! Annotations::default().with(Annotation::Label(label)).draw(&mut canvas);
 //! assert!(rgb.iter().any(|sample| *sample < 128));
 //! ```
 
@@ -46,24 +46,6 @@ pub enum Annotation {
     Label(Label),
 }
 
-impl From<Legend> for Annotation {
-    fn from(legend: Legend) -> Self {
-        Self::Legend(legend)
-    }
-}
-
-impl From<ScaleBar> for Annotation {
-    fn from(bar: ScaleBar) -> Self {
-        Self::ScaleBar(bar)
-    }
-}
-
-impl From<Label> for Annotation {
-    fn from(label: Label) -> Self {
-        Self::Label(label)
-    }
-}
-
 /// All annotations of a picture. Those with the same [`Anchor`] are stacked in this order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Annotations {
@@ -89,8 +71,8 @@ impl Annotations {
 
     /// These annotations and one more.
     #[must_use]
-    pub fn with(mut self, item: impl Into<Annotation>) -> Self {
-        self.items.push(item.into());
+    pub fn with(mut self, item: Annotation) -> Self {
+        self.items.push(item);
         self
     }
 

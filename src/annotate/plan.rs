@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
-use super::{Annotations, Label, Legend, Panel, Position, missing_characters};
+use super::{Annotation, Annotations, Label, Legend, Panel, Position, missing_characters};
 use crate::camera::View;
 use crate::camera::film::{Film, YAxis};
 use crate::color_by::ColorKey;
@@ -73,14 +73,12 @@ impl AnnotationPlan {
         let mut drawn = Annotations { color: self.color, ..Annotations::default() };
         drawn.text_scale = self.text_scale.unwrap_or(drawn.text_scale);
         drawn.panel = self.panel.unwrap_or(drawn.panel);
-        for label in &self.labels {
-            drawn = drawn.with(label.clone());
-        }
+        drawn.items = self.labels.iter().cloned().map(Annotation::Label).collect();
         if let Some(LegendPlan { title, position }) = &self.legend {
             let mut legend = Legend::new(key.ok_or(AnnotationError::NoKey)?.clone());
             legend.title.clone_from(title);
             legend.position = position.unwrap_or(legend.position);
-            drawn = drawn.with(legend);
+            drawn = drawn.with(Annotation::Legend(legend));
         }
         Ok(drawn)
     }
@@ -124,7 +122,7 @@ impl AnnotationPlan {
                     short(depth)
                 ));
             }
-            drawn = drawn.with(bar);
+            drawn = drawn.with(Annotation::ScaleBar(bar));
         }
         let lacking = missing_characters(&drawn.texts().collect::<String>());
         if !lacking.is_empty() {

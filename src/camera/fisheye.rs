@@ -41,11 +41,6 @@ impl FisheyeCamera {
         let scale = DVec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0));
         Ok(Self { pose, half_angle: 0.5 * angle_radians, scale })
     }
-
-    #[cfg(feature = "scene-file")]
-    pub(super) fn pose(&self) -> Pose {
-        self.pose
-    }
 }
 
 impl Camera for FisheyeCamera {
@@ -68,10 +63,7 @@ impl Camera for FisheyeCamera {
     }
 
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
-        let basis = self.pose.basis();
-        let toward = point_in_world - self.pose.origin();
-        let across = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
-        let ahead = -toward.dot(basis.w());
+        let (across, ahead) = self.pose.seen(point_in_world);
         let r = across.length().atan2(ahead) / self.half_angle;
         // Exactly behind the camera the direction across the view is undefined; at the eye there is no direction at
         // all.
@@ -82,13 +74,7 @@ impl Camera for FisheyeCamera {
     /// `right`, `up` and `forward` are unit vectors. The numbers are half the width and half the height of the film as
     /// multiples of the radius of the disk, and half of `angle` divided by π.
     fn vectors(&self) -> CameraVectors {
-        let basis = self.pose.basis();
-        CameraVectors {
-            origin: self.pose.origin(),
-            right: basis.u(),
-            up: basis.v(),
-            forward: -basis.w(),
-            numbers: [self.scale.x, self.scale.y, self.half_angle / std::f64::consts::PI],
-        }
+        let [x, y] = self.scale.to_array();
+        self.pose.vectors(DVec2::ONE, [x, y, self.half_angle / std::f64::consts::PI])
     }
 }

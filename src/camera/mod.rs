@@ -241,6 +241,17 @@ fn checked_range(
     }
 }
 
+/// Returns an error for a vertical field of view that is not an angle between 0 and π.
+fn checked_fov(radians: f64) -> Result<(), CameraError> {
+    if radians > 0.0 && radians < std::f64::consts::PI {
+        return Ok(());
+    }
+    let degrees = radians.to_degrees();
+    Err(CameraError::Invalid(format!(
+        "the vertical field of view is {degrees} degrees; it must lie between 0 and 180"
+    )))
+}
+
 /// Returns an error for a margin that would leave too little of the picture.
 fn checked_margin(value: f64) -> Result<f64, CameraError> {
     checked_range("`margin`", value, [0.0, framing::MOST_MARGIN])

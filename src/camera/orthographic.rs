@@ -15,8 +15,8 @@ use crate::geometry::subject::Subject;
 /// −w, where (hx, hy) is the half extent of the view plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrthographicCamera {
-    pose: Pose,
-    half_extent: DVec2,
+    pub(super) pose: Pose,
+    pub(super) half_extent: DVec2,
 }
 
 impl OrthographicCamera {
@@ -48,16 +48,6 @@ impl OrthographicCamera {
             framing::parallel_extent(&subject, &pose.basis(), aspect, margin);
         Self::new(pose.framing(&subject.bounds(), middle)?, half_extent)
     }
-
-    #[cfg(feature = "scene-file")]
-    pub(super) fn pose(&self) -> Pose {
-        self.pose
-    }
-
-    #[cfg(feature = "scene-file")]
-    pub(super) fn half_extent(&self) -> DVec2 {
-        self.half_extent
-    }
 }
 
 impl Camera for OrthographicCamera {
@@ -76,20 +66,11 @@ impl Camera for OrthographicCamera {
     }
 
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
-        let basis = self.pose.basis();
-        let aside = point_in_world - self.pose.origin();
-        let location = DVec2::new(aside.dot(basis.u()), aside.dot(basis.v())) / self.half_extent;
+        let location = self.pose.seen(point_in_world).0 / self.half_extent;
         location.is_finite().then_some(location)
     }
 
     fn vectors(&self) -> CameraVectors {
-        let basis = self.pose.basis();
-        CameraVectors {
-            origin: self.pose.origin(),
-            right: basis.u() * self.half_extent.x,
-            up: basis.v() * self.half_extent.y,
-            forward: -basis.w(),
-            numbers: [0.0; 3],
-        }
+        self.pose.vectors(self.half_extent, [0.0; 3])
     }
 }

@@ -48,11 +48,6 @@ impl PanoramaCamera {
         };
         Ok([eye(-0.5 * separation), eye(0.5 * separation)])
     }
-
-    #[cfg(feature = "scene-file")]
-    pub(super) fn pose(&self) -> Pose {
-        self.pose
-    }
 }
 
 impl Camera for PanoramaCamera {
@@ -84,13 +79,7 @@ impl Camera for PanoramaCamera {
     /// `right`, `up` and `forward` are unit vectors. The numbers are how far to the right rays start, and the cosine
     /// and the sine of the angle by which they are turned to the left.
     fn vectors(&self) -> CameraVectors {
-        let (basis, [straight, left]) = (self.pose.basis(), self.inwards);
-        CameraVectors {
-            origin: self.pose.origin(),
-            right: basis.u(),
-            up: basis.v(),
-            forward: -basis.w(),
-            numbers: [self.aside, straight, left],
-        }
+        let [straight, left] = self.inwards;
+        self.pose.vectors(DVec2::ONE, [self.aside, straight, left])
     }
 }

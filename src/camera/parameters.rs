@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::placement::{Placement, PoseParameters, refused};
 use super::{
     Camera, CameraError, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera, PanoramaCamera,
-    PinholeCamera, ThinLensCamera, camera_table, checked_length, framing,
+    PinholeCamera, Pose, ThinLensCamera, camera_table, checked_length, framing,
 };
 use crate::exact::{List, Table};
 use crate::geometry::subject::Subject;
@@ -36,27 +36,27 @@ macro_rules! define_camera_parameters {
                 aspect: f64,
                 subject: &Subject<'_>,
             ) -> Result<Box<dyn Camera>, CameraError> {
+                let site = Site::new(&self.place()?, aspect, subject);
                 match &self.0 {
-                    $(ByKind::$variant(parameters) => {
-                        Ok(Box::new(parameters.0.camera(aspect, subject)?))
+                    $(ByKind::$variant(Table(table)) => {
+                        Ok(Box::new(table.camera(&site)?))
                     })+
                 }
             }
 
-            /// The same camera with its position, its direction and the direction that is up, so that it no longer
-            /// depends on the subject.
-            ///
-            /// # Errors
-            /// Returns an error if a parameter is out of range, or parameters exclude each other.
-            pub fn placed(
-                &self,
-                aspect: f64,
-                subject: &Subject<'_>,
-            ) -> Result<Self, CameraError> {
-                match &self.0 {
-                    $(ByKind::$variant(parameters) => {
-                        let placed = parameters.0.placed(aspect, subject)?;
-                        Ok(Self(ByKind::$variant(Table(placed))))
+            fn place(&self) -> Result<Placement, CameraError> {
+                match self.0 {
+                    $(ByKind::$variant(Table($parameters { eye, look_at, direction, up, .. })) => {
+                        PoseParameters { eye, look_at, direction, up }.placement()
+                    })+
+                }
+            }
+
+            fn set_place(&mut self, eye: DVec3, Placement { direction, up, .. }: Placement) {
+                let eye = list(eye);
+                match &mut self.0 {
+                    $(ByKind::$variant(Table(table)) => {
+                        (table.eye, table.direction, table.up) = (eye, direction, up);
                     })+
                 }
             }
@@ -66,6 +66,33 @@ macro_rules! define_camera_parameters {
 camera_table!(define_camera_parameters);
 
 impl CameraParameters {
+    /// The same camera with its position, its direction and the direction that is up, so that it no longer depends on
+    /// the subject.
+    ///
+    /// # Errors
+    /// Returns an error if a parameter is out of range, or parameters exclude each other.
+    pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        let (mut placed, place) = (*self, self.place()?);
+        match &mut placed.0 {
+            ByKind::Pinhole(Table(table)) => table.margin = None,
+            ByKind::Orthographic(Table(table)) => {
+                let site = Site::new(&place, aspect, subject);
+                let (_, half_extent) = table.wide(&site)?;
+                table.half_extent = Some(List(half_extent.to_array()));
+                table.margin = None;
+            }
+            ByKind::ThinLens(Table(table)) => {
+                if place.is_framed && table.focus_distance.is_none() && table.focus_on.is_none() {
+                    table.focus_on = list(subject.bounds().center());
+                }
+                table.margin = None;
+            }
+            ByKind::Panorama(_) | ByKind::Fisheye(_) => {}
+        }
+        placed.set_place(self.camera(aspect, subject)?.vectors().origin, place);
+        Ok(placed)
+    }
+
     /// The cameras of the left and of the right eye; `None` unless the parameters ask for two eyes.
     ///
     /// # Errors
@@ -78,13 +105,14 @@ impl CameraParameters {
         fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
             pair.map(|camera| Box::new(camera) as Box<dyn Camera>)
         }
+        let site = Site::new(&self.place()?, aspect, subject);
         Ok(match &self.0 {
             ByKind::Pinhole(Table(table @ PinholeParameters { stereo: Some(eyes), .. })) => {
-                let camera = table.camera(aspect, subject)?;
+                let camera = table.camera(&site)?;
                 Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
             }
             ByKind::Panorama(Table(table @ PanoramaParameters { stereo: Some(eyes), .. })) => {
-                let camera = table.camera(aspect, subject)?;
+                let camera = table.camera(&site)?;
                 Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
             }
             _ => None,
@@ -111,6 +139,21 @@ struct StereoParameters {
 
 fn infinitely_far() -> f64 {
     f64::INFINITY
+}
+
+/// What a camera is made for.
+struct Site<'a> {
+    pose: Pose,
+    /// See [`Placement::is_framed`].
+    is_framed: bool,
+    aspect: f64,
+    subject: Subject<'a>,
+}
+
+impl<'a> Site<'a> {
+    fn new(place: &Placement, aspect: f64, subject: &Subject<'a>) -> Self {
+        Self { pose: place.pose, is_framed: place.is_framed, aspect, subject: *subject }
+    }
 }
 
 /// The margin of a framed picture. A camera with an eye has none.
@@ -150,24 +193,8 @@ struct PinholeParameters {
 }
 
 impl PinholeParameters {
-    fn pose(&self) -> PoseParameters {
-        let Self { eye, look_at, direction, up, .. } = *self;
-        PoseParameters { eye, look_at, direction, up }
-    }
-
-    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let Placement { direction, up, .. } = self.pose().placement()?;
-        let eye = list(self.wide(aspect, subject)?.pose().origin());
-        Ok(Self { eye, direction, up, margin: None, ..*self })
-    }
-
-    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<PinholeCamera, CameraError> {
-        self.wide(aspect, subject)?.zoomed(self.zoom)
-    }
-
-    /// The camera before its picture is enlarged.
-    fn wide(&self, aspect: f64, subject: &Subject<'_>) -> Result<PinholeCamera, CameraError> {
-        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+    fn camera(&self, site: &Site<'_>) -> Result<PinholeCamera, CameraError> {
+        let Site { pose, is_framed, aspect, subject } = *site;
         let fov = self.vertical_fov.map_or(PinholeCamera::DEFAULT_FOV_RADIANS, f64::to_radians);
         match (self.half_extent, self.distance) {
             (Some(_), _) if self.vertical_fov.is_some() => {
@@ -184,13 +211,14 @@ impl PinholeParameters {
             _ => {}
         }
         let margin = margin_of(self.margin, is_framed)?;
-        match self.half_extent {
-            _ if is_framed => PinholeCamera::framing(*subject, pose, fov, aspect, margin),
+        let wide = match self.half_extent {
+            _ if is_framed => PinholeCamera::framing(subject, pose, fov, aspect, margin),
             Some(List(half_extent)) => {
                 PinholeCamera::new(pose, self.distance.unwrap_or(1.0), half_extent)
             }
             None => PinholeCamera::with_vertical_fov(pose, fov, aspect),
-        }
+        };
+        wide?.zoomed(self.zoom)
     }
 }
 
@@ -213,36 +241,24 @@ struct OrthographicParameters {
 
 impl OrthographicParameters {
     /// The pose, and the half extent of the view plane before the picture is enlarged.
-    fn wide(&self, aspect: f64, subject: &Subject<'_>) -> Result<(Placement, DVec2), CameraError> {
-        let Self { eye, look_at, direction, up, half_extent, .. } = *self;
-        let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
-        let Placement { pose, is_framed, .. } = placement;
+    fn wide(&self, site: &Site<'_>) -> Result<(Pose, DVec2), CameraError> {
+        let Site { pose, is_framed, aspect, subject } = *site;
         let margin = margin_of(self.margin, is_framed)?;
-        match half_extent {
+        match self.half_extent {
             Some(_) if is_framed => {
                 refused("`half_extent` needs an `eye`; to frame the whole scene leave both out")
             }
             None if !is_framed => refused("an `eye` needs a `half_extent`"),
-            Some(List(half_extent)) => Ok((placement, half_extent.into())),
+            Some(List(half_extent)) => Ok((pose, half_extent.into())),
             None => {
-                let framed = OrthographicCamera::framing(*subject, pose, aspect, margin)?;
-                Ok((Placement { pose: framed.pose(), ..placement }, framed.half_extent()))
+                let framed = OrthographicCamera::framing(subject, pose, aspect, margin)?;
+                Ok((framed.pose, framed.half_extent))
             }
         }
     }
 
-    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let (Placement { pose, direction, up, .. }, half_extent) = self.wide(aspect, subject)?;
-        let half_extent = Some(List(half_extent.to_array()));
-        Ok(Self { eye: list(pose.origin()), direction, up, half_extent, margin: None, ..*self })
-    }
-
-    fn camera(
-        &self,
-        aspect: f64,
-        subject: &Subject<'_>,
-    ) -> Result<OrthographicCamera, CameraError> {
-        let (Placement { pose, .. }, half_extent) = self.wide(aspect, subject)?;
+    fn camera(&self, site: &Site<'_>) -> Result<OrthographicCamera, CameraError> {
+        let (pose, half_extent) = self.wide(site)?;
         let zoom = self.zoom.map_or(Ok(1.0), |zoom| checked_length("`zoom`", zoom))?;
         OrthographicCamera::new(pose, half_extent / zoom)
     }
@@ -275,25 +291,15 @@ struct ThinLensParameters {
 }
 
 impl ThinLensParameters {
-    /// The pinhole camera through the centre of the lens.
+    /// The pinhole camera through the centre of the lens, without its place.
     fn pinhole(&self) -> PinholeParameters {
-        let Self { eye, look_at, direction, up, distance, half_extent, .. } = *self;
-        let Self { vertical_fov, margin, zoom, .. } = *self;
-        let pinhole = PinholeParameters { eye, look_at, direction, up, ..Default::default() };
-        PinholeParameters { distance, half_extent, vertical_fov, margin, zoom, ..pinhole }
+        let Self { distance, half_extent, vertical_fov, margin, zoom, .. } = *self;
+        let default = PinholeParameters::default();
+        PinholeParameters { distance, half_extent, vertical_fov, margin, zoom, ..default }
     }
 
-    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let PinholeParameters { eye, direction, up, margin, .. } =
-            self.pinhole().placed(aspect, subject)?;
-        let has_focus = self.focus_distance.is_some() || self.focus_on.is_some();
-        let middle =
-            if self.eye.is_none() && !has_focus { list(subject.bounds().center()) } else { None };
-        Ok(Self { eye, direction, up, margin, focus_on: self.focus_on.or(middle), ..*self })
-    }
-
-    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<ThinLensCamera, CameraError> {
-        let pinhole = self.pinhole().camera(aspect, subject)?;
+    fn camera(&self, site: &Site<'_>) -> Result<ThinLensCamera, CameraError> {
+        let pinhole = self.pinhole().camera(site)?;
         let radius = match (self.aperture_radius, self.f_stop, self.focal_length) {
             (Some(radius), None, None) => radius,
             (None, Some(f_stop), Some(length)) => ThinLensCamera::aperture_radius(length, f_stop)?,
@@ -317,7 +323,7 @@ impl ThinLensParameters {
             }
             (Some(distance), _, _) => return ThinLensCamera::new(pinhole, radius, distance),
             (None, Some(List(point)), _) => point.into(),
-            (None, None, None) => subject.bounds().center(),
+            (None, None, None) => site.subject.bounds().center(),
             (None, None, Some(_)) => {
                 return refused(
                     "a `direction` does not say at which distance objects are sharp; give a `focus_distance` or `focus_on`",
@@ -343,19 +349,8 @@ struct PanoramaParameters {
 }
 
 impl PanoramaParameters {
-    fn pose(&self) -> PoseParameters {
-        let Self { eye, look_at, direction, up, .. } = *self;
-        PoseParameters { eye, look_at, direction, up }
-    }
-
-    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let Placement { direction, up, .. } = self.pose().placement()?;
-        let eye = list(self.camera(aspect, subject)?.pose().origin());
-        Ok(Self { eye, direction, up, ..*self })
-    }
-
-    fn camera(&self, _: f64, subject: &Subject<'_>) -> Result<PanoramaCamera, CameraError> {
-        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+    fn camera(&self, site: &Site<'_>) -> Result<PanoramaCamera, CameraError> {
+        let Site { pose, is_framed, subject, .. } = *site;
         Ok(PanoramaCamera::new(match is_framed {
             true => pose.framing(&subject.bounds(), DVec3::ZERO)?,
             false => pose,
@@ -376,19 +371,8 @@ struct FisheyeParameters {
 }
 
 impl FisheyeParameters {
-    fn pose(&self) -> PoseParameters {
-        let Self { eye, look_at, direction, up, .. } = *self;
-        PoseParameters { eye, look_at, direction, up }
-    }
-
-    fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
-        let Placement { direction, up, .. } = self.pose().placement()?;
-        let eye = list(self.camera(aspect, subject)?.pose().origin());
-        Ok(Self { eye, direction, up, ..*self })
-    }
-
-    fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<FisheyeCamera, CameraError> {
-        let Placement { pose, is_framed, .. } = self.pose().placement()?;
+    fn camera(&self, site: &Site<'_>) -> Result<FisheyeCamera, CameraError> {
+        let Site { pose, is_framed, aspect, subject } = *site;
         let angle = self.angle.map_or(FisheyeCamera::DEFAULT_ANGLE_RADIANS, f64::to_radians);
         let camera = FisheyeCamera::new(pose, angle, aspect)?;
         if !is_framed {

@@ -1,12 +1,11 @@
 //! Cameras that move along a path, which is given by keyframes.
 
-use std::f64::consts::PI;
 use std::fmt;
 
 use glam::{DQuat, DVec3};
 
 use super::path_curve::{Curve, Track};
-use super::{CameraError, Pose, Viewpoint, checked_range};
+use super::{CameraError, Pose, Viewpoint, checked_fov, checked_range};
 
 /// What the times of keyframes count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -220,12 +219,7 @@ fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
             }
         }
     }
-    match now.fov_radians {
-        Some(radians) if !(radians > 0.0 && radians < PI) => {
-            Err(CameraPathError::of(key, CameraError::FieldOfView { radians }))
-        }
-        _ => Ok(()),
-    }
+    now.fov_radians.map_or(Ok(()), checked_fov).map_err(|error| CameraPathError::of(key, error))
 }
 
 /// Azimuth and elevation of a key, in radians, with the turns.

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
-    checked_length, checked_margin, checked_range, framing, stereo_lengths,
+    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_fov,
+    checked_half_extent, checked_length, checked_margin, checked_range, framing, stereo_lengths,
 };
 use crate::geometry::math::MAX_LENGTH;
 use crate::geometry::ray::Ray;
@@ -17,9 +17,9 @@ use crate::geometry::subject::Subject;
 /// `shift` is how far its middle lies to the right. `shift` is zero except for one eye of a stereo pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinholeCamera {
-    pose: Pose,
+    pub(super) pose: Pose,
     distance: f64,
-    half_extent: DVec2,
+    pub(super) half_extent: DVec2,
     shift: f64,
 }
 
@@ -110,20 +110,12 @@ impl PinholeCamera {
         Ok([eye(-0.5 * separation)?, eye(0.5 * separation)?])
     }
 
-    pub(super) fn pose(&self) -> Pose {
-        self.pose
-    }
-
     /// The same rays, described by a view plane at another distance.
     pub(super) fn with_distance(&self, distance: f64) -> Result<Self, CameraError> {
         let scale = distance / self.distance;
         let shift = self.shift * scale;
         let camera = Self::new(self.pose, distance, self.half_extent * scale)?;
         Ok(Self { shift, ..camera })
-    }
-
-    pub(super) fn half_extent(&self) -> DVec2 {
-        self.half_extent
     }
 
     /// The same camera with a narrower field of view: the picture is enlarged about its middle.
@@ -137,9 +129,7 @@ impl PinholeCamera {
 
 /// The half extent of the view plane at distance 1.
 fn tangents(fov_radians: f64, aspect: f64) -> Result<DVec2, CameraError> {
-    if !(fov_radians > 0.0 && fov_radians < std::f64::consts::PI) {
-        return Err(CameraError::FieldOfView { radians: fov_radians });
-    }
+    checked_fov(fov_radians)?;
     let half_height = (fov_radians / 2.0).tan();
     Ok(DVec2::new(half_height * checked_aspect(aspect)?, half_height))
 }
@@ -160,11 +150,8 @@ impl Camera for PinholeCamera {
     }
 
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
-        let basis = self.pose.basis();
-        let toward = point_in_world - self.pose.origin();
-        let depth = -toward.dot(basis.w());
+        let (aside, depth) = self.pose.seen(point_in_world);
         // No ray hits the eye itself or a point behind it.
-        let aside = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
         let in_plane = aside * (self.distance / depth) - DVec2::new(self.shift, 0.0);
         let location = in_plane / self.half_extent;
         (depth > 0.0 && location.is_finite()).then_some(location)
@@ -172,12 +159,7 @@ impl Camera for PinholeCamera {
 
     fn vectors(&self) -> CameraVectors {
         let basis = self.pose.basis();
-        CameraVectors {
-            origin: self.pose.origin(),
-            right: basis.u() * self.half_extent.x,
-            up: basis.v() * self.half_extent.y,
-            forward: self.shift * basis.u() - self.distance * basis.w(),
-            numbers: [0.0; 3],
-        }
+        let forward = self.shift * basis.u() - self.distance * basis.w();
+        CameraVectors { forward, ..self.pose.vectors(self.half_extent, [0.0; 3]) }
     }
 }

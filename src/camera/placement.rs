@@ -77,6 +77,6 @@ impl PoseParameters {
     }
 }
 
-pub(super) fn refused<T>(message: &'static str) -> Result<T, CameraError> {
-    Err(CameraError::Parameters { message })
+pub(super) fn refused<T>(message: &str) -> Result<T, CameraError> {
+    Err(CameraError::Invalid(message.to_owned()))
 }

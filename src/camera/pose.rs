@@ -1,7 +1,8 @@
 //! Position and orientation of a camera.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+use super::CameraVectors;
 use crate::geometry::basis::OrthonormalBasis;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
@@ -14,37 +15,14 @@ pub struct Pose {
 }
 
 /// Why parameters do not make a camera.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
-    /// The eye and the point at which it looks are the same.
-    #[error("the eye and the look-at point are both at {:?}; move one of them", eye.to_array())]
-    EyeAtTarget {
-        /// The point.
-        eye: DVec3,
-    },
     /// `up` is parallel to the direction of view, so the roll of the camera is undefined.
     #[error("up {:?} is parallel to the direction of view; tilt it", up.to_array())]
     UpParallelToView {
         /// The vector as given.
         up: DVec3,
-    },
-    /// A vector that must have a direction is zero.
-    #[error("{parameter} is the zero vector, which has no direction")]
-    Zero {
-        /// Name of the parameter.
-        parameter: &'static str,
-    },
-    /// A component of a point or vector is NaN or infinite, or a point lies too far away.
-    #[error(
-        "{parameter} is {:?}; every component must be finite and at most {MAX_LENGTH:e} in size",
-        value.to_array()
-    )]
-    Vector {
-        /// Name of the parameter.
-        parameter: &'static str,
-        /// The vector as given.
-        value: DVec3,
     },
     /// A length is NaN, infinite, zero, negative or too small or large for f32 kernels.
     #[error(
@@ -68,27 +46,9 @@ pub enum CameraError {
         /// The largest valid value.
         high: f64,
     },
-    /// A field of view is not an angle between 0 and π.
-    #[error("the vertical field of view is {} degrees; it must lie between 0 and 180", radians.to_degrees())]
-    FieldOfView {
-        /// The angle as given.
-        radians: f64,
-    },
-    /// The box that must be seen is so large, or so far away, that the camera would be out of range.
-    #[error(
-        "no camera can frame the scene, which reaches from {:?} to {:?}; give an eye, or move the scene",
-        bounds.min().to_array(), bounds.max().to_array()
-    )]
-    Framing {
-        /// The box.
-        bounds: Bounds,
-    },
-    /// Two parameters that exclude each other were given, or one was left out.
-    #[error("{message}")]
-    Parameters {
-        /// Which parameters, and what to do.
-        message: &'static str,
-    },
+    /// Another parameter is not valid, or parameters do not go together.
+    #[error("{0}")]
+    Invalid(String),
 }
 
 impl Pose {
@@ -113,7 +73,9 @@ impl Pose {
         // Halved, so that points apart by the least number are the same.
         let backwards = eye * 0.5 - look_at * 0.5;
         if backwards == DVec3::ZERO {
-            return Err(CameraError::EyeAtTarget { eye });
+            let eye = eye.to_array();
+            let message = "the eye and the look-at point are both at";
+            return Err(CameraError::Invalid(format!("{message} {eye:?}; move one of them")));
         }
         let basis = OrthonormalBasis::from_vectors(backwards, up)
             .ok_or(CameraError::UpParallelToView { up })?;
@@ -142,7 +104,12 @@ impl Pose {
     /// The same orientation, at a place relative to the centre of a box.
     pub(super) fn framing(self, bounds: &Bounds, offset: DVec3) -> Result<Self, CameraError> {
         let origin = bounds.center() + offset;
-        checked_point("the eye", origin).map_err(|_| CameraError::Framing { bounds: *bounds })?;
+        checked_point("the eye", origin).map_err(|_| {
+            let [from, to] = [bounds.min(), bounds.max()].map(|corner| corner.to_array());
+            CameraError::Invalid(format!(
+                "no camera can frame the scene, which reaches from {from:?} to {to:?}; give an eye, or move the scene"
+            ))
+        })?;
         Ok(Self { origin, ..self })
     }
 
@@ -151,6 +118,19 @@ impl Pose {
         let origin = self.origin + by;
         checked_point("the eye", origin)?;
         Ok(Self { origin, ..self })
+    }
+
+    /// The vectors of a camera that looks along −w, with a view plane of this half extent.
+    pub(super) fn vectors(&self, half_extent: DVec2, numbers: [f64; 3]) -> CameraVectors {
+        let (origin, basis) = (self.origin, self.basis);
+        let [right, up] = [basis.u() * half_extent.x, basis.v() * half_extent.y];
+        CameraVectors { origin, right, up, forward: -basis.w(), numbers }
+    }
+
+    /// A point as seen from the camera: how far to the right, up and forward it is.
+    pub(super) fn seen(&self, point: DVec3) -> (DVec2, f64) {
+        let (toward, basis) = (point - self.origin, self.basis);
+        (DVec2::new(toward.dot(basis.u()), toward.dot(basis.v())), -toward.dot(basis.w()))
     }
 
     /// Position of the camera.
@@ -166,22 +146,27 @@ impl Pose {
     }
 }
 
-pub(super) fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
+pub(super) fn checked_point(parameter: &str, value: DVec3) -> Result<(), CameraError> {
     // The comparison is false for NaN as well.
-    if value.to_array().iter().all(|x| x.abs() <= MAX_LENGTH) {
-        Ok(())
-    } else {
-        Err(CameraError::Vector { parameter, value })
-    }
+    let is_near = value.to_array().iter().all(|x| x.abs() <= MAX_LENGTH);
+    if is_near { Ok(()) } else { Err(out_of_range(parameter, value)) }
+}
+
+fn out_of_range(parameter: &str, value: DVec3) -> CameraError {
+    let value = value.to_array();
+    CameraError::Invalid(format!(
+        "{parameter} is {value:?}; every component must be finite and at most {MAX_LENGTH:e} in size"
+    ))
 }
 
 /// Returns an error for a vector that has no direction.
-fn checked_direction(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
+fn checked_direction(parameter: &str, value: DVec3) -> Result<(), CameraError> {
     if !value.is_finite() {
-        return Err(CameraError::Vector { parameter, value });
+        return Err(out_of_range(parameter, value));
     }
     if value == DVec3::ZERO {
-        return Err(CameraError::Zero { parameter });
+        let message = format!("{parameter} is the zero vector, which has no direction");
+        return Err(CameraError::Invalid(message));
     }
     Ok(())
 }

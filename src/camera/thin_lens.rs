@@ -55,7 +55,7 @@ impl ThinLensCamera {
     ) -> Result<Self, CameraError> {
         let point = point.into();
         checked_point("`focus_on`", point)?;
-        let pose = pinhole.pose();
+        let pose = pinhole.pose;
         let depth = (pose.origin() - point).dot(pose.basis().w());
         let distance = checked_length("distance to `focus_on` along the view", depth)?;
         Self::new(pinhole, aperture_radius, distance)
@@ -83,7 +83,7 @@ impl Camera for ThinLensCamera {
 
     fn ray_through_lens(&self, location: DVec2, lens: DVec2) -> Ray {
         let CameraVectors { origin, right, up, forward, .. } = self.pinhole.vectors();
-        let basis = self.pinhole.pose().basis();
+        let basis = self.pinhole.pose.basis();
         let on_lens = self.aperture_radius * concentric_disk(lens);
         let offset = on_lens.x * basis.u() + on_lens.y * basis.v();
         // The component along the view is the focus distance, so the vector is never zero.
@@ -102,7 +102,7 @@ impl Camera for ThinLensCamera {
     /// The vectors of the pinhole camera whose view plane is the plane of focus. The first two numbers are the radius
     /// of the lens as a multiple of the lengths of `right` and of `up`.
     fn vectors(&self) -> CameraVectors {
-        let [first, second] = (self.aperture_radius / self.pinhole.half_extent()).to_array();
+        let [first, second] = (self.aperture_radius / self.pinhole.half_extent).to_array();
         CameraVectors { numbers: [first, second, 0.0], ..self.pinhole.vectors() }
     }
 }

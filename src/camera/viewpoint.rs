@@ -47,12 +47,6 @@ impl Viewpoint {
     /// The view in which all three axes are equally foreshortened.
     pub const ISOMETRIC: Self = Self::Angles { azimuth: 45.0, elevation: 35.264_389_682_754_654 };
 
-    /// The viewpoint on the positive side of an axis (0, 1 or 2).
-    #[must_use]
-    pub const fn on_axis(axis: usize) -> Self {
-        Self::Axis { axis, is_negative: false }
-    }
-
     /// The direction in which a camera at this viewpoint looks, and the direction that is up in its picture, after it
     /// was turned by `turn` degrees about `up`, counter-clockwise seen from above. The second is `up`, except in a view
     /// from straight above or below: there it is the horizontal direction away from the azimuth.

@@ -53,12 +53,24 @@ impl Bits {
 /// How a picture is encoded in a file. Exposure, tone curve and bits apply to PNG; EXR stores the light as it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Encoding {
-    bits: Bits,
-    transparent: bool,
-    exposure: f32,
-    tone: ToneCurve,
-    background: Option<LinearRgb>,
-    dots_per_inch: Option<f32>,
+    /// The number of bits of each sample.
+    pub bits: Bits,
+    /// Whether the picture has an alpha channel in place of the background.
+    ///
+    /// For a transparent picture, render with [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent)
+    /// and the layer alpha. The background then adds nothing, and the colour layer is premultiplied by alpha.
+    pub transparent: bool,
+    /// The exposure in stops, within ± [`Encoding::MAX_EXPOSURE`]: light is multiplied by 2 to its power. See
+    /// [`Encoding::with_exposure`].
+    pub exposure: f32,
+    /// The tone curve, which is applied after the exposure.
+    pub tone: ToneCurve,
+    /// The background that the exposure and the tone curve leave as it is: they are applied to what lies in front of
+    /// it. `None` applies them to the whole picture, as for a visible sky.
+    pub background: Option<LinearRgb>,
+    /// The number of pixels per inch at which the picture is to be printed, if it was chosen. See
+    /// [`Encoding::with_dots_per_inch`].
+    pub dots_per_inch: Option<f32>,
 }
 
 /// Why a parameter is not that of an encoding.
@@ -70,21 +82,6 @@ pub struct EncodingError(String);
 impl Encoding {
     /// The largest number of stops by which a picture may be made brighter or darker.
     pub const MAX_EXPOSURE: f32 = 32.0;
-
-    /// The same encoding with another number of bits for each sample.
-    #[must_use]
-    pub fn with_bits(self, bits: Bits) -> Self {
-        Self { bits, ..self }
-    }
-
-    /// The same encoding, with or without an alpha channel in place of the background.
-    ///
-    /// For a transparent picture, render with [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent)
-    /// and the layer alpha. The background then adds nothing, and the colour layer is premultiplied by alpha.
-    #[must_use]
-    pub fn with_transparent(self, transparent: bool) -> Self {
-        Self { transparent, ..self }
-    }
 
     /// The same encoding with light multiplied by 2 to the power of `stops`.
     ///
@@ -99,25 +96,6 @@ impl Encoding {
             let range = format!("it must lie between -{most} and {most}");
             Err(EncodingError(format!("`exposure` is {stops} stops; {range}")))
         }
-    }
-
-    /// The same encoding with another tone curve, which is applied after the exposure.
-    #[must_use]
-    pub fn with_tone(self, tone: ToneCurve) -> Self {
-        Self { tone, ..self }
-    }
-
-    /// The same encoding for a picture with this background, which the exposure and the tone curve leave as it is:
-    /// they are applied to what lies in front of it. `None` applies them to the whole picture, as for a visible sky.
-    #[must_use]
-    pub fn with_background(self, background: Option<LinearRgb>) -> Self {
-        Self { background, ..self }
-    }
-
-    /// The background that the exposure and the tone curve leave as it is.
-    #[must_use]
-    pub fn background(&self) -> Option<LinearRgb> {
-        self.background
     }
 
     /// The layers that an encoded picture needs: alpha if it is transparent, or if its background must be told from
@@ -159,36 +137,6 @@ impl Encoding {
             )),
             dots_per_inch => Ok(Self { dots_per_inch, ..self }),
         }
-    }
-
-    /// The number of pixels per inch at which the picture is to be printed, if it was chosen.
-    #[must_use]
-    pub fn dots_per_inch(&self) -> Option<f32> {
-        self.dots_per_inch
-    }
-
-    /// The number of bits of each sample.
-    #[must_use]
-    pub fn bits(&self) -> Bits {
-        self.bits
-    }
-
-    /// Whether the picture has an alpha channel and no background.
-    #[must_use]
-    pub fn transparent(&self) -> bool {
-        self.transparent
-    }
-
-    /// The exposure in stops: positive values make the picture brighter.
-    #[must_use]
-    pub fn exposure(&self) -> f32 {
-        self.exposure
-    }
-
-    /// The tone curve.
-    #[must_use]
-    pub fn tone(&self) -> ToneCurve {
-        self.tone
     }
 
     /// Converts linear light of the scene, not premultiplied, to linear light of a display: exposure first, then the

@@ -73,6 +73,20 @@ impl Layer {
             Self::Alpha | Self::Depth | Self::Id | Self::Samples | Self::Variance => 4,
         }
     }
+
+    /// The number of words of 4 bytes for each pixel.
+    pub(super) const fn words(self) -> usize {
+        self.bytes_per_pixel() as usize / 4
+    }
+
+    /// The word of a pixel whose ray hit nothing, before it has samples.
+    pub(super) const fn miss(self) -> u32 {
+        match self {
+            Self::Depth => f32::INFINITY.to_bits(),
+            Self::Id => super::NO_ID,
+            _ => 0,
+        }
+    }
 }
 
 impl fmt::Display for Layer {

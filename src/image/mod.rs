@@ -1,7 +1,8 @@
 //! Pictures: linear f32 colours and data layers.
 
 use std::ops::Range;
-use std::slice::ChunksMut;
+
+use bytemuck::{Pod, cast_slice, cast_slice_mut, cast_vec};
 
 pub mod color;
 pub mod denoise;
@@ -45,20 +46,24 @@ impl Pixel {
 }
 
 /// A picture with its data layers. Row 0 is the top; pixel (i, j) is at index `j * width + i`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Image {
     width: u32,
     height: u32,
-    /// By the discriminants of [`Layer`]; there is always a colour.
-    planes: [Option<Plane>; Layer::ALL.len()],
+    /// The numbers of each layer as words, pixel by pixel, by the discriminants of [`Layer`]; there is always a colour.
+    planes: [Option<Vec<u32>>; Layer::ALL.len()],
 }
 
-/// The values of a layer, one for each pixel. All planes of a layer are of one variant.
-#[derive(Clone, Debug, PartialEq)]
-enum Plane {
-    Numbers(Vec<f32>),
-    Vectors(Vec<[f32; 3]>),
-    Counts(Vec<u32>),
+impl PartialEq for Image {
+    /// Compares numbers, not bits: −0 is 0.
+    fn eq(&self, other: &Self) -> bool {
+        let shape = |image: &Self| (image.width, image.height, image.layers());
+        let are_equal = |layer: &Layer| match layer {
+            Layer::Id | Layer::Samples => self.plane::<u32>(*layer) == other.plane(*layer),
+            _ => self.plane::<f32>(*layer) == other.plane(*layer),
+        };
+        shape(self) == shape(other) && Layer::ALL.iter().all(are_equal)
+    }
 }
 
 /// An image does not fit into memory.
@@ -87,7 +92,9 @@ impl Image {
         let pixels = usize::try_from(pixels).map_err(|_| too_large)?;
         let mut image = Self { width, height, planes: [const { None }; Layer::ALL.len()] };
         for layer in layers.iter() {
-            let plane = Plane::new(layer, pixels).ok_or(too_large)?;
+            let (mut plane, words) = (Vec::new(), pixels.saturating_mul(layer.words()));
+            plane.try_reserve_exact(words).map_err(|_| too_large)?;
+            plane.resize(words, layer.miss());
             image.planes[layer as usize] = Some(plane);
         }
         Ok(image)
@@ -106,32 +113,23 @@ impl Image {
         let pixels = u64::from(width) * u64::from(height);
         let lengths = [color.len(), depth.len(), normal.len(), id.len()];
         let mut image = Self { width, height, planes: [const { None }; Layer::ALL.len()] };
-        image.planes[Layer::Color as usize] = Some(Plane::Vectors(color));
-        image.planes[Layer::Depth as usize] = Some(Plane::Numbers(depth));
-        image.planes[Layer::Normal as usize] = Some(Plane::Vectors(normal));
-        image.planes[Layer::Id as usize] = Some(Plane::Counts(id));
+        image.set(Layer::Color, color);
+        image.set(Layer::Depth, depth);
+        image.set(Layer::Normal, normal);
+        image.set(Layer::Id, id);
         lengths.iter().all(|length| *length as u64 == pixels).then_some(image)
     }
 
-    fn numbers(&self, layer: Layer) -> Option<&[f32]> {
-        match self.planes[layer as usize].as_ref()? {
-            Plane::Numbers(values) => Some(values),
-            _ => None,
-        }
+    fn set<T: Pod>(&mut self, layer: Layer, values: Vec<T>) {
+        self.planes[layer as usize] = Some(cast_vec(values));
     }
 
-    fn vectors(&self, layer: Layer) -> Option<&[[f32; 3]]> {
-        match self.planes[layer as usize].as_ref()? {
-            Plane::Vectors(values) => Some(values),
-            _ => None,
-        }
+    fn plane<T: Pod>(&self, layer: Layer) -> Option<&[T]> {
+        self.planes[layer as usize].as_deref().map(cast_slice)
     }
 
-    fn counts(&self, layer: Layer) -> Option<&[u32]> {
-        match self.planes[layer as usize].as_ref()? {
-            Plane::Counts(values) => Some(values),
-            _ => None,
-        }
+    fn plane_mut<T: Pod>(&mut self, layer: Layer) -> Option<&mut [T]> {
+        self.planes[layer as usize].as_deref_mut().map(cast_slice_mut)
     }
 
     /// Width in pixels.
@@ -149,55 +147,55 @@ impl Image {
     /// Linear colour of every pixel; see [`Layer::Color`].
     #[must_use]
     pub fn color(&self) -> &[[f32; 3]] {
-        self.vectors(Layer::Color).unwrap_or_default()
+        self.plane(Layer::Color).unwrap_or_default()
     }
 
     /// Coverage of every pixel, if it was rendered; see [`Layer::Alpha`].
     #[must_use]
     pub fn alpha(&self) -> Option<&[f32]> {
-        self.numbers(Layer::Alpha)
+        self.plane(Layer::Alpha)
     }
 
     /// Depth of every pixel, if it was rendered; see [`Layer::Depth`].
     #[must_use]
     pub fn depth(&self) -> Option<&[f32]> {
-        self.numbers(Layer::Depth)
+        self.plane(Layer::Depth)
     }
 
     /// Normal of every pixel, if it was rendered; see [`Layer::Normal`].
     #[must_use]
     pub fn normal(&self) -> Option<&[[f32; 3]]> {
-        self.vectors(Layer::Normal)
+        self.plane(Layer::Normal)
     }
 
     /// Hit point of every pixel in world space, if it was rendered; see [`Layer::Position`].
     #[must_use]
     pub fn position(&self) -> Option<&[[f32; 3]]> {
-        self.vectors(Layer::Position)
+        self.plane(Layer::Position)
     }
 
     /// Surface colour of every pixel, if it was rendered; see [`Layer::Albedo`].
     #[must_use]
     pub fn albedo(&self) -> Option<&[[f32; 3]]> {
-        self.vectors(Layer::Albedo)
+        self.plane(Layer::Albedo)
     }
 
     /// Sphere id of every pixel, if it was rendered; see [`Layer::Id`].
     #[must_use]
     pub fn id(&self) -> Option<&[u32]> {
-        self.counts(Layer::Id)
+        self.plane(Layer::Id)
     }
 
     /// Number of samples of every pixel, if it was rendered; see [`Layer::Samples`].
     #[must_use]
     pub fn samples(&self) -> Option<&[u32]> {
-        self.counts(Layer::Samples)
+        self.plane(Layer::Samples)
     }
 
     /// Variance of the mean of every pixel, if it was rendered; see [`Layer::Variance`].
     #[must_use]
     pub fn variance(&self) -> Option<&[f32]> {
-        self.numbers(Layer::Variance)
+        self.plane(Layer::Variance)
     }
 
     /// The layers of the image.
@@ -221,63 +219,44 @@ impl Image {
         [color, normal, albedo]: [Vec<[f32; 3]>; 3],
         [depth, variance]: [Vec<f32>; 2],
     ) {
-        self.planes[Layer::Color as usize] = Some(Plane::Vectors(color));
-        self.planes[Layer::Normal as usize] = Some(Plane::Vectors(normal));
-        self.planes[Layer::Albedo as usize] = Some(Plane::Vectors(albedo));
-        self.planes[Layer::Depth as usize] = Some(Plane::Numbers(depth));
-        self.planes[Layer::Variance as usize] = Some(Plane::Numbers(variance));
+        self.set(Layer::Color, color);
+        self.set(Layer::Normal, normal);
+        self.set(Layer::Albedo, albedo);
+        self.set(Layer::Depth, depth);
+        self.set(Layer::Variance, variance);
     }
 
     pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
-        vectors_mut(&mut self.planes[Layer::Color as usize]).unwrap_or_default()
+        self.plane_mut(Layer::Color).unwrap_or_default()
     }
 
     pub(crate) fn alpha_mut(&mut self) -> Option<&mut [f32]> {
-        numbers_mut(&mut self.planes[Layer::Alpha as usize])
+        self.plane_mut(Layer::Alpha)
     }
-}
 
-impl Plane {
-    /// A layer in which every pixel is a miss, without samples; `None` if the memory cannot be allocated.
-    fn new(layer: Layer, pixels: usize) -> Option<Self> {
-        Some(match layer {
-            Layer::Color | Layer::Normal | Layer::Position | Layer::Albedo => {
-                Self::Vectors(filled(pixels, [0.0; 3])?)
+    /// A range of rows, from top to bottom, each of which can be written independently.
+    pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
+        let height = self.height as usize;
+        let mut planes = self.planes.each_mut().map(|plane| {
+            let words = plane.as_ref()?.len() / height;
+            Some(plane.as_mut()?[rows.start * words..rows.end * words].chunks_mut(words))
+        });
+        rows.map(|_| {
+            let [color, alpha, depth, normal, position, albedo, id, samples, variance] =
+                planes.each_mut().map(|rows| rows.as_mut()?.next());
+            RowMut {
+                color: color.map(cast_slice_mut).unwrap_or_default(),
+                alpha: alpha.map(cast_slice_mut),
+                depth: depth.map(cast_slice_mut),
+                normal: normal.map(cast_slice_mut),
+                position: position.map(cast_slice_mut),
+                albedo: albedo.map(cast_slice_mut),
+                id,
+                samples,
+                variance: variance.map(cast_slice_mut),
             }
-            Layer::Depth => Self::Numbers(filled(pixels, f32::INFINITY)?),
-            Layer::Alpha | Layer::Variance => Self::Numbers(filled(pixels, 0.0)?),
-            Layer::Id => Self::Counts(filled(pixels, NO_ID)?),
-            Layer::Samples => Self::Counts(filled(pixels, 0)?),
         })
-    }
-}
-
-/// A list of equal values; `None` if the memory cannot be allocated.
-fn filled<T: Clone>(count: usize, value: T) -> Option<Vec<T>> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).ok()?;
-    values.resize(count, value);
-    Some(values)
-}
-
-fn numbers_mut(plane: &mut Option<Plane>) -> Option<&mut [f32]> {
-    match plane {
-        Some(Plane::Numbers(values)) => Some(values),
-        _ => None,
-    }
-}
-
-fn vectors_mut(plane: &mut Option<Plane>) -> Option<&mut [[f32; 3]]> {
-    match plane {
-        Some(Plane::Vectors(values)) => Some(values),
-        _ => None,
-    }
-}
-
-fn counts_mut(plane: &mut Option<Plane>) -> Option<&mut [u32]> {
-    match plane {
-        Some(Plane::Counts(values)) => Some(values),
-        _ => None,
+        .collect()
     }
 }
 
@@ -345,37 +324,4 @@ pub(crate) fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {
     if let Some(layer) = layer {
         layer[column] = value;
     }
-}
-
-impl Image {
-    /// A range of rows, from top to bottom, each of which can be written independently.
-    pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
-        let width = self.width as usize;
-        let pixels = &(rows.start * width..rows.end * width);
-        let [color, alpha, depth, normal, position, albedo, id, samples, variance] =
-            self.planes.each_mut();
-        let mut numbers =
-            [alpha, depth, variance].map(|plane| cut(numbers_mut(plane), pixels, width));
-        let mut vectors =
-            [color, normal, position, albedo].map(|plane| cut(vectors_mut(plane), pixels, width));
-        let mut counts = [id, samples].map(|plane| cut(counts_mut(plane), pixels, width));
-        rows.map(|_| {
-            let [alpha, depth, variance] = numbers.each_mut().map(next);
-            let [color, normal, position, albedo] = vectors.each_mut().map(next);
-            let [id, samples] = counts.each_mut().map(next);
-            let color = color.unwrap_or_default();
-            RowMut { color, alpha, depth, normal, position, albedo, id, samples, variance }
-        })
-        .collect()
-    }
-}
-
-type Rows<'a, T> = Option<ChunksMut<'a, T>>;
-
-fn cut<'a, T>(layer: Option<&'a mut [T]>, pixels: &Range<usize>, width: usize) -> Rows<'a, T> {
-    layer.map(|layer| layer[pixels.clone()].chunks_mut(width))
-}
-
-fn next<'a, T>(rows: &mut Rows<'a, T>) -> Option<&'a mut [T]> {
-    rows.as_mut().and_then(Iterator::next)
 }

@@ -1,6 +1,6 @@
 //! Pictures in parts: copying a part into the whole, and the bytes by which parts travel between machines.
 
-use super::{Image, ImageTooLarge, Layer, LayerSet, Plane, counts_mut};
+use super::{Image, ImageTooLarge, Layer, LayerSet};
 
 /// A part does not fit into a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -40,9 +40,24 @@ impl Image {
         let rows = (part.height as usize).min((self.height - row) as usize);
         let [width, stride] = [part.width, self.width].map(|side| side as usize);
         let first = row as usize * stride + column as usize;
-        for (to, from) in self.planes.iter_mut().zip(&part.planes) {
+        self.copy(part, (0..rows).map(|row| (first + row * stride, row * width)), width);
+    }
+
+    /// Copies runs of `count` pixels, in the layers that both pictures have: where each begins here and in the other.
+    fn copy(
+        &mut self,
+        from: &Self,
+        starts: impl Iterator<Item = (usize, usize)> + Clone,
+        count: usize,
+    ) {
+        let planes = self.planes.iter_mut().zip(&from.planes);
+        for (layer, (to, from)) in Layer::ALL.iter().zip(planes) {
             let (Some(to), Some(from)) = (to, from) else { continue };
-            (0..rows).for_each(|row| to.copy(first + row * stride, from, row * width, width));
+            let words = layer.words();
+            for (at, start) in starts.clone() {
+                let run = &from[start * words..][..count * words];
+                to[at * words..][..count * words].copy_from_slice(run);
+            }
         }
     }
 
@@ -61,16 +76,12 @@ impl Image {
 
     /// Copies the pixels with these indices from a picture of the same size and layers.
     pub(crate) fn copy_pixels(&mut self, from: &Self, pixels: &[usize]) {
-        for (to, from) in self.planes.iter_mut().zip(&from.planes) {
-            let (Some(to), Some(from)) = (to, from) else { continue };
-            pixels.iter().for_each(|at| to.copy(*at, from, *at, 1));
-        }
+        self.copy(from, pixels.iter().map(|at| (*at, *at)), 1);
     }
 
     /// Sets the layer of ids, if there is one of this length.
     pub(crate) fn set_id(&mut self, ids: &[u32]) {
-        let layer = counts_mut(&mut self.planes[Layer::Id as usize]);
-        if let Some(layer) = layer.filter(|layer| layer.len() == ids.len()) {
+        if let Some(layer) = self.plane_mut(Layer::Id).filter(|layer| layer.len() == ids.len()) {
             layer.copy_from_slice(ids);
         }
     }
@@ -79,19 +90,7 @@ impl Image {
     /// numbers of 4 bytes: [`LayerSet::bytes_per_pixel`] bytes for each pixel. [`Image::from_le_bytes`] reads them back.
     #[must_use]
     pub fn to_le_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        for plane in self.planes.iter().flatten() {
-            let floats = match plane {
-                Plane::Numbers(values) => values,
-                Plane::Vectors(values) => values.as_flattened(),
-                Plane::Counts(values) => {
-                    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-                    continue;
-                }
-            };
-            bytes.extend(floats.iter().flat_map(|value| value.to_bits().to_le_bytes()));
-        }
-        bytes
+        self.planes.iter().flatten().flatten().flat_map(|word| word.to_le_bytes()).collect()
     }
 
     /// A picture from the bytes that [`Image::to_le_bytes`] returned for these layers. `None` if their number is another,
@@ -107,33 +106,10 @@ impl Image {
             return None;
         }
         let mut image = Self::new(width, height, layers).ok()?;
-        let mut words = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
-        let mut next = || words.next().unwrap_or_default();
-        for plane in image.planes.iter_mut().flatten() {
-            let floats = match plane {
-                Plane::Numbers(values) => values,
-                Plane::Vectors(values) => values.as_flattened_mut(),
-                Plane::Counts(values) => {
-                    values.iter_mut().for_each(|value| *value = next());
-                    continue;
-                }
-            };
-            floats.iter_mut().for_each(|value| *value = f32::from_bits(next()));
-        }
+        let words = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
+        let all = image.planes.iter_mut().flatten().flatten();
+        all.zip(words).for_each(|(to, word)| *to = word);
         Some(image)
-    }
-}
-
-impl Plane {
-    /// Copies some pixels from another plane of the layer.
-    fn copy(&mut self, to: usize, from: &Self, at: usize, count: usize) {
-        let (to, at) = (to..to + count, at..at + count);
-        match (self, from) {
-            (Self::Numbers(all), Self::Numbers(from)) => all[to].copy_from_slice(&from[at]),
-            (Self::Vectors(all), Self::Vectors(from)) => all[to].copy_from_slice(&from[at]),
-            (Self::Counts(all), Self::Counts(from)) => all[to].copy_from_slice(&from[at]),
-            _ => {}
-        }
     }
 }
 
@@ -171,13 +147,8 @@ mod tests {
         for (x, width) in [(0, 3), (3, 4)] {
             for (y, height) in [(0, 1), (1, 2), (3, 2)] {
                 let mut part = Image::new(width, height, LayerSet::ALL).unwrap();
-                for (to, from) in part.planes.iter_mut().zip(&whole.planes) {
-                    for row in 0..height {
-                        let (to, from) = (to.as_mut().unwrap(), from.as_ref().unwrap());
-                        let at = ((y + row) * 7 + x) as usize;
-                        to.copy((row * width) as usize, from, at, width as usize);
-                    }
-                }
+                let start = |row: u32| ((row * width) as usize, ((y + row) * 7 + x) as usize);
+                part.copy(&whole, (0..height).map(start), width as usize);
                 joined.put(&part, [x, y]).unwrap();
             }
         }

@@ -138,30 +138,27 @@ const MIN_COSINE: f64 = 1e-6;
 fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
     let cosine = cosine.clamp(MIN_COSINE, 1.0);
     let view = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-    let sum: f64 = match lobe {
-        Lobe::Reflection { roughness } => {
-            let alpha = f64::from(roughness) * f64::from(roughness);
-            let of_view = smith(cosine, alpha);
-            let weight = |half: DVec3| {
-                let z = 2.0 * view.dot(half) * half.z - view.z;
-                if z > 0.0 { (1.0 + of_view) / (1.0 + of_view + smith(z, alpha)) } else { 0.0 }
-            };
-            points.iter().map(|p| weight(visible_normal(view, alpha, *p))).sum()
-        }
-        Lobe::Refraction { ior, roughness, is_leaving } => {
-            let alpha = f64::from(roughness) * f64::from(roughness);
-            let eta = if is_leaving { 1.0 / f64::from(ior) } else { f64::from(ior) };
-            let shadowing = |z: f64| if z > 0.0 { 1.0 / (1.0 + smith(z, alpha)) } else { 0.0 };
-            let weight = |half: DVec3| {
-                let m = view.dot(half);
+    let (Lobe::Reflection { roughness } | Lobe::Refraction { roughness, .. }) = lobe;
+    let alpha = f64::from(roughness) * f64::from(roughness);
+    let of_view = smith(cosine, alpha);
+    let weight = |half: DVec3| {
+        let m = view.dot(half);
+        let up = 2.0 * m * half.z - view.z;
+        match lobe {
+            Lobe::Reflection { .. } if up > 0.0 => {
+                (1.0 + of_view) / (1.0 + of_view + smith(up, alpha))
+            }
+            Lobe::Reflection { .. } => 0.0,
+            Lobe::Refraction { ior, is_leaving, .. } => {
+                let eta = if is_leaving { 1.0 / f64::from(ior) } else { f64::from(ior) };
+                let shadowing = |z: f64| if z > 0.0 { 1.0 / (1.0 + smith(z, alpha)) } else { 0.0 };
                 let (reflected, inside) = fresnel(m, eta);
-                let up = 2.0 * m * half.z - view.z;
                 let down = view.z / eta - (m / eta - inside) * half.z;
                 reflected * shadowing(up) + (1.0 - reflected) * shadowing(down)
-            };
-            points.iter().map(|p| weight(visible_normal(view, alpha, *p))).sum()
+            }
         }
     };
+    let sum: f64 = points.iter().map(|p| weight(visible_normal(view, alpha, *p))).sum();
     sum / points.len() as f64
 }
 

@@ -17,20 +17,6 @@ pub enum SettingsError {
     /// A parameter is out of range.
     #[error(transparent)]
     Range(#[from] RangeError),
-    /// A parameter of a light is out of range.
-    #[error("light {index}: {error}")]
-    Light {
-        /// Index of the light in input order, from 0.
-        index: usize,
-        /// The parameter that is out of range.
-        error: RangeError,
-    },
-    /// A light's direction is zero or not finite.
-    #[error("light {index}: its direction must be finite and not zero")]
-    Direction {
-        /// Index of the light in input order, from 0.
-        index: usize,
-    },
     /// A surface would reflect more light than arrives.
     #[error(
         "{what} has the color {rgb:?}, which creates light; each component of a color that scatters must be at most 1"
@@ -59,27 +45,9 @@ pub enum SettingsError {
         "a shadow catcher needs the integrator `studio`; the integrator `path` does not support it"
     )]
     Catcher,
-    /// The integrator `primary` takes exactly one sample for each pixel.
-    #[error(
-        "the integrator `primary` traces one ray through the center of each pixel, but {samples} samples are asked \
-         for; ask for 1, or choose the integrator `studio` or `path`"
-    )]
-    OneSample {
-        /// The number of samples in the settings.
-        samples: u32,
-    },
-    /// A setting has no effect with the integrator.
-    #[error(
-        "the integrator `{integrator}` does not use {what}; leave out {what}, or choose the integrator {instead}"
-    )]
-    Unused {
-        /// The setting.
-        what: &'static str,
-        /// Name of the integrator.
-        integrator: &'static str,
-        /// The integrators that use the setting.
-        instead: &'static str,
-    },
+    /// A light is not valid, or the integrator does not use a setting.
+    #[error("{0}")]
+    Invalid(String),
 }
 
 impl RenderSettings {
@@ -131,10 +99,18 @@ impl RenderSettings {
     /// Returns an error for a setting that the integrator would ignore.
     fn check_is_used(&self) -> Result<(), SettingsError> {
         let integrator = self.integrator.name();
-        let unused = |what, instead| Err(SettingsError::Unused { what, integrator, instead });
+        let unused = |what: &str, instead: &str| {
+            Err(SettingsError::Invalid(format!(
+                "the integrator `{integrator}` does not use {what}; leave out {what}, or choose the integrator {instead}"
+            )))
+        };
         let is_primary = self.integrator.is_primary();
         if is_primary && self.sampling.samples != 1 {
-            return Err(SettingsError::OneSample { samples: self.sampling.samples });
+            return Err(SettingsError::Invalid(format!(
+                "the integrator `primary` traces one ray through the center of each pixel, but {} samples are asked \
+                 for; ask for 1, or choose the integrator `studio` or `path`",
+                self.sampling.samples
+            )));
         }
         if !matches!(self.integrator, Integrator::Path(_)) && self.sky != Sky::default() {
             return unused("the sky", "`path`");
@@ -256,13 +232,14 @@ const LENGTH_WORDS: &str = "a length greater than 0, from 2^-56 to 2^56";
 fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
     let within = |parameter, value, bounds, range| {
         RangeError::unless_within(parameter, value, bounds, range)
-            .map_err(|error| SettingsError::Light { index, error })
+            .map_err(|error| SettingsError::Invalid(format!("light {index}: {error}")))
     };
     match *light {
         LightKind::Head { .. } => {}
         LightKind::Directional { toward, angular_radius, .. } => {
             if unit(toward).is_none() {
-                return Err(SettingsError::Direction { index });
+                let message = "its direction must be finite and not zero";
+                return Err(SettingsError::Invalid(format!("light {index}: {message}")));
             }
             if angular_radius != 0.0 {
                 let range = "0, or from 0.06 to 90 degrees";

@@ -31,7 +31,6 @@ pub use integrator::{
     Studio,
 };
 pub use nearest::{Nearest, NotOfOneScene};
-pub use notes::SettingsNote;
 pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
 

@@ -1,7 +1,6 @@
 //! Notes about settings that are valid but may not give the intended picture.
 
 use std::f64::consts::PI;
-use std::fmt;
 
 use super::{Integrator, RenderSettings};
 use crate::image::color::LinearRgb;
@@ -9,54 +8,11 @@ use crate::light::SkyLight;
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// Something about settings and a scene that may not be intended, and what to do about it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum SettingsNote {
-    /// The picture has lighting, but nothing emits light.
-    NoLight,
-    /// The studio integrator draws metal and glass as matt surfaces.
-    MattInStudio,
-    /// The integrator `primary` stops at the first sphere, whatever its opacity.
-    OpacityIgnored,
-    /// More translucent surfaces seem to lie behind each other than the studio integrator draws.
-    ManySurfaces {
-        /// [`Studio::max_surfaces`](super::Studio::max_surfaces).
-        most: u32,
-    },
-}
-
-impl fmt::Display for SettingsNote {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = match self {
-            Self::ManySurfaces { most } => {
-                return write!(
-                    f,
-                    "so many clear spheres seem to lie behind each other that some are not seen: of each ray, the {most} \
-                     nearest surfaces are drawn, two for each sphere; set `max_surfaces` in `[studio]`, up to 64, or \
-                     higher opacities"
-                );
-            }
-            Self::NoLight => {
-                "no light: nothing shines on this scene, and its spheres will be black; add \
-                 [[lights]], or give a light, the sky or a sphere a color and a strength above zero"
-            }
-            Self::MattInStudio => {
-                "metal and glass are matt in a studio; choose the integrator `path` to render them as they are"
-            }
-            Self::OpacityIgnored => {
-                "primary rays ignore opacity, and all spheres are drawn as if they were opaque; choose \
-                 the integrator `studio` or `path` to see through them"
-            }
-        };
-        f.write_str(text)
-    }
-}
-
 impl RenderSettings {
-    /// What a user should know about rendering a scene with these settings, although it is not an error.
+    /// Notes for the user about what may not be intended in rendering a scene with these settings, and what to do about
+    /// it.
     #[must_use]
-    pub fn notes(&self, scene: &Scene) -> Vec<SettingsNote> {
+    pub fn notes(&self, scene: &Scene) -> Vec<String> {
         let any = |is_special: fn(&SurfaceProperties) -> bool| {
             scene.appearance().surfaces().iter().any(is_special)
         };
@@ -66,16 +22,33 @@ impl RenderSettings {
                 matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. })
             })
         };
-        let most = self.studio_parameters().map(|studio| studio.max_surfaces);
-        let is_deep = |most: u32| is_translucent() && may_exceed(scene, most);
         let notes = [
-            (SettingsNote::NoLight, self.is_dark(scene)),
-            (SettingsNote::MattInStudio, self.studio_parameters().is_some() && needs_paths()),
-            (SettingsNote::OpacityIgnored, self.integrator.is_primary() && is_translucent()),
+            (
+                self.is_dark(scene),
+                "no light: nothing shines on this scene, and its spheres will be black; add [[lights]], or give a light, \
+                 the sky or a sphere a color and a strength above zero",
+            ),
+            (
+                self.studio_parameters().is_some() && needs_paths(),
+                "metal and glass are matt in a studio; choose the integrator `path` to render them as they are",
+            ),
+            (
+                self.integrator.is_primary() && is_translucent(),
+                "primary rays ignore opacity, and all spheres are drawn as if they were opaque; choose the integrator \
+                 `studio` or `path` to see through them",
+            ),
         ];
-        let deep =
-            most.filter(|most| is_deep(*most)).map(|most| SettingsNote::ManySurfaces { most });
-        notes.into_iter().filter(|(_, holds)| *holds).map(|(note, _)| note).chain(deep).collect()
+        let most = self.studio_parameters().map(|studio| studio.max_surfaces);
+        let most = most.filter(|most| is_translucent() && may_exceed(scene, *most));
+        let deep = most.map(|most| {
+            format!(
+                "so many clear spheres seem to lie behind each other that some are not seen: of each ray, the {most} \
+                 nearest surfaces are drawn, two for each sphere; set `max_surfaces` in `[studio]`, up to 64, or higher \
+                 opacities"
+            )
+        });
+        let notes = notes.into_iter().filter_map(|(holds, note)| holds.then(|| note.to_owned()));
+        notes.chain(deep).collect()
     }
 
     /// Whether the picture has lighting but nothing emits light.

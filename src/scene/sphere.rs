@@ -19,26 +19,10 @@ pub struct Sphere {
 }
 
 /// Why a sphere is not valid.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub enum SphereError {
-    /// The centre is NaN, infinite or too far away.
-    #[error(
-        "its center is {center:?}; every coordinate must be finite and at most {MAX_LENGTH:e} in size"
-    )]
-    Center {
-        /// The centre as given.
-        center: [f64; 3],
-    },
-    /// The radius is NaN, infinite, zero, negative or too small or large for f32 kernels.
-    #[error(
-        "its radius is {radius:?}; a radius must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
-    )]
-    Radius {
-        /// The radius as given.
-        radius: f64,
-    },
-}
+pub struct SphereError(String);
 
 impl Sphere {
     /// A matt, opaque sphere.
@@ -77,10 +61,15 @@ pub(crate) fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
     // `contains` is false for NaN.
     let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);
     if !center.iter().all(in_range) {
-        return Err(SphereError::Center { center });
+        return Err(SphereError(format!(
+            "its center is {center:?}; every coordinate must be finite and at most {MAX_LENGTH:e} in size"
+        )));
     }
     if !(MIN_LENGTH..=MAX_LENGTH).contains(&radius) {
-        return Err(SphereError::Radius { radius });
+        let range = format!("greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}");
+        return Err(SphereError(format!(
+            "its radius is {radius:?}; a radius must be finite, {range}"
+        )));
     }
     Ok(())
 }

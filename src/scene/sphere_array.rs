@@ -24,18 +24,10 @@ pub enum Radii<'a, T> {
 }
 
 /// The number of radii differs from the number of positions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{}: there are {radii} radii for {positions} positions",
-    if radii < positions { format!("position {radii} has no radius") } else { format!("radius {positions} has no position") }
-)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 #[non_exhaustive]
-pub struct RadiiError {
-    /// The number of positions.
-    pub positions: usize,
-    /// The number of radii.
-    pub radii: usize,
-}
+pub struct RadiiError(String);
 
 impl SphereArray {
     /// Spheres from centres and radii in f32.
@@ -107,6 +99,13 @@ fn joined<T: Copy>(centers: &[[T; 3]], radii: Radii<'_, T>) -> Result<Vec<[T; 4]
         Radii::Each(radii) if radii.len() == centers.len() => {
             Ok(centers.iter().zip(radii.iter().copied()).map(sphere).collect())
         }
-        Radii::Each(radii) => Err(RadiiError { positions: centers.len(), radii: radii.len() }),
+        Radii::Each(radii) => {
+            let (radii, positions) = (radii.len(), centers.len());
+            let lacking = match radii < positions {
+                true => format!("position {radii} has no radius"),
+                false => format!("radius {positions} has no position"),
+            };
+            Err(RadiiError(format!("{lacking}: there are {radii} radii for {positions} positions")))
+        }
     }
 }

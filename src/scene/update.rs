@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::appearance::{Colors, SceneAppearance};
 use super::{Scene, SceneError, frame};
-use crate::scene::sphere::{self, SphereError};
+use crate::scene::sphere;
 
 /// New centres, radii or colours for consecutive spheres of a scene. Whatever is `None` does not change.
 ///
@@ -185,13 +185,13 @@ impl SceneUpdate<'_> {
         let ([x, y, z], in_frame) = self.sphere(scene, index);
         let radius = f64::from(in_frame[3]);
         sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
-        match sphere::check(frame::slackened(&in_frame)) {
-            Err(SphereError::Center { .. }) => Err(UpdateError(format!(
+        // The radius is right, so only the center can be out of range.
+        sphere::check(frame::slackened(&in_frame)).map_err(|_| {
+            UpdateError(format!(
                 "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
                 scene.origin.to_array()
-            ))),
-            _ => Ok(()),
-        }
+            ))
+        })
     }
 
     fn check_colors(&self, scene: &Scene, first: usize) -> Result<(), UpdateError> {

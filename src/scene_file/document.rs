@@ -261,15 +261,15 @@ pub(super) struct OutputTable {
 impl OutputTable {
     pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
         let span = |start| move |error: EncodingError| lines.span(start).error(error);
-        let mut encoding =
-            Encoding::default().with_tone(self.tone).with_transparent(self.transparent);
+        let (tone, transparent) = (self.tone, self.transparent);
+        let mut encoding = Encoding { tone, transparent, ..Encoding::default() };
         if let Some(exposure) = self.exposure {
             let start = exposure.span().start;
             encoding = encoding.with_exposure(exposure.into_inner()).map_err(span(start))?;
         }
         if let Some(bits) = self.bits {
             let start = bits.span().start;
-            encoding = encoding.with_bits(Bits::new(bits.into_inner()).map_err(span(start))?);
+            encoding.bits = Bits::new(bits.into_inner()).map_err(span(start))?;
         }
         if let Some(dpi) = self.dpi {
             let start = dpi.span().start;

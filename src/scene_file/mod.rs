@@ -161,7 +161,7 @@ impl SceneFile {
     }
 
     fn spanned(&self, error: &SceneError) -> SceneFileError {
-        let &SceneError::Sphere { index, error: fault } = error else {
+        let &SceneError::Sphere { index, error: ref fault } = error else {
             return Span::START.error(error);
         };
         match (self.spheres.get(index), &self.data) {

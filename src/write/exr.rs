@@ -77,7 +77,7 @@ pub fn write(
     };
     let width = size.0;
     let channels =
-        planes(picture, layers, encoding.transparent())?.into_iter().map(|(name, samples)| {
+        planes(picture, layers, encoding.transparent)?.into_iter().map(|(name, samples)| {
             AnyChannel {
                 name: latin(name),
                 sample_data: Channel { samples, width },

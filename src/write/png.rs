@@ -53,7 +53,7 @@ pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError
         false => None,
     };
     let pixels = Pixels { color: picture.color(), alpha, encoding };
-    Ok(match encoding.bits() {
+    Ok(match encoding.bits {
         Bits::Eight => pixels.samples(to_srgb8, |alpha| [(255.0 * unit(alpha)).round() as u8]),
         Bits::Sixteen => {
             let big_endian = |sample: u16| sample.to_be_bytes();
@@ -81,7 +81,7 @@ pub fn samples_annotated(
     let mut samples = samples(picture, encoding)?;
     let size = [picture.width(), picture.height()];
     let channels = kind(encoding).0.samples();
-    if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits(), &mut samples) {
+    if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits, &mut samples) {
         annotations.draw(&mut canvas);
     }
     Ok(samples)
@@ -89,7 +89,7 @@ pub fn samples_annotated(
 
 fn encode_samples(image: &Image, encoding: &Encoding, samples: &[u8]) -> Result<Vec<u8>, PngError> {
     let size = [image.width(), image.height()];
-    write(size, kind(encoding), encoding.dots_per_inch(), None, samples)
+    write(size, kind(encoding), encoding.dots_per_inch, None, samples)
 }
 
 /// Encodes samples that [`samples`] returned for the same encoding as a PNG file, which carries a certificate as a text.
@@ -102,12 +102,12 @@ pub fn encode_certified(
     samples: &[u8],
     certificate: &str,
 ) -> Result<Vec<u8>, PngError> {
-    write(size, kind(encoding), encoding.dots_per_inch(), Some(certificate), samples)
+    write(size, kind(encoding), encoding.dots_per_inch, Some(certificate), samples)
 }
 
 fn kind(encoding: &Encoding) -> (ColorType, BitDepth) {
-    let color = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
-    match encoding.bits() {
+    let color = if encoding.transparent { ColorType::Rgba } else { ColorType::Rgb };
+    match encoding.bits {
         Bits::Eight => (color, BitDepth::Eight),
         Bits::Sixteen => (color, BitDepth::Sixteen),
     }
@@ -190,7 +190,7 @@ impl Pixels<'_> {
         of_color: impl Fn([f32; 3]) -> [u8; RGB] + Sync + Send,
         of_alpha: impl Fn(f32) -> [u8; A] + Sync + Send,
     ) -> Vec<u8> {
-        let size = RGB + if self.encoding.transparent() { A } else { 0 };
+        let size = RGB + if self.encoding.transparent { A } else { 0 };
         let mut bytes = vec![0; size * self.color.len()];
         let chunks = bytes.chunks_mut(size * CHUNK).zip(self.color.chunks(CHUNK)).enumerate();
         for_each(chunks.collect(), |(index, (bytes, color))| {
@@ -218,7 +218,7 @@ impl Pixels<'_> {
     fn shown(&self, rgb: [f32; 3], alpha: f32) -> [f32; 3] {
         match self.encoding.kept_background() {
             Some(background) => self.encoding.display_over(rgb, alpha, background),
-            None if self.encoding.transparent() => self.encoding.display(divided(rgb, alpha)),
+            None if self.encoding.transparent => self.encoding.display(divided(rgb, alpha)),
             None => self.encoding.display(rgb),
         }
     }

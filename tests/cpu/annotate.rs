@@ -1,8 +1,8 @@
 //! Legends, scale bars and labels, as pictures have them.
 
 use pinhole::annotate::{
-    Anchor, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend, LegendPlan, Panel,
-    Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
+    Anchor, Annotation, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend,
+    LegendPlan, Panel, Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
 };
 use pinhole::camera::{FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::color_by::{ColorBy, ColorKey};
@@ -44,12 +44,11 @@ fn flat([width, height]: [u32; 2], level: f32) -> Image {
 #[test]
 fn exposure_and_tone_leave_annotations_alone() {
     let key = categories(&["A", "B", "C"]);
-    let annotations = Annotations::default().with(Legend::new(key));
+    let annotations = Annotations::default().with(Annotation::Legend(Legend::new(key)));
     let image = flat([400, 300], 0.9);
-    let strong = Encoding::default().with_tone(ToneCurve::Agx).with_exposure(1.0).unwrap();
-    for (encoding, step) in
-        [(Encoding::default(), 1), (strong, 1), (strong.with_bits(Bits::Sixteen), 2)]
-    {
+    let strong = Encoding { tone: ToneCurve::Agx, exposure: 1.0, ..Encoding::default() };
+    let fine = Encoding { bits: Bits::Sixteen, ..strong };
+    for (encoding, step) in [(Encoding::default(), 1), (strong, 1), (fine, 2)] {
         let plain = read_png(&png_file::encode(&image, &encoding).unwrap()).1;
         let file = png_file::encode_annotated(&image, &encoding, &annotations).unwrap();
         let drawn = read_png(&file).1;
@@ -68,8 +67,10 @@ fn exposure_and_tone_leave_annotations_alone() {
 #[test]
 fn text_is_black_on_light_and_white_on_dark() {
     for (level, ink) in [(1.0, 0), (0.5, 0), (0.0, 255), (0.03, 255)] {
-        let annotations = Annotations::default()
-            .with(Label { text: "MMMM".to_owned(), position: Position::TOP_LEFT });
+        let annotations = Annotations::default().with(Annotation::Label(Label {
+            text: "MMMM".to_owned(),
+            position: Position::TOP_LEFT,
+        }));
         let image = flat([800, 900], level);
         let file = png_file::encode_annotated(&image, &Encoding::default(), &annotations).unwrap();
         let drawn = read_png(&file).1;
@@ -87,7 +88,8 @@ fn a_panel_lies_where_the_picture_is_mixed() {
         .collect();
     let label = Label { text: "text".to_owned(), position: Position::TOP_LEFT };
     let drawn = |panel, mut samples: Vec<u8>| {
-        let annotations = Annotations { panel, ..Annotations::default() }.with(label.clone());
+        let annotations =
+            Annotations { panel, ..Annotations::default() }.with(Annotation::Label(label.clone()));
         annotations.draw(&mut Canvas::new(size, 3, Bits::Eight, &mut samples).unwrap());
         samples
     };
@@ -119,7 +121,9 @@ fn annotations_fit_pictures_of_any_size() {
                     legend.title = title;
                     let mut samples = vec![255; (4 * size[0] * size[1]) as usize];
                     let mut canvas = Canvas::new(size, 4, Bits::Eight, &mut samples).unwrap();
-                    Annotations::default().with(legend.clone()).draw(&mut canvas);
+                    Annotations::default()
+                        .with(Annotation::Legend(legend.clone()))
+                        .draw(&mut canvas);
                 }
             }
         }
@@ -136,8 +140,9 @@ fn what_shares_a_corner_is_stacked() {
         let is_dark = |row: &[u8]| row.iter().any(|sample| *sample < 128);
         samples.chunks_exact(3 * size[0] as usize).map(is_dark).collect::<Vec<bool>>()
     };
-    let label =
-        |text: &str, anchor| Label { text: text.to_owned(), position: Position::Anchor(anchor) };
+    let label = |text: &str, anchor| {
+        Annotation::Label(Label { text: text.to_owned(), position: Position::Anchor(anchor) })
+    };
     for anchor in [Anchor::TopRight, Anchor::Left, Anchor::Bottom] {
         let one = rows(&Annotations::default().with(label("H", anchor)));
         let two = Annotations::default().with(label("H", anchor)).with(label("H", anchor));
@@ -181,7 +186,7 @@ fn a_scale_bar_is_as_long_as_its_length() {
 
     // The bar that is drawn has as many dark pixels in its row.
     let mut samples = vec![255; 3 * 800 * 200];
-    let annotations = Annotations::default().with(bar(Some(30.0)).unwrap());
+    let annotations = Annotations::default().with(Annotation::ScaleBar(bar(Some(30.0)).unwrap()));
     annotations.draw(&mut Canvas::new([800, 200], 3, Bits::Eight, &mut samples).unwrap());
     let dark = |row: &[u8]| row.iter().filter(|sample| **sample == 0).count() / 3;
     let longest = samples.chunks_exact(3 * 800).map(dark).max();
@@ -272,5 +277,5 @@ fn scene_files_have_keys_for_all_of_it() {
     assert_eq!(plan.labels[1].position, Position::TOP_LEFT);
     let look = (plan.text_scale, plan.color, plan.panel);
     assert_eq!(look, (Some(2.0), Some([255; 3]), Some(Panel::Never)));
-    assert_eq!(file.encoding.dots_per_inch(), Some(300.0));
+    assert_eq!(file.encoding.dots_per_inch, Some(300.0));
 }

@@ -4,7 +4,6 @@ use fastrand::Rng;
 use pinhole::glam::DVec3;
 use pinhole::light::emitters::Emitters;
 use pinhole::render::SettingsError;
-use pinhole::scene::sphere::SphereError;
 use pinhole::scene::{Centers, NewColors, SceneError, SceneUpdate};
 use pinhole::verify::run_file;
 use pinhole::{
@@ -34,18 +33,16 @@ fn bad_spheres_are_named_by_index() {
     let error = |bad: Sphere| Scene::new(&[good, good, bad, good]).unwrap_err();
     for radius in [0.0, -1.0, -0.0, f64::NAN, f64::INFINITY, 1e-40, 1e40] {
         let error = error(sphere([0.0; 3], radius));
-        let expected = SphereError::Radius { radius };
-        assert_eq!(error.to_string(), format!("sphere 2: {expected}"));
-        assert!(error.to_string().starts_with("sphere 2: its radius is "), "{error}");
+        let expected = format!("sphere 2: its radius is {radius:?}; a radius must be finite, ");
+        assert!(error.to_string().starts_with(&expected), "{error}");
     }
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e20] {
         for axis in 0..3 {
             let mut center = [0.0; 3];
             center[axis] = x;
             let error = error(sphere(center, 1.0));
-            let found =
-                matches!(error, SceneError::Sphere { index: 2, error: SphereError::Center { .. } });
-            assert!(found, "{error}");
+            let expected = format!("sphere 2: its center is {center:?}; every coordinate must be ");
+            assert!(error.to_string().starts_with(&expected), "{error}");
         }
     }
 }

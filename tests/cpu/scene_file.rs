@@ -58,16 +58,17 @@ fn the_example_has_the_expected_contents() {
 fn how_the_picture_is_written() {
     assert_eq!(parse("[output]\n").encoding, Encoding::default());
     let all = "[output]\nexposure = 1.5\ntone = 'filmic'\ntransparent = true\nbits = 16\n";
-    let expected = Encoding::default()
-        .with_exposure(1.5)
-        .unwrap()
-        .with_tone(ToneCurve::Filmic)
-        .with_transparent(true)
-        .with_bits(Bits::Sixteen);
+    let expected = Encoding {
+        exposure: 1.5,
+        tone: ToneCurve::Filmic,
+        transparent: true,
+        bits: Bits::Sixteen,
+        ..Encoding::default()
+    };
     assert_eq!(parse(all).encoding, expected);
     for tone in ToneCurve::ALL {
         let file = parse(&format!("[output]\ntone = '{}'\nexposure = -2\n", tone.name()));
-        assert_eq!((file.encoding.tone(), file.encoding.exposure()), (*tone, -2.0));
+        assert_eq!((file.encoding.tone, file.encoding.exposure), (*tone, -2.0));
     }
 }
 
@@ -319,7 +320,7 @@ fn a_background_is_left_alone_by_every_curve() {
     let background = grey.to_array();
     for tone in ToneCurve::ALL {
         for stops in [-2.0, 0.0, 3.0] {
-            let encoding = Encoding::default().with_tone(*tone).with_exposure(stops).unwrap();
+            let encoding = Encoding { tone: *tone, exposure: stops, ..Encoding::default() };
             assert_eq!(encoding.display_over(background, 0.0, grey), background);
             let light = [0.9, 0.2, 0.4];
             let covered = encoding.display_over(light, 1.0, grey);

@@ -21,14 +21,15 @@ use crate::support::{spheres, spheres_of};
 /// Every kind of encoding.
 fn encodings() -> Vec<Encoding> {
     let plain = Encoding::default();
-    let exposed = |tone| plain.with_exposure(-0.7).unwrap().with_tone(tone);
+    let exposed = |tone| Encoding { exposure: -0.7, tone, ..plain };
+    let fine = |encoding| Encoding { bits: Bits::Sixteen, ..encoding };
     vec![
         plain,
-        plain.with_bits(Bits::Sixteen),
-        exposed(ToneCurve::None).with_bits(Bits::Sixteen),
-        exposed(ToneCurve::Filmic).with_bits(Bits::Sixteen),
+        fine(plain),
+        fine(exposed(ToneCurve::None)),
+        fine(exposed(ToneCurve::Filmic)),
         exposed(ToneCurve::Agx),
-        exposed(ToneCurve::Agx).with_background(Some(LinearRgb::WHITE)),
+        Encoding { background: Some(LinearRgb::WHITE), ..exposed(ToneCurve::Agx) },
     ]
 }
 
@@ -101,9 +102,8 @@ impl Made {
     fn new(settings: RenderSettings, encoding: Encoding) -> Self {
         let scene = scene();
         let camera = camera(&scene);
-        let encoding = encoding
-            .with_transparent(settings.is_transparent)
-            .with_background(encoding.background().and(settings.visible_background()));
+        let background = encoding.background.and(settings.visible_background());
+        let encoding = Encoding { transparent: settings.is_transparent, background, ..encoding };
         let layers = encoding.layers();
         let image = cpu::render(&scene, &View::new(&camera, film()), &settings, layers).unwrap();
         let bytes = png::samples(&image, &encoding).unwrap();

@@ -89,7 +89,7 @@ pub(crate) fn read(of: &str, name: &str) -> (Vec<Sphere>, View) {
     let sky = file.sky_image().map(sky_image);
     let settings = file.settings(file.integrator().unwrap(), &scene, camera.as_ref(), sky);
     let mut settings = settings.unwrap();
-    settings.is_transparent = file.encoding.transparent();
+    settings.is_transparent = file.encoding.transparent;
     (file.spheres().collect(), View { scene, camera, film: file.film, settings })
 }
 

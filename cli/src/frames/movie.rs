@@ -107,9 +107,9 @@ pub(crate) fn write_apng(
     };
     let [width, height] = sink.size;
     let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
-    let is_transparent = sink.encoding.transparent();
+    let is_transparent = sink.encoding.transparent;
     encoder.set_color(if is_transparent { ColorType::Rgba } else { ColorType::Rgb });
-    encoder.set_depth(match sink.encoding.bits() {
+    encoder.set_depth(match sink.encoding.bits {
         Bits::Sixteen => BitDepth::Sixteen,
         _ => BitDepth::Eight,
     });

@@ -103,12 +103,12 @@ impl Target {
             Self::Movie { kind, .. } => Some(*kind),
         };
         if kind != Some(Movie::Apng) {
-            if encoding.transparent() {
+            if encoding.transparent {
                 return Err(Failure::usage(
                     "--transparent: of all movies only .apng may be transparent; use it, or a file for each frame",
                 ));
             }
-            if encoding.bits() != Bits::Eight {
+            if encoding.bits != Bits::Eight {
                 return Err(Failure::usage(
                     "--bits 16: of all movies only .apng has 16 bits; use it, or a file for each frame",
                 ));

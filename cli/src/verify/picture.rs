@@ -130,7 +130,7 @@ fn job(
 /// Refuses a picture whose samples are of another kind than the arguments ask for.
 fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result<()> {
     let FileSamples::Encoded { bits, has_alpha, .. } = samples else { return Ok(()) };
-    if (*bits, *has_alpha) == (encoding.bits(), encoding.transparent()) {
+    if (*bits, *has_alpha) == (encoding.bits, encoding.transparent) {
         return Ok(());
     }
     Err(anyhow!(
@@ -138,7 +138,7 @@ fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result
         path.display(),
         bits.count(),
         if *has_alpha { "with" } else { "without" },
-        encoding.bits().count(),
-        if encoding.transparent() { "with it" } else { "without it" }
+        encoding.bits.count(),
+        if encoding.transparent { "with it" } else { "without it" }
     ))
 }

@@ -266,7 +266,7 @@ pub(crate) fn render_lit(
     settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
     settings.is_transparent = false;
     let background = settings.visible_background();
-    let encoding = input.encoding.with_transparent(false).with_background(background);
+    let encoding = Encoding { transparent: false, background, ..input.encoding };
     let layers = encoding.layers();
     let (view, views) = (input.view(), views_of(input, input.film));
     let plan = |choice| render::plan(headless, input, &views, layers, choice);
@@ -287,7 +287,7 @@ pub(crate) fn render_lit(
 fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> ShownPicture {
     let (color, alpha) = (image.color(), image.alpha());
     let srgb = (0..color.len()).map(|i| {
-        to_srgb8(match (alpha, encoding.background()) {
+        to_srgb8(match (alpha, encoding.background) {
             (Some(alpha), Some(background)) => {
                 encoding.display_over(color[i], alpha[i], background)
             }

@@ -12,7 +12,7 @@ use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers, Wait};
-use pinhole::image::encoding::Bits;
+use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
@@ -71,7 +71,7 @@ impl StillRenderer {
         is_wanted: &dyn Fn() -> bool,
         show: &mut dyn FnMut(StillPicture),
     ) -> Result<bool, ViewError> {
-        let encoding = shown.encoding.with_bits(Bits::Eight);
+        let encoding = Encoding { bits: Bits::Eight, ..shown.encoding };
         let layers = encoding.layers().iter().chain(LayerSet::COLOR.iter()).collect();
         let mut settings = shown.input.settings.clone();
         let total = if settings.integrator.is_primary() { 1 } else { settings.sampling.samples };
@@ -82,7 +82,7 @@ impl StillRenderer {
             };
             let pixels = png::samples_annotated(&image, &encoding, &shown.annotations);
             let pixels = pixels.context("the picture cannot be shown").map_err(Failure::from)?;
-            let rgba = if encoding.transparent() {
+            let rgba = if encoding.transparent {
                 pixels
             } else {
                 pixels.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect()

@@ -117,9 +117,9 @@ pub struct WrittenPicture<'a> {
 impl WrittenPicture<'_> {
     /// The number of bytes of a sample, and of channels of a pixel.
     fn layout(&self) -> [usize; 2] {
-        let bytes = self.encoding.bits().bytes();
+        let bytes = self.encoding.bits.bytes();
         match self.samples {
-            Samples::Encoded(_) => [bytes, if self.encoding.transparent() { 4 } else { 3 }],
+            Samples::Encoded(_) => [bytes, if self.encoding.transparent { 4 } else { 3 }],
             Samples::Linear(_) => [1, 4],
         }
     }
@@ -153,7 +153,7 @@ impl WrittenPicture<'_> {
         self.check(self.size)?;
         let white = match self.samples {
             Samples::Linear(_) => 1.0,
-            Samples::Encoded(_) => f64::from(self.encoding.bits().white()),
+            Samples::Encoded(_) => f64::from(self.encoding.bits.white()),
         };
         let color = |index| {
             let [r, g, b, _] = self.at(index);
@@ -213,15 +213,15 @@ impl WrittenPicture<'_> {
             for (channel, color) in channels.iter_mut().zip(legal.color) {
                 *channel = [color.low, color.high];
             }
-            channels[3] = [if encoding.transparent() { alpha } else { 1.0 }; 2];
+            channels[3] = [if encoding.transparent { alpha } else { 1.0 }; 2];
             return LegalSample(channels);
         };
-        let [low, high] = self.displayed(legal).map(|ends| encode(encoding.bits(), ends));
+        let [low, high] = self.displayed(legal).map(|ends| encode(encoding.bits, ends));
         for channel in 0..3 {
             channels[channel] = [low[channel], high[channel]];
         }
-        if encoding.transparent() {
-            channels[3] = [alpha * f64::from(encoding.bits().white()); 2];
+        if encoding.transparent {
+            channels[3] = [alpha * f64::from(encoding.bits.white()); 2];
         }
         LegalSample(channels)
     }
@@ -230,7 +230,7 @@ impl WrittenPicture<'_> {
     fn displayed(&self, legal: &LegalColor) -> [[f32; 3]; 2] {
         let encoding = self.encoding;
         let ends = [legal.color.map(|c| down(c.low)), legal.color.map(|c| up(c.high))];
-        if !legal.is_hit && (encoding.transparent() || encoding.kept_background().is_some()) {
+        if !legal.is_hit && (encoding.transparent || encoding.kept_background().is_some()) {
             // The background passes through unchanged, and is black where it is transparent.
             return ends;
         }
