@@ -27,6 +27,7 @@ use crate::{interrupt, memory};
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
+#[cfg(feature = "gpu")]
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::cpu::{self, SampledPicture, SearchPlan};

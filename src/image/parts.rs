@@ -40,14 +40,14 @@ impl Image {
         let rows = (part.height as usize).min((self.height - row) as usize);
         let [width, stride] = [part.width, self.width].map(|side| side as usize);
         let first = row as usize * stride + column as usize;
-        self.copy(part, (0..rows).map(|row| (first + row * stride, row * width)), width);
+        self.copy(part, &(0..rows).map(|row| (first + row * stride, row * width)), width);
     }
 
     /// Copies runs of `count` pixels, in the layers that both pictures have: where each begins here and in the other.
     fn copy(
         &mut self,
         from: &Self,
-        starts: impl Iterator<Item = (usize, usize)> + Clone,
+        starts: &(impl Iterator<Item = (usize, usize)> + Clone),
         count: usize,
     ) {
         let planes = self.planes.iter_mut().zip(&from.planes);
@@ -76,7 +76,7 @@ impl Image {
 
     /// Copies the pixels with these indices from a picture of the same size and layers.
     pub(crate) fn copy_pixels(&mut self, from: &Self, pixels: &[usize]) {
-        self.copy(from, pixels.iter().map(|at| (*at, *at)), 1);
+        self.copy(from, &pixels.iter().map(|at| (*at, *at)), 1);
     }
 
     /// Sets the layer of ids, if there is one of this length.
@@ -148,7 +148,7 @@ mod tests {
             for (y, height) in [(0, 1), (1, 2), (3, 2)] {
                 let mut part = Image::new(width, height, LayerSet::ALL).unwrap();
                 let start = |row: u32| ((row * width) as usize, ((y + row) * 7 + x) as usize);
-                part.copy(&whole, (0..height).map(start), width as usize);
+                part.copy(&whole, &(0..height).map(start), width as usize);
                 joined.put(&part, [x, y]).unwrap();
             }
         }

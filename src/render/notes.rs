@@ -47,7 +47,7 @@ impl RenderSettings {
                  opacities"
             )
         });
-        let notes = notes.into_iter().filter_map(|(holds, note)| holds.then(|| note.to_owned()));
+        let notes = notes.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned());
         notes.chain(deep).collect()
     }
 

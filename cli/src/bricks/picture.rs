@@ -6,9 +6,8 @@ use std::ops::Range;
 use anyhow::{Context, anyhow};
 
 use super::BrickFile;
-use crate::device::Opened;
 #[cfg(feature = "gpu")]
-use crate::device::explained;
+use crate::device::{Opened, explained};
 use crate::failure::Failure;
 use crate::views::Shot;
 #[cfg(feature = "gpu")]

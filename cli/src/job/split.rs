@@ -225,7 +225,7 @@ fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Fa
     let cannot = || format!("{}: cannot be created", path.display());
     files::create_dir(path).with_context(cannot)?;
     let fill = || {
-        files::create_dir(&path.join(PARTS)).with_context(cannot)?;
+        files::create_dir(path.join(PARTS)).with_context(cannot)?;
         if let Some(bytes) = overview {
             let file = path.join(OVERVIEW);
             name_all(vec![(&file, unnamed(&file, bytes)?)])?;
