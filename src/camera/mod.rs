@@ -41,7 +41,8 @@ pub use path::{
     PlaceOnPath,
 };
 pub use pinhole::PinholeCamera;
-pub use pose::{CameraError, Pose};
+use pose::checked_range;
+pub use pose::{CameraError, CameraVectors, Pose};
 pub use thin_lens::ThinLensCamera;
 pub use viewpoint::{Viewpoint, ViewpointError, turned};
 
@@ -105,50 +106,6 @@ impl<'a> View<'a> {
     pub fn ray_through_center(&self, [column, row]: [u32; 2]) -> Option<Ray> {
         let location = self.film.relative_location(f64::from(column) + 0.5, f64::from(row) + 0.5);
         self.camera.sees(location).then(|| self.camera.ray_in_world(location))
-    }
-}
-
-/// Vectors in world space and numbers, in f64, that describe a camera completely once its kind is known.
-///
-/// The exact meaning of `right`, `up`, `forward` and `numbers` is defined by the Rust file and the WGSL part of each
-/// camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct CameraVectors {
-    /// Position of the camera.
-    pub origin: DVec3,
-    /// Vector from the middle of the view plane to its edge at x = +1.
-    pub right: DVec3,
-    /// Vector from the middle of the view plane to its edge at y = +1.
-    pub up: DVec3,
-    /// Vector into the picture.
-    pub forward: DVec3,
-    /// Further parameters of the camera; unused ones are zero.
-    pub numbers: [f64; 3],
-}
-
-impl CameraVectors {
-    /// Vectors in the order of the fields, as [`Camera::vectors`] returns them, after the checks that hold for cameras
-    /// of every kind.
-    pub(crate) fn checked(rows: [DVec3; 5]) -> Result<Self, CameraError> {
-        let [origin, right, up, forward, numbers] = rows;
-        pose::checked_point("the origin", origin)?;
-        for (parameter, value) in
-            [("length of right", right), ("length of up", up), ("length of forward", forward)]
-        {
-            // Each is a length in range times a vector that has unit length up to rounding.
-            let length = value.length();
-            if !(0.5 * MIN_LENGTH..=2.0 * MAX_LENGTH).contains(&length) {
-                return Err(CameraError::Length { parameter, value: length });
-            }
-        }
-        // The numbers are lengths, or quotients of two lengths.
-        const LARGEST: f64 = 2.0 * MAX_LENGTH * MAX_LENGTH;
-        let numbers = numbers.to_array();
-        for number in numbers {
-            checked_range("number of the camera", number, [-LARGEST, LARGEST])?;
-        }
-        Ok(Self { origin, right, up, forward, numbers })
     }
 }
 
@@ -226,19 +183,6 @@ fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraErr
     checked_length("half extent in x", half_extent.x)?;
     checked_length("half extent in y", half_extent.y)?;
     Ok(half_extent)
-}
-
-/// Returns an error for a number that is NaN or not in a range.
-fn checked_range(
-    parameter: &'static str,
-    value: f64,
-    [low, high]: [f64; 2],
-) -> Result<f64, CameraError> {
-    if (low..=high).contains(&value) {
-        Ok(value)
-    } else {
-        Err(CameraError::Range { parameter, value, low, high })
-    }
 }
 
 /// Returns an error for a vertical field of view that is not an angle between 0 and π.

@@ -3,6 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+/// The id of a pixel whose ray hit nothing.
+pub const NO_ID: u32 = u32::MAX;
+
 /// One layer of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -20,7 +23,7 @@ pub enum Layer {
     Position,
     /// Surface colour in linear light, without lighting, three f32; zero for a miss.
     Albedo,
-    /// Index of the sphere in input order, u32; [`NO_ID`](super::NO_ID) for a miss.
+    /// Index of the sphere in input order, u32; [`NO_ID`] for a miss.
     Id,
     /// Number of samples of the pixel, u32.
     Samples,
@@ -83,7 +86,7 @@ impl Layer {
     pub(super) const fn miss(self) -> u32 {
         match self {
             Self::Depth => f32::INFINITY.to_bits(),
-            Self::Id => super::NO_ID,
+            Self::Id => NO_ID,
             _ => 0,
         }
     }

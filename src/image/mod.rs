@@ -12,11 +12,8 @@ pub(crate) mod outline;
 mod parts;
 pub mod tone;
 
-pub use layer::{Layer, LayerSet, UnknownLayer};
+pub use layer::{Layer, LayerSet, NO_ID, UnknownLayer};
 pub use parts::DoesNotFit;
-
-/// The id of a pixel whose ray hit nothing.
-pub const NO_ID: u32 = u32::MAX;
 
 /// The result of one ray through the centre of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
