@@ -9,6 +9,7 @@ use std::io::{Cursor, Read, Seek, SeekFrom};
 
 use exr::error::Error;
 use exr::image::read::layers::ReadChannels;
+use exr::meta::MetaData;
 use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{Compression, ReadLayers, Vec2, read as reader};
 use image::ImageDecoder;
@@ -135,17 +136,16 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     let refused = |error: Error| refusal(OPENEXR, bytes, &at_end, &error);
     let unreadable = |message: &str| Err(damaged(OPENEXR, message));
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
-    let file = exr::block::read(Watched::new(bytes, &at_end), false).map_err(refused)?;
+    let meta =
+        MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(refused)?;
     let names = |channels: &[exr::meta::attribute::ChannelDescription]| -> Vec<String> {
         channels.iter().map(|channel| channel.name.to_string()).collect()
     };
     let has_color = |names: &[String]| CHANNELS.iter().all(|c| names.iter().any(|name| name == c));
-    let with_color = file
-        .headers()
-        .iter()
-        .find(|header| has_color(&names(&header.channels.list)) && !header.deep);
+    let with_color =
+        meta.headers.iter().find(|header| has_color(&names(&header.channels.list)) && !header.deep);
     let Some(header) = with_color else {
-        let first = file.headers().first().map(|header| names(&header.channels.list).join(", "));
+        let first = meta.headers.first().map(|header| names(&header.channels.list).join(", "));
         let found = crate::text::one_line(&first.unwrap_or_default());
         let found = if found.is_empty() { "no channels".to_owned() } else { found };
         return Err(LoadError::new(format!(
@@ -154,7 +154,7 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     };
     // The decoder of B44 overflows on damaged files (exr 1.74).
     let is_lossy = |compression| matches!(compression, Compression::B44 | Compression::B44A);
-    if file.headers().iter().any(|header| is_lossy(header.compression)) {
+    if meta.headers.iter().any(|header| is_lossy(header.compression)) {
         return unreadable(
             "its compression is B44, which is not supported; save it with ZIP compression",
         );
@@ -162,8 +162,7 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     if header.own_attributes.environment_map == Some(EnvironmentMap::Cube) {
         return unreadable("it is a cube map, but only equirectangular maps can be read");
     }
-    let expected = header.layer_size;
-    let Vec2(width, height) = expected;
+    let Vec2(width, height) = header.layer_size;
     let room =
         RefCell::new(black([width, height].map(|count| count as u64), OPENEXR, bytes.len())?);
     let image = reader()
@@ -182,10 +181,10 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
         .all_attributes()
         // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
-        .from_chunks(file)
+        .from_buffered(Watched::new(bytes, &at_end))
         .map_err(refused)?;
     let size = image.layer_data.size;
-    if size != expected {
+    if size != header.layer_size {
         return unreadable("its first part with the channels R, G and B cannot be read");
     }
     let (_, texels) = image.layer_data.channel_data.pixels;

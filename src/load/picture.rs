@@ -123,6 +123,7 @@ fn read_png(bytes: &[u8]) -> Result<PictureFile, LoadError> {
 fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     use std::cell::{Cell, RefCell};
 
+    use exr::meta::MetaData;
     use exr::meta::attribute::{AttributeValue, SampleType};
     use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
@@ -135,9 +136,9 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     // The reader of environments, so that the decoder is compiled once.
     let at_end = Cell::new(false);
-    let file = exr::block::read(Watched::new(bytes, &at_end), false).map_err(failed)?;
-    let [header] = file.headers() else {
-        return Err(kind(&format!("{} parts", file.headers().len())));
+    let meta = MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(failed)?;
+    let [header] = &*meta.headers else {
+        return Err(kind(&format!("{} parts", meta.headers.len())));
     };
     if header.deep || header.compression != Compression::ZIP16 {
         return Err(kind(&format!("the compression {}", header.compression)));
@@ -171,7 +172,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
         .all_attributes()
         // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
-        .from_chunks(file)
+        .from_buffered(Watched::new(bytes, &at_end))
         .map_err(failed)?;
     let certificate = match image.layer_data.attributes.other.get(&Text::new_or_panic(CERTIFICATE))
     {
