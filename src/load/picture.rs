@@ -1,8 +1,6 @@
 //! Reads pictures as the writers of this crate make them: the samples of a PNG or an OpenEXR file as they stand there, and
 //! the certificate that the file carries.
 
-use std::io::Cursor;
-
 use super::error::LoadError;
 use crate::image::encoding::Bits;
 use crate::text::one_line;
@@ -86,7 +84,8 @@ fn read_png(bytes: &[u8]) -> Result<PictureFile, LoadError> {
 
     let failed = |error: png::DecodingError| damaged("PNG", &error);
     let kind = |found: &str| of_other_kind("PNG", found, "RGB and RGBA with 8 or 16 bits");
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: usize::MAX });
+    let mut decoder =
+        Decoder::new_with_limits(std::io::Cursor::new(bytes), Limits { bytes: usize::MAX });
     decoder.set_transformations(Transformations::IDENTITY);
     let mut reader = decoder.read_info().map_err(failed)?;
     let info = reader.info();
