@@ -127,7 +127,7 @@ macro_rules! camera_table {
         }
     };
 }
-#[cfg(any(feature = "gpu", feature = "scene-file"))]
+#[cfg(feature = "scene-file")]
 pub(crate) use camera_table;
 
 macro_rules! define_kind {
