@@ -176,13 +176,16 @@ impl Bricks<'_> {
     fn build_part(&self, ids: Vec<u32>) -> Brick {
         let Self { plan, spheres, .. } = *self;
         let margin = plan.statistics.margin();
-        if matches!(plan.structure, Structure::Grid | Structure::NestedGrid) {
-            let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
-            return Brick { index: Index::Grid(grid), spheres, ids };
-        }
-        let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+        let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
+            Structure::List => Brick { index: Index::List, spheres: own(), ids },
+            Structure::Grid | Structure::NestedGrid => {
+                let BuiltGrid { grid, spheres, ids } =
+                    build_grid(spheres, &ids, margin, plan.budget);
+                Brick { index: Index::Grid(grid), spheres, ids }
+            }
             Structure::WideTree => {
+                let own = own();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
@@ -192,10 +195,10 @@ impl Bricks<'_> {
                 }
             }
             Structure::RayQuery => {
+                let own = own();
                 let boxes = query_boxes(&own, plan.box_margin * margin);
                 Brick { index: Index::RayQuery(boxes), spheres: own, ids }
             }
-            _ => Brick { index: Index::List, spheres: own, ids },
         }
     }
 }
