@@ -1,8 +1,8 @@
 //! Shaders. The source of a kernel is the concatenation of a list of parts.
 //!
 //! WGSL has no modules, and the order of its declarations does not matter, so a list of parts serves as a module
-//! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and needs. A test compares the lists with the
-//! source, and writes the tables of `shaders/README.md`.
+//! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and
+//! needs. A test compares the lists with the source, and writes the tables of `shaders/README.md`.
 
 pub(super) mod formats;
 mod kernel;
