@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use glam::Vec3;
 
-use super::divide::{Divided, divide};
+use super::divide::{Division, divide};
 use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
@@ -122,9 +122,9 @@ impl AccelPlan {
     pub fn bricks<'a>(&'a self, spheres: &'a [[f32; 4]]) -> Bricks<'a> {
         let count = spheres.len();
         let per_brick = count.div_ceil(self.brick_count).max(1);
-        let Divided { parts, may_part_equals } = match self.structure {
+        let Division { parts, may_part_equals } = match self.structure {
             // Without a structure, bricks are consecutive spheres in the order of ids.
-            Structure::List => Divided {
+            Structure::List => Division {
                 // The number of spheres fits into u32.
                 parts: ranges(count, per_brick)
                     .into_iter()

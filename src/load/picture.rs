@@ -126,7 +126,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     use exr::meta::attribute::{AttributeValue, SampleType};
     use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
-    use super::environment::Watched;
+    use super::environment::FileBytes;
     use crate::write::exr::CERTIFICATE;
 
     let failed = |error: exr::error::Error| damaged("OpenEXR", &error);
@@ -135,7 +135,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     // The reader of environments, so that the decoder is compiled once.
     let at_end = Cell::new(false);
-    let file = exr::block::read(Watched::new(bytes, &at_end), false).map_err(failed)?;
+    let file = exr::block::read(FileBytes::new(bytes, &at_end), false).map_err(failed)?;
     let [header] = file.headers() else {
         return Err(kind(&format!("{} parts", file.headers().len())));
     };
