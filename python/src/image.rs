@@ -25,7 +25,7 @@ pub(crate) struct Picture {
     pub(crate) adapter: Option<String>,
     /// The layers that were asked for, which EXR files have.
     pub(crate) layers: LayerSet,
-    /// What the user should know.
+    /// Lines that the user should know.
     #[pyo3(get)]
     pub(crate) notes: Vec<String>,
 }
