@@ -288,14 +288,15 @@ impl EncodingFlags {
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
     pub(crate) fn apply_to(self, scene: Encoding) -> Encoding {
-        Encoding {
-            bits: self.bits.unwrap_or(scene.bits),
-            transparent: self.transparent.unwrap_or(scene.transparent),
-            exposure: self.exposure.unwrap_or(scene.exposure),
-            tone: self.tone.unwrap_or(scene.tone),
-            dots_per_inch: self.dots_per_inch.or(scene.dots_per_inch),
-            ..scene
-        }
+        let mut encoding = scene;
+        encoding.bits = self.bits.unwrap_or(scene.bits);
+        encoding.transparent = self.transparent.unwrap_or(scene.transparent);
+        encoding.tone = self.tone.unwrap_or(scene.tone);
+        // What the setters refuse was refused before, so neither fails.
+        let exposure = self.exposure.unwrap_or(scene.exposure());
+        encoding = encoding.with_exposure(exposure).unwrap_or(encoding);
+        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
+        encoding.with_dots_per_inch(dots_per_inch).unwrap_or(encoding)
     }
 }
 

@@ -258,7 +258,8 @@ impl BenchSource {
                 let started = Instant::now();
                 let input = source.load()?;
                 let load = started.elapsed();
-                input.notes.iter().for_each(|note| progress::notes(false)(note));
+                let note = progress::notes(false);
+                input.notes.iter().for_each(|text| note(text));
                 let name = one_line(&path.display().to_string());
                 let Input { scene, camera, film, .. } = input;
                 let scene = Arc::unwrap_or_clone(scene);

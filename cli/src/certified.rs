@@ -45,21 +45,21 @@ const NOT_OF_THE_PICTURE: [&str; 15] = [
 const OTHER_SEED: u32 = 0x9e37_79b9;
 
 /// A picture as it stands, or will stand, in its file.
-pub(super) struct Written {
+pub(super) struct FilePicture {
     pub(super) size: [u32; 2],
     pub(super) samples: FileSamples,
     pub(super) per_pixel: u32,
 }
 
 /// What was found about a picture.
-pub(super) enum Judged {
+pub(super) enum Judgement {
     /// About each sample.
     Intervals(WrittenCertificate),
     /// About the means of its samples; or of light before it was denoised, and about what was made of it.
     Means(Means, Option<DenoiseCertificate>),
 }
 
-impl Written {
+impl FilePicture {
     /// The samples that a writer would store of an image.
     pub(super) fn of(
         image: &Image,
@@ -125,25 +125,25 @@ pub(super) fn judge(
     input: &mut Input,
     encoding: &Encoding,
     layers: LayerSet,
-    written: &Written,
-) -> Result<Judged, Failure> {
+    written: &FilePicture,
+) -> Result<Judgement, Failure> {
     progress::stage("checking");
     let checked = |scene| Checker::new(scene).context("the checker cannot be prepared");
     if let Some(primary) = input.settings.primary() {
         let certificate = checked(&input.scene)?
             .certify_written(&input.view(), &primary, &written.picture(encoding))
             .map_err(anyhow::Error::from)?;
-        return Ok(Judged::Intervals(certificate));
+        return Ok(Judgement::Intervals(certificate));
     }
     let is_png = matches!(written.samples, FileSamples::Encoded { .. });
     let per_pixel = written.per_pixel;
     let reference = other_estimate(input, per_pixel, |input| {
         let image = render::render(input, layers, &Opened::Cpu)?;
-        Ok(Written::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
+        Ok(FilePicture::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
     })?;
     let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
     let found = written.colors(encoding)?;
-    Ok(Judged::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
+    Ok(Judgement::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
 }
 
 /// Judges the light of a picture that is neither denoised nor finished otherwise.
@@ -190,7 +190,7 @@ fn means(
     Ok(Estimates { size, samples, reach, found, expected, ties: &ties }.compare())
 }
 
-impl Judged {
+impl Judgement {
     pub(super) fn by(&self) -> JudgedBy {
         match self {
             Self::Intervals(_) => JudgedBy::Intervals,
@@ -280,8 +280,8 @@ impl Judged {
 
 pub(super) fn certificate(
     input: &Input,
-    written: &Written,
-    judged: &Judged,
+    written: &FilePicture,
+    judged: &Judgement,
     adapter: Option<&str>,
     arguments: Vec<String>,
 ) -> PictureCertificate {
@@ -300,7 +300,7 @@ pub(super) fn certificate(
 }
 
 /// Refuses a certificate of other samples.
-pub(super) fn check_samples(certificate: &PictureCertificate, written: &Written) -> Result<()> {
+pub(super) fn check_samples(certificate: &PictureCertificate, written: &FilePicture) -> Result<()> {
     if certificate.samples == written.digest() {
         return Ok(());
     }

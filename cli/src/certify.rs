@@ -95,7 +95,8 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     let input = source.with_size_of_data(ids.size).load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
-    input.notes.iter().for_each(|note| progress::notes(false)(note));
+    let note = progress::notes(false);
+    input.notes.iter().for_each(|text| note(text));
     let depths = args.depth.as_ref().map(|path| array(path, pixels::numbers)).transpose()?;
     let normals = args.normal.as_ref().map(|path| array(path, pixels::vectors)).transpose()?;
     let rays = args.rays.as_ref().map(|path| array(path, pixels::rays)).transpose()?;

@@ -98,7 +98,8 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
         ));
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
-    input.notes.iter().for_each(|note| progress::notes(false)(note));
+    let note = progress::notes(false);
+    input.notes.iter().for_each(|text| note(text));
     // `render` adds this layer too.
     let alpha = input.encoding.transparent.then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();

@@ -194,7 +194,7 @@ pub(crate) fn tell_all(text: &str) {
     let _ = write!(io::stderr().lock(), "{text}");
 }
 
-/// What tells notes, unless they are not wanted.
+/// Returns a function that prints notes on standard error, or nothing if `quiet`.
 pub(crate) fn notes(quiet: bool) -> impl Fn(&dyn fmt::Display) + Copy {
     move |note: &dyn fmt::Display| {
         if !quiet {

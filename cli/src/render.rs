@@ -88,8 +88,8 @@ impl Job {
         input: &mut Input,
         note: impl Fn(&dyn std::fmt::Display),
     ) -> Result<(Encoding, Annotations), Failure> {
-        let encoding = self.encoding.apply_to(input.encoding);
-        let encoding = Encoding { background: input.settings.visible_background(), ..encoding };
+        let mut encoding = self.encoding.apply_to(input.encoding);
+        encoding.background = input.settings.visible_background();
         input.settings.is_transparent = encoding.transparent;
         if input.settings.integrator.is_primary() {
             self.stop_rule.check_without_light()?;

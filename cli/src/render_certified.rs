@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow};
 
-use super::certified::{self, Judged, Written};
+use super::certified::{self, FilePicture, Judgement};
 use super::device::Opened;
 use super::failure::Failure;
 use super::input::Input;
@@ -23,8 +23,8 @@ const COUNTED: Layer = Layer::Samples;
 /// A picture and what was found about it.
 struct Made {
     image: Image,
-    written: Written,
-    judged: Judged,
+    written: FilePicture,
+    judged: Judgement,
 }
 
 /// How a picture is made.
@@ -92,11 +92,11 @@ impl Making<'_> {
         let image = finish(quiet, &with_lines, layers, self.opened)?;
         let written = self.written(&image)?;
         let means = certified::means_of_light(input, &noisy, GUIDES)?;
-        Ok(Made { image, written, judged: Judged::Means(means, Some(denoiser)) })
+        Ok(Made { image, written, judged: Judgement::Means(means, Some(denoiser)) })
     }
 
     /// The samples that are written of an image.
-    fn written(&self, image: &Image) -> Result<Written> {
+    fn written(&self, image: &Image) -> Result<FilePicture> {
         let samples = image.samples().unwrap_or_default();
         let first = samples.first().copied().unwrap_or(1);
         if samples.iter().any(|count| *count != first) {
@@ -104,6 +104,6 @@ impl Making<'_> {
                 "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
             ));
         }
-        Written::of(image, self.encoding, self.outputs.format == PictureFormat::Png, first)
+        FilePicture::of(image, self.encoding, self.outputs.format == PictureFormat::Png, first)
     }
 }

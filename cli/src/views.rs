@@ -8,7 +8,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
-/// What is rendered, how long, and by what.
+/// A picture to render: its input and views, how long to take samples, and the device.
 #[derive(Clone, Copy)]
 pub(super) struct Shot<'a> {
     pub(super) input: &'a Input,

@@ -1,4 +1,4 @@
-//! What the host programs among the examples have: textures, spheres, and a way to see a texture.
+//! Parts that the host programs among the examples share: textures, spheres, and a way to see a texture.
 #![allow(dead_code, reason = "not every example uses all of it")]
 
 use std::error::Error;

@@ -22,7 +22,7 @@ pub(crate) struct FileData {
     /// The frames, if files of this format can have several.
     frames: Option<Mutex<Trajectory>>,
     count: usize,
-    /// What is wrong after the last complete frame, if anything is.
+    /// The fault after the last complete frame, if there is one.
     #[pyo3(get)]
     problem: Option<String>,
 }

@@ -25,7 +25,7 @@ pub(crate) struct Picture {
     pub(crate) adapter: Option<String>,
     /// The layers that were asked for, which EXR files have.
     pub(crate) layers: LayerSet,
-    /// What the user should know.
+    /// Lines that the user should know.
     #[pyo3(get)]
     pub(crate) notes: Vec<String>,
 }
@@ -70,7 +70,8 @@ impl Picture {
     /// The encoded picture with its annotations: uint8 of shape (height, width, 3), or 4 channels if it is transparent.
     fn rgb8<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (this, of_thread) = (slf.get(), slf.clone().unbind());
-        let encoding = Encoding { bits: Bits::Eight, ..this.encoding };
+        let mut encoding = this.encoding;
+        encoding.bits = Bits::Eight;
         let channels = if encoding.transparent { 4 } else { 3 };
         let samples = worker::run(py, None, move |_| {
             let Self { image, annotations, .. } = of_thread.get();

@@ -82,7 +82,8 @@ impl Look {
         let sky = sky.map(environment_of).transpose()?;
         let settings = file.settings(kind, scene, camera.as_ref(), sky);
         let mut settings = settings.map_err(|error| text.fault(&error))?;
-        let encoding = Encoding { background: settings.visible_background(), ..file.encoding };
+        let mut encoding = file.encoding;
+        encoding.background = settings.visible_background();
         settings.is_transparent = encoding.transparent;
         let mut notes = settings.notes(scene);
         let middle = scene.bounds_to_frame();

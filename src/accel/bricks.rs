@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use glam::Vec3;
 
-use super::divide::{Divided, divide};
+use super::divide::{Division, divide};
 use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
@@ -122,9 +122,9 @@ impl AccelPlan {
     pub fn bricks<'a>(&'a self, spheres: &'a [[f32; 4]]) -> Bricks<'a> {
         let count = spheres.len();
         let per_brick = count.div_ceil(self.brick_count).max(1);
-        let Divided { parts, may_part_equals } = match self.structure {
+        let Division { parts, may_part_equals } = match self.structure {
             // Without a structure, bricks are consecutive spheres in the order of ids.
-            Structure::List => Divided {
+            Structure::List => Division {
                 // The number of spheres fits into u32.
                 parts: ranges(count, per_brick)
                     .into_iter()
@@ -176,13 +176,16 @@ impl Bricks<'_> {
     fn build_part(&self, ids: Vec<u32>) -> Brick {
         let Self { plan, spheres, .. } = *self;
         let margin = plan.statistics.margin();
-        if matches!(plan.structure, Structure::Grid | Structure::NestedGrid) {
-            let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
-            return Brick { index: Index::Grid(grid), spheres, ids };
-        }
-        let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+        let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
+            Structure::List => Brick { index: Index::List, spheres: own(), ids },
+            Structure::Grid | Structure::NestedGrid => {
+                let BuiltGrid { grid, spheres, ids } =
+                    build_grid(spheres, &ids, margin, plan.budget);
+                Brick { index: Index::Grid(grid), spheres, ids }
+            }
             Structure::WideTree => {
+                let own = own();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
@@ -192,10 +195,10 @@ impl Bricks<'_> {
                 }
             }
             Structure::RayQuery => {
+                let own = own();
                 let boxes = query_boxes(&own, plan.box_margin * margin);
                 Brick { index: Index::RayQuery(boxes), spheres: own, ids }
             }
-            _ => Brick { index: Index::List, spheres: own, ids },
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::math::equal_bits;
 use crate::parallel::{both, for_each, map, map_chunks, map_parts, ranges, split_mut};
 
 /// The division of a scene into parts.
-pub(super) struct Divided {
+pub(super) struct Division {
     /// The ids of the spheres of each part, in ascending order.
     pub(super) parts: Vec<Vec<u32>>,
     /// Whether spheres with equal centres may be in different parts.
@@ -18,17 +18,17 @@ pub(super) struct Divided {
 /// Divides spheres into parts of about the same number, by repeated median cuts across the longest side: those of a
 /// sample if there are many spheres, otherwise exact ones. The centres of each part lie in a box that no other part
 /// enters.
-pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Divided {
+pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Division {
     if let Some(parts) = divide_by_sample(spheres, parts) {
-        return Divided { parts, may_part_equals: false };
+        return Division { parts, may_part_equals: false };
     }
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
 
 /// Divides a list of ascending ids; the ids of each part ascend as well.
-fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
+fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     if parts <= 1 {
-        return Divided { parts: vec![ids], may_part_equals: false };
+        return Division { parts: vec![ids], may_part_equals: false };
     }
     let axis = longest_side(spheres, &ids);
     let left_parts = parts / 2;
@@ -248,7 +248,7 @@ mod tests {
             let coordinate = |id: &u32| spheres[*id as usize][0] + 0.0;
             sorted.sort_by(|a, b| coordinate(a).total_cmp(&coordinate(b)));
             for parts in [1, 2, 3] {
-                let Divided { parts: bricks, may_part_equals } = divide(&spheres, parts);
+                let Division { parts: bricks, may_part_equals } = divide(&spheres, parts);
                 assert_eq!(bricks.len(), parts);
                 // The first cut is along x.
                 let middle = count as usize * (parts / 2) / parts;

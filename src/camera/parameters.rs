@@ -66,7 +66,7 @@ macro_rules! define_camera_parameters {
 camera_table!(define_camera_parameters);
 
 impl CameraParameters {
-    /// The same camera with its position, its direction and the direction that is up, so that it no longer depends on
+    /// Returns this camera with its position, its direction and the direction that is up, so that it no longer depends on
     /// the subject.
     ///
     /// # Errors
@@ -141,7 +141,7 @@ fn infinitely_far() -> f64 {
     f64::INFINITY
 }
 
-/// What a camera is made for.
+/// The pose of a camera that is made, the aspect of its film, and its subject.
 struct Site<'a> {
     pose: Pose,
     /// See [`Placement::is_framed`].

@@ -1,4 +1,4 @@
-//! What is built when it is first needed, and then shared.
+//! Passes that are built when they are first needed, and then shared.
 
 use std::collections::HashMap;
 use std::hash::Hash;

@@ -60,17 +60,13 @@ pub struct Encoding {
     /// For a transparent picture, render with [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent)
     /// and the layer alpha. The background then adds nothing, and the colour layer is premultiplied by alpha.
     pub transparent: bool,
-    /// The exposure in stops, within ± [`Encoding::MAX_EXPOSURE`]: light is multiplied by 2 to its power. See
-    /// [`Encoding::with_exposure`].
-    pub exposure: f32,
+    exposure: f32,
     /// The tone curve, which is applied after the exposure.
     pub tone: ToneCurve,
     /// The background that the exposure and the tone curve leave as it is: they are applied to what lies in front of
     /// it. `None` applies them to the whole picture, as for a visible sky.
     pub background: Option<LinearRgb>,
-    /// The number of pixels per inch at which the picture is to be printed, if it was chosen. See
-    /// [`Encoding::with_dots_per_inch`].
-    pub dots_per_inch: Option<f32>,
+    dots_per_inch: Option<f32>,
 }
 
 /// Why a parameter is not that of an encoding.
@@ -137,6 +133,18 @@ impl Encoding {
             )),
             dots_per_inch => Ok(Self { dots_per_inch, ..self }),
         }
+    }
+
+    /// The number of pixels per inch at which the picture is to be printed, if it was chosen.
+    #[must_use]
+    pub fn dots_per_inch(&self) -> Option<f32> {
+        self.dots_per_inch
+    }
+
+    /// The exposure in stops: positive values make the picture brighter.
+    #[must_use]
+    pub fn exposure(&self) -> f32 {
+        self.exposure
     }
 
     /// Converts linear light of the scene, not premultiplied, to linear light of a display: exposure first, then the

@@ -90,7 +90,11 @@ impl Image {
     /// numbers of 4 bytes: [`LayerSet::bytes_per_pixel`] bytes for each pixel. [`Image::from_le_bytes`] reads them back.
     #[must_use]
     pub fn to_le_bytes(&self) -> Vec<u8> {
-        self.planes.iter().flatten().flatten().flat_map(|word| word.to_le_bytes()).collect()
+        let mut bytes = Vec::new();
+        for plane in self.planes.iter().flatten() {
+            bytes.extend(plane.iter().flat_map(|word| word.to_le_bytes()));
+        }
+        bytes
     }
 
     /// A picture from the bytes that [`Image::to_le_bytes`] returned for these layers. `None` if their number is another,

@@ -87,18 +87,18 @@ fn black(
 
 /// A file in memory that remembers whether a decoder tried to read beyond its end. Each decoder reports that in its
 /// own way.
-pub(super) struct Watched<'a> {
+pub(super) struct FileBytes<'a> {
     bytes: Cursor<&'a [u8]>,
     at_end: &'a Cell<bool>,
 }
 
-impl<'a> Watched<'a> {
+impl<'a> FileBytes<'a> {
     pub(super) fn new(bytes: &'a [u8], at_end: &'a Cell<bool>) -> Self {
         Self { bytes: Cursor::new(bytes), at_end }
     }
 }
 
-impl Read for Watched<'_> {
+impl Read for FileBytes<'_> {
     fn read(&mut self, target: &mut [u8]) -> std::io::Result<usize> {
         let count = self.bytes.read(target)?;
         if count < target.len() {
@@ -108,7 +108,7 @@ impl Read for Watched<'_> {
     }
 }
 
-impl Seek for Watched<'_> {
+impl Seek for FileBytes<'_> {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
         self.bytes.seek(to)
     }
@@ -137,7 +137,7 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     let unreadable = |message: &str| Err(damaged(OPENEXR, message));
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     let meta =
-        MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(refused)?;
+        MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
     let names = |channels: &[exr::meta::attribute::ChannelDescription]| -> Vec<String> {
         channels.iter().map(|channel| channel.name.to_string()).collect()
     };
@@ -181,7 +181,7 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
         .all_attributes()
         // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
-        .from_buffered(Watched::new(bytes, &at_end))
+        .from_buffered(FileBytes::new(bytes, &at_end))
         .map_err(refused)?;
     let size = image.layer_data.size;
     if size != header.layer_size {
@@ -202,7 +202,7 @@ fn read_hdr(bytes: &[u8]) -> Result<Environment, LoadError> {
     }
     // Not strict: the signature may be `#?RGBE` as well, and headers have lines of all kinds.
     let decoder =
-        HdrDecoder::with_strictness(Watched::new(bytes, &at_end), false).map_err(refused)?;
+        HdrDecoder::with_strictness(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
     let (width, height) = decoder.dimensions();
     let mut texels = black([width, height].map(u64::from), RADIANCE, bytes.len())?;
     decoder.read_image(bytemuck::cast_slice_mut(&mut texels)).map_err(refused)?;

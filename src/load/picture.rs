@@ -126,7 +126,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     use exr::meta::attribute::{AttributeValue, SampleType};
     use exr::prelude::{Compression, ReadChannels, ReadLayers, Text, Vec2, read as reader};
 
-    use super::environment::Watched;
+    use super::environment::FileBytes;
     use crate::write::exr::CERTIFICATE;
 
     let failed = |error: exr::error::Error| damaged("OpenEXR", &error);
@@ -135,7 +135,8 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     // The reader of environments, so that the decoder is compiled once.
     let at_end = Cell::new(false);
-    let meta = MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(failed)?;
+    let meta =
+        MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(failed)?;
     let [header] = &*meta.headers else {
         return Err(kind(&format!("{} parts", meta.headers.len())));
     };
@@ -171,7 +172,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
         .all_attributes()
         // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
-        .from_buffered(Watched::new(bytes, &at_end))
+        .from_buffered(FileBytes::new(bytes, &at_end))
         .map_err(failed)?;
     let certificate = match image.layer_data.attributes.other.get(&Text::new_or_panic(CERTIFICATE))
     {

@@ -261,8 +261,8 @@ pub(super) struct OutputTable {
 impl OutputTable {
     pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
         let span = |start| move |error: EncodingError| lines.span(start).error(error);
-        let (tone, transparent) = (self.tone, self.transparent);
-        let mut encoding = Encoding { tone, transparent, ..Encoding::default() };
+        let mut encoding = Encoding::default();
+        (encoding.tone, encoding.transparent) = (self.tone, self.transparent);
         if let Some(exposure) = self.exposure {
             let start = exposure.span().start;
             encoding = encoding.with_exposure(exposure.into_inner()).map_err(span(start))?;

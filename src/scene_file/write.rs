@@ -138,9 +138,9 @@ fn inline(value: &Value) -> String {
 }
 
 fn output(encoding: &Encoding) -> String {
-    let (exposure, tone) = (encoding.exposure, encoding.tone.name());
+    let (exposure, tone) = (encoding.exposure(), encoding.tone.name());
     let (bits, transparent) = (encoding.bits.count(), encoding.transparent);
-    let dpi = encoding.dots_per_inch.map_or(String::new(), |dpi| format!("\ndpi = {dpi:?}"));
+    let dpi = encoding.dots_per_inch().map_or(String::new(), |dpi| format!("\ndpi = {dpi:?}"));
     format!(
         "\n[output]\nexposure = {exposure:?}\ntone = \"{tone}\"\nbits = {bits}\ntransparent = {transparent}{dpi}"
     )

@@ -184,16 +184,16 @@ impl Mismatch {
     }
 }
 
-/// Judges a number, which has a name in two words.
+/// Judges a number with a name.
 pub(super) fn legal_is(
     stage: &'static str,
-    (of, name): (&str, &str),
+    name: impl fmt::Display,
     found: f32,
     legal: Interval,
 ) -> Result<(), Mismatch> {
     match legal.contains(found.into()) {
         true => Ok(()),
-        false => Err(Mismatch::new(stage, format!("{of}{name} is {found:?}; legal is {legal}"))),
+        false => Err(Mismatch::new(stage, format!("{name} is {found:?}; legal is {legal}"))),
     }
 }
 

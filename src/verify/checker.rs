@@ -313,14 +313,14 @@ impl PixelCheck<'_> {
 fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
     for (axis, name) in AXES.iter().enumerate() {
         let (found, legal) = (ray.direction[axis], entered.direction[axis]);
-        legal_is("camera", ("the direction's ", name), found, legal)?;
+        legal_is("camera", format_args!("the direction's {name}"), found, legal)?;
     }
     entered.check_start(ray)
 }
 
 fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
     (0..3).try_for_each(|channel| {
-        legal_is("color", ("", channel_name(channel)), found[channel], legal[channel])
+        legal_is("color", channel_name(channel), found[channel], legal[channel])
     })
 }
 

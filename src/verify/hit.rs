@@ -103,6 +103,7 @@ impl Candidates {
         self.visit_node(&slab, root, &mut nearest.min(f64::MAX), &mut offer);
     }
 
+    /// The calls are nested at most 32 deep, because a tree has no more levels than an id has bits.
     fn visit_node(
         &self,
         slab: &Slab<'_>,

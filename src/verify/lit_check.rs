@@ -99,7 +99,7 @@ impl LitCheck<'_> {
                 part.note(stage, address, Err(mismatch));
             }
             state = match self.is_studio {
-                true => self.judge_lights(address, met, after, (found, index), part),
+                true => self.judge_lights(address, met, after, found, index, part),
                 false => self.judge_open(address, after, found.open[index], part),
             };
         }
@@ -166,7 +166,8 @@ impl LitCheck<'_> {
         address: Address,
         met: Option<Met>,
         mut after: PathState,
-        (surface, index): (&RecordedSurface, usize),
+        surface: &RecordedSurface,
+        index: usize,
         part: &mut LitCertificate,
     ) -> PathState {
         let UploadedLighting { light_count, occlusion_samples, .. } = self.inputs.lighting;
@@ -317,7 +318,7 @@ impl LitCheck<'_> {
 /// A kind of light that a [`StudioLight`] holds.
 struct Kind {
     is_ambient: bool,
-    /// What is searched for.
+    /// The word for one light or direction.
     one: &'static str,
     searches: LitStage,
     sums: LitStage,

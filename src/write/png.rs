@@ -17,7 +17,7 @@ const CHUNK: usize = 1 << 14;
 
 /// Encodes a picture as a PNG file in sRGB with 8 or 16 bits per channel: RGB, or RGBA if the encoding is transparent.
 /// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1]; they leave
-/// [the background](Encoding::with_background) as it is.
+/// [the background](Encoding::background) as it is.
 ///
 /// PNG stores colours that are not premultiplied. So the colours of a transparent picture are divided by alpha first;
 /// they are black where alpha is zero.
@@ -89,7 +89,7 @@ pub fn samples_annotated(
 
 fn encode_samples(image: &Image, encoding: &Encoding, samples: &[u8]) -> Result<Vec<u8>, PngError> {
     let size = [image.width(), image.height()];
-    write(size, kind(encoding), encoding.dots_per_inch, None, samples)
+    write(size, kind(encoding), encoding.dots_per_inch(), None, samples)
 }
 
 /// Encodes samples that [`samples`] returned for the same encoding as a PNG file, which carries a certificate as a text.
@@ -102,7 +102,7 @@ pub fn encode_certified(
     samples: &[u8],
     certificate: &str,
 ) -> Result<Vec<u8>, PngError> {
-    write(size, kind(encoding), encoding.dots_per_inch, Some(certificate), samples)
+    write(size, kind(encoding), encoding.dots_per_inch(), Some(certificate), samples)
 }
 
 fn kind(encoding: &Encoding) -> (ColorType, BitDepth) {

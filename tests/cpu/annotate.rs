@@ -46,8 +46,10 @@ fn exposure_and_tone_leave_annotations_alone() {
     let key = categories(&["A", "B", "C"]);
     let annotations = Annotations::default().with(Annotation::Legend(Legend::new(key)));
     let image = flat([400, 300], 0.9);
-    let strong = Encoding { tone: ToneCurve::Agx, exposure: 1.0, ..Encoding::default() };
-    let fine = Encoding { bits: Bits::Sixteen, ..strong };
+    let mut strong = Encoding::default().with_exposure(1.0).unwrap();
+    strong.tone = ToneCurve::Agx;
+    let mut fine = strong;
+    fine.bits = Bits::Sixteen;
     for (encoding, step) in [(Encoding::default(), 1), (strong, 1), (fine, 2)] {
         let plain = read_png(&png_file::encode(&image, &encoding).unwrap()).1;
         let file = png_file::encode_annotated(&image, &encoding, &annotations).unwrap();
@@ -277,5 +279,5 @@ fn scene_files_have_keys_for_all_of_it() {
     assert_eq!(plan.labels[1].position, Position::TOP_LEFT);
     let look = (plan.text_scale, plan.color, plan.panel);
     assert_eq!(look, (Some(2.0), Some([255; 3]), Some(Panel::Never)));
-    assert_eq!(file.encoding.dots_per_inch, Some(300.0));
+    assert_eq!(file.encoding.dots_per_inch(), Some(300.0));
 }

@@ -67,7 +67,8 @@ fn without_more_a_png_is_eight_bits_of_srgb() {
 
 #[test]
 fn sixteen_bits_tell_apart_what_eight_do_not() {
-    let encoding = Encoding { bits: Bits::Sixteen, ..Encoding::default() };
+    let mut encoding = Encoding::default();
+    encoding.bits = Bits::Sixteen;
     let red = LinearRgb::from_srgb8([255, 128, 1]).to_array();
     let image = row(&[red, [0.5; 3], [0.5001; 3], [9.0, -1.0, f32::NAN]]);
     let file = png_file::encode(&image, &encoding).unwrap();
@@ -83,7 +84,8 @@ fn sixteen_bits_tell_apart_what_eight_do_not() {
 fn a_transparent_png_is_not_premultiplied() {
     let image = picture();
     for bits in [Bits::Eight, Bits::Sixteen] {
-        let encoding = Encoding { transparent: true, bits, ..Encoding::default() };
+        let mut encoding = Encoding::default();
+        (encoding.transparent, encoding.bits) = (true, bits);
         let file = png_file::encode(&image, &encoding).unwrap();
         let (kind, samples) = decoded(&file);
         let size = if bits == Bits::Eight { 1 } else { 2 };
@@ -100,7 +102,8 @@ fn a_transparent_png_is_not_premultiplied() {
         }
     }
     let opaque = row(&[[0.5; 3]]);
-    let transparent = Encoding { transparent: true, ..Encoding::default() };
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
     let refused = png_file::encode(&opaque, &transparent);
     assert!(refused.unwrap_err().to_string().contains("alpha"));
 }
@@ -109,7 +112,8 @@ fn a_transparent_png_is_not_premultiplied() {
 fn exposure_comes_before_the_tone_curve_and_both_before_srgb() {
     let colors = [[0.05, 0.2, 0.7], [3.0, 0.0, 40.0]];
     for tone in ToneCurve::ALL.iter().copied() {
-        let encoding = Encoding { tone, exposure: -1.5, ..Encoding::default() };
+        let mut encoding = Encoding::default().with_exposure(-1.5).unwrap();
+        encoding.tone = tone;
         let gain = 2_f32.powf(-1.5);
         let (_, samples) = decoded(&png_file::encode(&row(&colors), &encoding).unwrap());
         for (pixel, rgb) in samples.chunks_exact(3).zip(colors) {
@@ -197,7 +201,8 @@ fn component(values: &[[f32; 3]], place: usize) -> Vec<u32> {
 #[test]
 fn an_exr_holds_every_number_of_every_layer() {
     let image = picture();
-    let transparent = Encoding { transparent: true, ..Encoding::default() };
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
     let exr = written(&image, LayerSet::ALL, transparent, Some("A GPU™ (Å)")).unwrap();
     assert_eq!(
         exr.names(),
@@ -258,7 +263,8 @@ fn an_exr_holds_what_is_asked_for() {
     let layers = LayerSet::COLOR.with(Layer::Variance);
     let refused = written(&without, layers, Encoding::default(), None);
     assert!(matches!(refused, Err(ExrError::MissingLayer { layer: Layer::Variance })));
-    let transparent = Encoding { transparent: true, ..Encoding::default() };
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
     let refused = written(&without, LayerSet::COLOR, transparent, None);
     assert!(matches!(refused, Err(ExrError::MissingLayer { layer: Layer::Alpha })));
     let nothing = Image::new(0, 0, LayerSet::COLOR).unwrap();

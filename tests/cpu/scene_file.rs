@@ -58,17 +58,14 @@ fn the_example_has_the_expected_contents() {
 fn how_the_picture_is_written() {
     assert_eq!(parse("[output]\n").encoding, Encoding::default());
     let all = "[output]\nexposure = 1.5\ntone = 'filmic'\ntransparent = true\nbits = 16\n";
-    let expected = Encoding {
-        exposure: 1.5,
-        tone: ToneCurve::Filmic,
-        transparent: true,
-        bits: Bits::Sixteen,
-        ..Encoding::default()
-    };
+    let mut expected = Encoding::default().with_exposure(1.5).unwrap();
+    expected.tone = ToneCurve::Filmic;
+    expected.transparent = true;
+    expected.bits = Bits::Sixteen;
     assert_eq!(parse(all).encoding, expected);
     for tone in ToneCurve::ALL {
         let file = parse(&format!("[output]\ntone = '{}'\nexposure = -2\n", tone.name()));
-        assert_eq!((file.encoding.tone, file.encoding.exposure), (*tone, -2.0));
+        assert_eq!((file.encoding.tone, file.encoding.exposure()), (*tone, -2.0));
     }
 }
 
@@ -320,7 +317,8 @@ fn a_background_is_left_alone_by_every_curve() {
     let background = grey.to_array();
     for tone in ToneCurve::ALL {
         for stops in [-2.0, 0.0, 3.0] {
-            let encoding = Encoding { tone: *tone, exposure: stops, ..Encoding::default() };
+            let mut encoding = Encoding::default().with_exposure(stops).unwrap();
+            encoding.tone = *tone;
             assert_eq!(encoding.display_over(background, 0.0, grey), background);
             let light = [0.9, 0.2, 0.4];
             let covered = encoding.display_over(light, 1.0, grey);

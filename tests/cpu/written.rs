@@ -21,15 +21,24 @@ use crate::support::{spheres, spheres_of};
 /// Every kind of encoding.
 fn encodings() -> Vec<Encoding> {
     let plain = Encoding::default();
-    let exposed = |tone| Encoding { exposure: -0.7, tone, ..plain };
-    let fine = |encoding| Encoding { bits: Bits::Sixteen, ..encoding };
+    let exposed = |tone| {
+        let mut exposed = plain.with_exposure(-0.7).unwrap();
+        exposed.tone = tone;
+        exposed
+    };
+    let fine = |mut encoding: Encoding| {
+        encoding.bits = Bits::Sixteen;
+        encoding
+    };
+    let mut over_white = exposed(ToneCurve::Agx);
+    over_white.background = Some(LinearRgb::WHITE);
     vec![
         plain,
         fine(plain),
         fine(exposed(ToneCurve::None)),
         fine(exposed(ToneCurve::Filmic)),
         exposed(ToneCurve::Agx),
-        Encoding { background: Some(LinearRgb::WHITE), ..exposed(ToneCurve::Agx) },
+        over_white,
     ]
 }
 
@@ -99,11 +108,11 @@ struct Made {
 }
 
 impl Made {
-    fn new(settings: RenderSettings, encoding: Encoding) -> Self {
+    fn new(settings: RenderSettings, mut encoding: Encoding) -> Self {
         let scene = scene();
         let camera = camera(&scene);
-        let background = encoding.background.and(settings.visible_background());
-        let encoding = Encoding { transparent: settings.is_transparent, background, ..encoding };
+        encoding.background = encoding.background.and(settings.visible_background());
+        encoding.transparent = settings.is_transparent;
         let layers = encoding.layers();
         let image = cpu::render(&scene, &View::new(&camera, film()), &settings, layers).unwrap();
         let bytes = png::samples(&image, &encoding).unwrap();

@@ -64,7 +64,9 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn certified(view: &View, image: &Image) -> Result<[WrittenCertificate; 2], Failed> {
     let View { scene, settings, .. } = view;
     let size = [image.width(), image.height()];
-    let encoding = &Encoding { bits: Bits::Sixteen, ..Encoding::default() };
+    let mut encoding = Encoding::default();
+    encoding.bits = Bits::Sixteen;
+    let encoding = &encoding;
     let bytes = png::samples(image, encoding)?;
     let light: Vec<[f32; 4]> = image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
     let primary = settings.primary().ok_or("not of primary rays")?;

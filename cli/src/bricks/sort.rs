@@ -167,11 +167,11 @@ fn input(args: &SortArgs) -> Result<Input, Failure> {
         return Ok(Input { stream, z_is_up, has_atoms: false });
     }
     let mut contents = source.contents()?;
-    let notes = std::mem::take(&mut contents.found.notes);
+    let notes = std::mem::take(&mut contents.details.notes);
     if !args.quiet && !contents.scene.is_empty() {
         notes.iter().for_each(|note| tell(format_args!("note: {note}")));
     }
-    let has_atoms = contents.found.has_atoms;
+    let has_atoms = contents.details.has_atoms;
     Ok(Input { stream: Stream::Scene(Box::new(contents.scene)), z_is_up, has_atoms })
 }
 

@@ -161,7 +161,7 @@ impl Overview {
             progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
             let contents = frame(source, number)?;
             contents.color_key().into_iter().for_each(|key| overview.colors.add(key));
-            if let (None, Some(kinds)) = (&overview.kinds, &contents.found.kinds) {
+            if let (None, Some(kinds)) = (&overview.kinds, &contents.details.kinds) {
                 (overview.kinds, overview.kinds_from) = (Some(kinds.clone()), Some(number));
             }
             union.add(&contents.scene);
@@ -173,7 +173,7 @@ impl Overview {
     /// The colors by kind that no flag asked for.
     pub(crate) fn kinds(&self, source: &mut Source) -> Result<Option<ColorBy>, Failure> {
         match (&self.kinds, self.kinds_from) {
-            (None, Some(number)) => Ok(frame(source, number)?.found.kinds),
+            (None, Some(number)) => Ok(frame(source, number)?.details.kinds),
             (kinds, _) => Ok(kinds.clone()),
         }
     }

@@ -156,12 +156,12 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
 }
 
 /// Takes pictures, which are written by another thread.
-pub(crate) struct Written<'a> {
+pub(crate) struct PictureSender<'a> {
     status: &'a mut Status,
     sender: SyncSender<Message>,
 }
 
-impl Written<'_> {
+impl PictureSender<'_> {
     pub(crate) fn begin(&mut self) {
         self.status.show();
     }
@@ -183,7 +183,7 @@ impl Writing {
         wanted: &Wanted,
         count: usize,
         adapter: Option<&str>,
-        make: impl FnOnce(&mut Written<'_>) -> Result<(), Failure>,
+        make: impl FnOnce(&mut PictureSender<'_>) -> Result<(), Failure>,
     ) -> Result<usize, Failure> {
         let sink = Sink {
             target: &wanted.target,
@@ -201,7 +201,7 @@ impl Writing {
                 let sink = &sink;
                 move || sink.write(&receiver)
             });
-            let mut pictures = Written { status: &mut status, sender };
+            let mut pictures = PictureSender { status: &mut status, sender };
             let made = make(&mut pictures);
             if made.is_ok() {
                 // If this fails, the thread that writes says why.

@@ -76,7 +76,7 @@ pub(super) fn frames(
     let framed = overview.scene().with_context(|| source.name())?;
     let mut contents = frame(source, first)?;
     // The legend is that of all frames.
-    if let Some(key) = contents.found.color_key.as_mut() {
+    if let Some(key) = contents.details.color_key.as_mut() {
         key.missing = key.missing.or(missing);
     }
     let sky = source.sky(&contents)?;
@@ -173,7 +173,7 @@ fn apply(input: &mut Input, change: Change, notes: &mut Notes) -> Result<(), Fai
         input.settings.is_transparent = is_transparent;
     }
     if let Some(mut contents) = change.contents {
-        contents.found.notes.drain(..).for_each(|note| notes.tell(note));
+        contents.details.notes.drain(..).for_each(|note| notes.tell(note));
         input.scene = Arc::new(contents.scene);
         let checked = input.settings.check(&input.scene);
         checked.with_context(|| input.report.path.clone())?;

@@ -25,12 +25,12 @@ use pinhole::select::{KeptSpheres, Selection};
 pub(crate) struct Contents {
     pub(crate) file: Arc<SceneFile>,
     pub(crate) scene: Scene,
-    pub(crate) found: Facts,
+    pub(crate) details: Details,
 }
 
-/// What was found beside the spheres.
+/// Details of a file that was read, beside its spheres.
 #[derive(Default)]
-pub(crate) struct Facts {
+pub(crate) struct Details {
     pub(crate) notes: Vec<String>,
     pub(crate) files: Vec<PathBuf>,
     pub(crate) sky_image: Option<PathBuf>,
@@ -59,7 +59,7 @@ pub(crate) struct DataPlace {
 impl Contents {
     /// What colors mean, if a column gives them.
     pub(crate) fn color_key(&self) -> Option<&ColorKey> {
-        self.found.color_key.as_ref()
+        self.details.color_key.as_ref()
     }
 }
 
@@ -110,7 +110,7 @@ impl Source {
         }
         let file = self.scene_of_data()?;
         let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
-        let found = Facts {
+        let details = Details {
             notes,
             files,
             has_atoms,
@@ -119,9 +119,9 @@ impl Source {
             kept,
             bonds,
             columns,
-            ..Facts::default()
+            ..Details::default()
         };
-        self.prepared(file, scene, found)
+        self.prepared(file, scene, details)
     }
 
     /// The spheres that stand for all of a file of bricks.
@@ -141,8 +141,8 @@ impl Source {
         }
         let scene = bricks.stand_in(self.color_of_all())?;
         let (files, has_atoms) = (vec![self.path.clone()], bricks.has_atoms());
-        let found = Facts { files, has_atoms, ..Facts::default() };
-        self.prepared(self.scene_of_data()?, scene, found)
+        let details = Details { files, has_atoms, ..Details::default() };
+        self.prepared(self.scene_of_data()?, scene, details)
     }
 
     /// The color of spheres without one.
@@ -175,7 +175,7 @@ impl Source {
     /// Reads a scene from the text of a scene file, and its data.
     pub(crate) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
         let file = self.parsed(text)?;
-        let (scene, found) = self.scene_of(&file)?;
+        let (scene, details) = self.scene_of(&file)?;
         let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
@@ -185,7 +185,7 @@ impl Source {
             self.options.topology.clone().or_else(|| topology.map(|file| self.resolve(file)));
         let files = [Some(self.path.clone()), data_file, topology, sky_image.clone()];
         let files = files.into_iter().flatten().collect();
-        self.prepared(file, scene, Facts { files, sky_image, ..found })
+        self.prepared(file, scene, Details { files, sky_image, ..details })
     }
 
     /// The scene file that stands for a data file: its style.
@@ -200,9 +200,14 @@ impl Source {
     }
 
     /// Applies the flags for the film and the background.
-    fn prepared(&self, file: SceneFile, scene: Scene, found: Facts) -> Result<Contents, Failure> {
+    fn prepared(
+        &self,
+        file: SceneFile,
+        scene: Scene,
+        details: Details,
+    ) -> Result<Contents, Failure> {
         let (file, size_from) = self.with_film(file)?;
-        Ok(Contents { file: Arc::new(file), scene, found: Facts { size_from, ..found } })
+        Ok(Contents { file: Arc::new(file), scene, details: Details { size_from, ..details } })
     }
 
     /// Gives a scene file the film and the background of the flags. Also returns where the film's size comes from.
@@ -238,7 +243,7 @@ impl Source {
     }
 
     /// Makes the scene of a scene file, and of its data if it has any.
-    fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Facts), Failure> {
+    fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Details), Failure> {
         let file_name = || self.path.display().to_string();
         let Some(DataPlace { data, path, format, options }) = self.data_place(file)? else {
             let flags = &self.options;
@@ -255,7 +260,7 @@ impl Source {
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok((file.scene(&[]).with_context(file_name)?, Facts::default())),
+                None => Ok((file.scene(&[]).with_context(file_name)?, Details::default())),
             };
         };
         let in_scene = || self.in_scene();
@@ -269,8 +274,9 @@ impl Source {
         let scene = file.scene_of(spheres, data.color.unwrap_or_else(default_color));
         let scene = scene.with_context(file_name)?.with_added(added.len());
         let bonds = data.additions.bonds.is_some().then_some(added.bonds());
-        let found = Facts { notes, has_atoms, color_key, kept, bonds, columns, ..Facts::default() };
-        Ok((scene, found))
+        let details =
+            Details { notes, has_atoms, color_key, kept, bonds, columns, ..Details::default() };
+        Ok((scene, details))
     }
 
     /// Finds the data of a scene file; `None` if it has none.

@@ -28,7 +28,7 @@ impl Source {
 
     fn input(&self, mut contents: Contents) -> Result<Input, Failure> {
         if contents.file.camera_path().is_some() {
-            contents.found.notes.push(format!(
+            contents.details.notes.push(format!(
                 "{}: `camera_path` is not used, because this is one picture; for all, write a movie such as -o movie.apng, \
                  or --frames : with -o f%04d.png",
                 self.path.display()

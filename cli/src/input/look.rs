@@ -7,7 +7,7 @@ use anyhow::{Context, Error, Result};
 
 use super::{Input, read};
 use crate::failure::Failure;
-use crate::input::contents::{Contents, Facts};
+use crate::input::contents::{Contents, Details};
 use crate::input::source::Source;
 use crate::progress;
 use crate::read_file::Format;
@@ -114,8 +114,8 @@ impl Source {
 
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
-        let Contents { file, scene, found } = contents;
-        let Facts {
+        let Contents { file, scene, details } = contents;
+        let Details {
             notes,
             files,
             sky_image,
@@ -126,7 +126,7 @@ impl Source {
             kept,
             bonds,
             ..
-        } = found;
+        } = details;
         let report = Report {
             path: self.path.display().to_string(),
             spheres: self
@@ -168,7 +168,7 @@ impl Source {
 
     /// Reads the image of the sky, if there is one.
     pub(crate) fn sky(&self, contents: &Contents) -> Result<Option<Environment>> {
-        let path = contents.found.sky_image.as_deref();
+        let path = contents.details.sky_image.as_deref();
         path.map(|path| self.environment(path)).transpose()
     }
 

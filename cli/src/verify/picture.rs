@@ -7,7 +7,7 @@ use clap::Parser;
 use serde::Serialize;
 
 use crate::args::VerifyArgs;
-use crate::certified::{self, Written};
+use crate::certified::{self, FilePicture};
 use crate::failure::Failure;
 use crate::input::read;
 use crate::output::{check_not_inputs, check_writable, name_all, unnamed};
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
         anyhow!("{}: the picture has no certificate; render it with --certify", path.display())
     })?;
     let certificate = PictureCertificate::from_text(text).with_context(of_picture)?;
-    let written = Written {
+    let written = FilePicture {
         size: file.size,
         samples: file.samples,
         per_pixel: certificate.samples_per_pixel,

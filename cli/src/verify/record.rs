@@ -266,7 +266,8 @@ pub(crate) fn render_lit(
     settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
     settings.is_transparent = false;
     let background = settings.visible_background();
-    let encoding = Encoding { transparent: false, background, ..input.encoding };
+    let mut encoding = input.encoding;
+    (encoding.transparent, encoding.background) = (false, background);
     let layers = encoding.layers();
     let (view, views) = (input.view(), views_of(input, input.film));
     let plan = |choice| render::plan(headless, input, &views, layers, choice);

@@ -196,7 +196,7 @@ pub(crate) struct LightReport<'a> {
     stages: BTreeMap<&'static str, StageCounts>,
     /// First column and row, width and height of the parts of the film in which samples were checked.
     rectangles: &'a [[u32; 4]],
-    judged: Judged,
+    judged: JudgedShare,
     upload: &'a Option<UploadError>,
     violation_count: u64,
     violations: &'a [LitViolation],
@@ -217,7 +217,7 @@ impl<'a> LightReport<'a> {
             samples: is_studio.then_some(paths),
             stages: certificate.named().into_iter().collect(),
             rectangles: &certificate.rectangles,
-            judged: Judged { share, fraction: share.fraction() },
+            judged: JudgedShare { share, fraction: share.fraction() },
             upload: &certificate.upload,
             violation_count,
             violations: listed(&certificate.violations),
@@ -243,13 +243,13 @@ impl<'a> LightReport<'a> {
 
 /// How much of the picture was judged.
 #[derive(Serialize)]
-struct Judged {
+struct JudgedShare {
     #[serde(flatten)]
     share: LitShare,
     fraction: f64,
 }
 
-impl Judged {
+impl JudgedShare {
     fn words(&self) -> String {
         let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
         // Rounded down, so that nothing but all of them is called 100 %.

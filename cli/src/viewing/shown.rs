@@ -31,7 +31,7 @@ pub struct Shown {
     notes: Vec<String>,
 }
 
-/// What a window says about what is shown.
+/// The data that a window shows beside the picture.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Facts {
@@ -88,7 +88,7 @@ impl Shown {
             Some(text) => source.contents_of_text(text)?,
             None => source.contents()?,
         };
-        let columns = Arc::new(std::mem::take(&mut contents.found.columns));
+        let columns = Arc::new(std::mem::take(&mut contents.details.columns));
         let sky = source.sky(&contents).map_err(Failure::from)?;
         let framed = Framed::new(&contents.scene, contents.color_key());
         let look = source.look(&contents.file, framed, sky.clone(), None)?;
@@ -129,7 +129,7 @@ impl Shown {
         Ok(())
     }
 
-    /// What is to be said about it.
+    /// Returns what a window shows beside the picture.
     pub fn facts(&self) -> Facts {
         let Self { flags, input, columns, notes, .. } = self;
         Facts {

@@ -12,7 +12,7 @@ use crate::with_scene::{upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers, Wait};
-use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
@@ -71,7 +71,8 @@ impl StillRenderer {
         is_wanted: &dyn Fn() -> bool,
         show: &mut dyn FnMut(StillPicture),
     ) -> Result<bool, ViewError> {
-        let encoding = Encoding { bits: Bits::Eight, ..shown.encoding };
+        let mut encoding = shown.encoding;
+        encoding.bits = Bits::Eight;
         let layers = encoding.layers().iter().chain(LayerSet::COLOR.iter()).collect();
         let mut settings = shown.input.settings.clone();
         let total = if settings.integrator.is_primary() { 1 } else { settings.sampling.samples };

@@ -8,7 +8,7 @@ use crate::camera::film::Film;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
-use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, longest_side};
+use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, States, longest_side};
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::lit::records::LightingParameters;
@@ -50,7 +50,7 @@ impl Headless {
         let is_studio = lighting.mode.is_studio();
         let side = if is_studio { longest_side(lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
-        let given = inputs(&scenes, lighting, tile);
+        let mut keeper = Keeper::new(inputs(&scenes, lighting, tile));
         // What is recorded lies between the passes.
         let mut attempt = Attempt::Steps;
         let key = attempt.key(scenes.key(lighting, &self.device.limits()));
@@ -62,8 +62,7 @@ impl Headless {
             };
             loop {
                 let work = LitWork { headless: self, passes, scenes, lighting, attempt };
-                let keeper = Keeper::new(given.clone());
-                let done = work.record(tile, samples, keeper, &mut each, watch).await;
+                let done = work.record(tile, samples, &mut keeper, &mut each, watch).await;
                 match (done, attempt.easier(lighting)) {
                     (Err(GpuError::Steps), Some(easier)) if is_first.get() => attempt = easier,
                     (done, _) => return done,
@@ -79,7 +78,7 @@ impl LitWork<'_> {
         &self,
         tile: Tile,
         samples: &[u32],
-        mut keeper: Keeper,
+        keeper: &mut Keeper,
         each: &mut EachSample<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
@@ -107,7 +106,8 @@ impl LitWork<'_> {
                         keeper.end(RecordedFilm { before, after: sums });
                     }
                     Some(moment) if keeper.wants(moment) => {
-                        reader.states(&mut flow, |states| keeper.keep(moment, states)).await?;
+                        let keep = |states: &States<'_>| keeper.keep(moment, states);
+                        reader.states(&mut flow, moment, keep).await?;
                         after()?;
                     }
                     _ => {}

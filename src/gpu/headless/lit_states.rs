@@ -113,16 +113,36 @@ impl<'a> Reader<'a> {
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
     }
 
-    /// Reads the states, and calls `keep` with them.
+    /// Reads what is kept of the states after a pass, and calls `keep` with them.
     pub(super) async fn states(
         &self,
         flow: &mut Flow<'_>,
+        moment: Moment,
         keep: impl FnOnce(&States<'_>),
     ) -> Result<(), GpuError> {
         let Self { pixels, slots, .. } = *self;
-        self.paths.record_copy(flow.encoder(), &self.frame.paths);
+        let paths = &self.frame.paths;
+        match self.only_slot(moment) {
+            None => self.paths.record_copy(flow.encoder(), paths),
+            Some(SlotSource::Constant(_)) => {}
+            Some(SlotSource::Device(slot)) => {
+                let size = (pixels * size_of::<[u32; 4]>()) as u64;
+                let start = slot as u64 * size;
+                flow.encoder().copy_buffer_to_buffer(paths, start, &self.paths.buffer, start, size);
+            }
+        }
         flow.finish(&[&self.paths.buffer]).await?;
         self.paths.read(|vectors: &[[u32; 4]]| keep(&States { vectors, pixels, slots }))
+    }
+
+    /// The slot from which all comes that [`Keeper::keep`] needs after a pass; `None` if it needs several.
+    fn only_slot(&self, moment: Moment) -> Option<SlotSource> {
+        match moment {
+            Moment::Extended => Some(SlotSource::Device(HIT)),
+            Moment::Occluded => Some(self.slots[PathState::PENDING]),
+            Moment::Shadowed | Moment::Searched => Some(self.slots[PathState::NORMAL]),
+            _ => None,
+        }
     }
 }
 

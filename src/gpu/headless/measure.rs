@@ -96,7 +96,7 @@ impl Headless {
     /// Traces a ray through the centre of every pixel and discards the hits, to measure the time that this takes.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`].
+    /// Returns the errors of [`Headless::render`].
     pub async fn measure(
         &self,
         scene: &SceneBuffers,

@@ -40,11 +40,11 @@ pub struct RenderPlan {
     pub device_bytes: u64,
     /// Maximum number of bytes of host memory in use at once, excluding the scene itself.
     pub host_bytes: u64,
-    /// What needs `host_bytes`, in words.
+    /// The step that needs `host_bytes`, in words.
     pub host_peak: &'static str,
 }
 
-/// What needs the most host memory.
+/// The steps of which one needs the most host memory.
 pub(crate) const BUILDING: &str = "building the structure";
 pub(crate) const UPLOADING: &str = "copying the scene to the device";
 pub(crate) const PICTURE: &str = "the picture";

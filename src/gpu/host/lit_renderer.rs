@@ -14,7 +14,7 @@ use crate::gpu::passes::lit::{
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
-use crate::gpu::shader::{Kernel, color_target, pipeline_with};
+use crate::gpu::shader::{Kernel, color_target_choice, pipeline_with};
 use crate::render::RenderSettings;
 
 /// A renderer, with the pipelines of lit pictures that it has built so far. All lit pictures of a device can share one.
@@ -139,5 +139,5 @@ pub(super) fn lit_key<'a>(
 }
 
 pub(crate) fn resolve_kernel(color: ColorTarget) -> Kernel {
-    Kernel::new("resolve", &[color_target(color)])
+    Kernel::new("resolve", &[color_target_choice(color)])
 }

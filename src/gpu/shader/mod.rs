@@ -1,8 +1,8 @@
 //! Shaders. The source of a kernel is the concatenation of a list of parts.
 //!
 //! WGSL has no modules, and the order of its declarations does not matter, so a list of parts serves as a module
-//! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and needs. A test compares the lists with the
-//! source, and writes the tables of `shaders/README.md`.
+//! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and
+//! needs. A test compares the lists with the source, and writes the tables of `shaders/README.md`.
 
 pub(super) mod formats;
 mod kernel;
@@ -19,6 +19,6 @@ pub(super) use part::Part;
 pub(super) use part::{VARIANT, variants};
 pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
-    BrickPass, camera_constant, color_target, data_layers, probe_kernel, shade_kernel,
-    structure_parts, trace_kernel,
+    BrickPass, camera_constant, color_target_choice, data_layers_choice, probe_kernel,
+    shade_kernel, structure_choice, trace_kernel,
 };

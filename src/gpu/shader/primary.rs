@@ -43,12 +43,12 @@ fn entered_kernel(
     entry: &'static str,
 ) -> Kernel {
     let shape = primitive_part(primitive);
-    Kernel::new("trace", &[("$shape", shape), structure_parts(structure), ("$entry", entry)])
+    Kernel::new("trace", &[("$shape", shape), structure_choice(structure), ("$entry", entry)])
         .with([camera_constant(camera), brick_pass.constant()])
 }
 
 /// The choice of the parts that traverse a structure.
-pub(in crate::gpu) fn structure_parts(structure: Structure) -> (&'static str, &'static str) {
+pub(in crate::gpu) fn structure_choice(structure: Structure) -> (&'static str, &'static str) {
     let list = match structure {
         Structure::List => "list",
         Structure::RayQuery => "ray-query",
@@ -60,13 +60,13 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> (&'static str, &'
 }
 
 /// The choice of the part that writes data layers, if there are any.
-pub(in crate::gpu) fn data_layers(are_written: bool) -> (&'static str, &'static str) {
+pub(in crate::gpu) fn data_layers_choice(are_written: bool) -> (&'static str, &'static str) {
     let all = "primary/data_layers.wgsl#all";
     ("$data", if are_written { all } else { "primary/data_layers.wgsl#none" })
 }
 
 /// The choice of the part that writes colours.
-pub(in crate::gpu) fn color_target(color: ColorTarget) -> (&'static str, &'static str) {
+pub(in crate::gpu) fn color_target_choice(color: ColorTarget) -> (&'static str, &'static str) {
     let part = match color {
         ColorTarget::Srgb8 => "primary/color_target.wgsl#rgba8unorm",
         ColorTarget::Linear16 => "primary/color_target.wgsl#rgba16float",
@@ -86,7 +86,7 @@ pub(in crate::gpu) fn shade_kernel(
     let recorded = "primary/shade_entry.wgsl#recorded";
     let entry = if keeps_rays { recorded } else { "primary/shade_entry.wgsl#made" };
     let (shape, entry) = (("$shape", primitive_part(primitive)), ("$shade-entry", entry));
-    Kernel::new("shade", &[shape, entry, color_target(color), data_layers(has_data)])
+    Kernel::new("shade", &[shape, entry, color_target_choice(color), data_layers_choice(has_data)])
         .with([camera_constant(camera)])
 }
 

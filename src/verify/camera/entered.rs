@@ -125,10 +125,11 @@ impl EnteredRay {
         let mut enter = self.enter;
         for (axis, name) in AXES.iter().enumerate() {
             let found = ray.origin[axis];
-            legal_is("camera", ("the origin's ", name), found, self.origin(axis, enter))?;
+            let name = format_args!("the origin's {name}");
+            legal_is("camera", name, found, self.origin(axis, enter))?;
             enter = enter.intersection(self.enter_by(axis, found.into()));
         }
-        legal_is("camera", ("the origin's ", "distance"), ray.distance, self.distance(enter))
+        legal_is("camera", "the origin's distance", ray.distance, self.distance(enter))
     }
 
     /// The numbers of a legal ray, with their names and bounds.

@@ -250,7 +250,7 @@ fn rays(
     })
 }
 
-/// What `of` says of all pixels.
+/// Calls `of` for every pixel, and returns all results.
 fn all<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, RunFileError> {
     let bytes = (count * size_of::<T>()) as u64;
     try_map(count, of).map_err(|_| RunFileError::Memory { name: "pixels".to_owned(), bytes })

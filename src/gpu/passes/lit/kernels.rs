@@ -6,7 +6,7 @@ use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::BrickPass::{First, Later};
-use crate::gpu::shader::{BrickPass, Constant, Kernel, camera_constant, structure_parts};
+use crate::gpu::shader::{BrickPass, Constant, Kernel, camera_constant, structure_choice};
 
 /// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -225,7 +225,7 @@ impl LitKey {
             _ => "plain-sky",
         };
         let is_pass = |pass| u32::from(self.one_pass == Some(pass));
-        Kernel::new(entry_point, &[structure_parts(structure), ("$sky", sky)])
+        Kernel::new(entry_point, &[structure_choice(structure), ("$sky", sky)])
             .with(self.mode.constants())
             .with([camera_constant(self.camera), exclude_by.constant()])
             .with([("IS_SHARP", is_pass(OnePass::Sharp)), ("HAS_GROUND", is_pass(OnePass::Ground))])

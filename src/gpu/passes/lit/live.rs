@@ -18,7 +18,8 @@ use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
-    Kernel, camera_constant, color_target, data_layers, pipeline, pipeline_with, structure_parts,
+    Kernel, camera_constant, color_target_choice, data_layers_choice, pipeline, pipeline_with,
+    structure_choice,
 };
 
 /// The properties in which sets of passes differ.
@@ -65,7 +66,7 @@ pub(crate) struct LivePasses {
 
 /// The kernel that traces the rays of a frame.
 fn live_kernel(key: LiveKey) -> Kernel {
-    Kernel::new("live", &[structure_parts(key.structure)]).with([
+    Kernel::new("live", &[structure_choice(key.structure)]).with([
         camera_constant(key.camera),
         key.exclude_by.constant(),
         ("HAS_GROUND", u32::from(key.has_ground)),
@@ -74,7 +75,7 @@ fn live_kernel(key: LiveKey) -> Kernel {
 
 /// The kernel that averages over neighbours and writes the picture.
 fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
-    Kernel::new("show", &[color_target(color), data_layers(has_data)])
+    Kernel::new("show", &[color_target_choice(color), data_layers_choice(has_data)])
 }
 
 /// All kernels of live pictures.

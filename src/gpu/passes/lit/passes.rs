@@ -126,8 +126,8 @@ impl LitPasses {
         Ok(Self { key, layouts, of_samples, advance, noise })
     }
 
-    /// A pass that takes samples.
-    pub(super) fn of_samples(&self, name: PassName) -> Result<&Pass, GpuError> {
+    /// The pass with this name that takes samples.
+    pub(super) fn named(&self, name: PassName) -> Result<&Pass, GpuError> {
         self.of_samples.get(&name).ok_or(GpuError::OtherRenderer)
     }
 }

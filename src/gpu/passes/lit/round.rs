@@ -159,7 +159,7 @@ impl<'a> Round<'a> {
         };
         let LitPasses { key, .. } = self.passes;
         if key.one_pass.is_some() {
-            let pass = self.passes.of_samples(key.passes()[0])?;
+            let pass = self.passes.named(key.passes()[0])?;
             return Ok(self.one_pass(pass, dispatch));
         }
         let mut steps = Steps { round: *self, in_flight: count, steps: Vec::new() };
@@ -225,7 +225,7 @@ impl<'a> Steps<'a> {
         work: Work,
     ) -> Result<(), GpuError> {
         let name = (entry_point, work.schedule(), BrickPass::First);
-        self.push_pass(self.round.passes.of_samples(name)?, dispatch, brick, work);
+        self.push_pass(self.round.passes.named(name)?, dispatch, brick, work);
         Ok(())
     }
 
@@ -266,7 +266,7 @@ impl<'a> Steps<'a> {
         let work = work_of(dispatch, Area::Visible);
         for (index, brick) in self.round.scene.bricks.iter().enumerate() {
             let brick_pass = if index == 0 { BrickPass::First } else { BrickPass::Later };
-            let pass = self.round.passes.of_samples(("extend", work.schedule(), brick_pass))?;
+            let pass = self.round.passes.named(("extend", work.schedule(), brick_pass))?;
             self.push_pass(pass, dispatch, Some(&brick.trace_group), work);
             self.mark_search();
         }
