@@ -31,7 +31,7 @@ fn compare(folder: &str, answer: fn(&Case<'_>) -> String) {
         let file = entry.unwrap().path();
         let text = std::fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
         let found = answered(&text, answer);
-        if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some() {
+        if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
             std::fs::write(&file, &found).unwrap();
             continue;
         }
@@ -93,6 +93,11 @@ fn contents(Case { files, arguments }: &Case<'_>) -> String {
     for (number, file) in files.iter().enumerate() {
         // As text, because a missing number is not equal to itself.
         assert_eq!(written(&read(file)), written(&loaded), "file {number} of {arguments}");
+        if file.0.ends_with(".pdb") {
+            let frame = options(arguments).frame.unwrap_or(0);
+            let direct = load::pdb::read(&file.1, frame).unwrap();
+            assert_eq!(written(&direct), written(&loaded), "{arguments}");
+        }
     }
     written(&loaded)
 }
@@ -161,6 +166,13 @@ fn damaged_files_end_with_spheres_or_one_line() {
     let folder = TempDir::new().unwrap();
     for format in FORMATS {
         let seeds = seeds::of(format, folder.path());
+        for seed in &seeds {
+            for end in (0..seed.bytes.len()).filter(|end| *end < 2048 || end % 7 == 0) {
+                let mut random = Rng::with_seed(end as u64);
+                read_bytes(format, &seed.bytes[..end], &seed.options, &mut random)
+                    .unwrap_or_else(|e| panic!("{}, cut at {end}: {e}", format.name));
+            }
+        }
         let each = tries(if format.has_frames() { 64_000 } else { 240_000 });
         for number in 0..u64::from(each) {
             let mut random = Rng::with_seed(number);

@@ -318,7 +318,9 @@ fn updates_are_as_a_scene_that_was_made_so() {
         for _ in 0..50 {
             let first = random.usize(..scene.len());
             let count = random.usize(..=scene.len() - first);
-            let numbers = Numbers::of(&mut random, count);
+            let mut numbers = Numbers::of(&mut random, count);
+            numbers.rgba.fill_with(|| [0; 4].map(|_| random.u8(..)));
+            numbers.radii.fill_with(|| 0.05 + random.f32() * 0.3);
             let Numbers { centers, radii, .. } = &numbers;
             let colors = numbers.colors(&scene);
             let update = SceneUpdate {

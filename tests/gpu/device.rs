@@ -26,6 +26,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("device::an_adapter_is_found_by_a_part_of_its_name", part_of_a_name),
         trial("device::an_unknown_name_lists_the_adapters", unknown_name),
+        trial("device::a_destroyed_device_is_an_error", destroyed),
         trial("device::a_fault_of_the_callers_does_not_outlive_it", callers_fault),
         trial("device::a_device_that_is_destroyed_in_the_middle_of_a_render", lost_midway),
         trial("device::a_device_that_does_not_finish_in_time", too_slow),
@@ -61,6 +62,14 @@ fn unknown_name(headless: &'static Headless) {
         }
         other => panic!("{other:?}"),
     }
+}
+
+fn destroyed(_: &'static Headless) {
+    let headless = Headless::open(&HeadlessOptions::default()).wait().unwrap();
+    headless.device().destroy();
+    let view = View::three_spheres();
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).wait();
+    assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
 /// An error that a caller causes on the device does not affect the next render.

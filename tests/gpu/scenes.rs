@@ -29,6 +29,7 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("one_column", random_with_size(1, 5000)),
         ("one_row", random_with_size(333, 1)),
         ("no_multiple_of_eight", random_with_size(61, 43)),
+        ("more_than_one_slice", more_than_one_slice()),
         ("random_pinhole_y_up", random_1000(YAxis::Up, pinhole)),
         ("random_pinhole_y_down", random_1000(YAxis::Down, pinhole)),
         ("random_orthographic_y_up", random_1000(YAxis::Up, orthographic)),
@@ -51,7 +52,9 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("example_fisheye", View::from_toml(include_str!("../../examples/fisheye.toml"))),
         ("fisheye_higher_than_wide", random_fisheye_upright()),
     ];
-    all.extend(names_of_files("primary", "").into_iter().map(|name| {
+    let files = names_of_files("primary", "");
+    assert_eq!(files.len(), 13, "{files:?}");
+    all.extend(files.into_iter().map(|name| {
         let view = View::from_toml(&text("primary", &name));
         (&*name.leak(), view)
     }));
@@ -157,6 +160,13 @@ fn random_spheres(seed: u64, count: usize, radius: f64) -> Vec<Sphere> {
 fn random_with_size(width: u32, height: u32) -> View {
     let camera = pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.0);
     view(&random_spheres(7, 60, 0.4), camera, [width, height])
+}
+
+/// There are more spheres than one dispatch tests, and the nearest are among the last.
+fn more_than_one_slice() -> View {
+    let mut spheres = random_spheres(8, 120_000, 0.01);
+    spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
+    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), [48, 32])
 }
 
 fn random_1000(y_axis: YAxis, lens: Lens) -> View {

@@ -33,6 +33,9 @@ const NUMBERS: [u64; 14] = [
 const WORDS: &str = "0 -1 1e308 -1e-320 nan inf 1e999 16777216 4294967296 999999999999 18446744073709551615 \
                      99999999999999999999999  \u{e9}";
 
+/// Bytes that mean something in texts.
+const TELLING: &[u8] = b"\n\t \"';#,._\xff\0";
+
 /// A damaged copy of a file. `other` is another good file, of which pieces may be taken.
 pub(crate) fn damaged(good: &[u8], other: &[u8], random: &mut Rng) -> Vec<u8> {
     let mut bytes = good.to_vec();
@@ -55,7 +58,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
         return;
     }
     let at = random.usize(0..bytes.len());
-    match random.u8(0..10) {
+    match random.u8(0..11) {
         0 => bytes[at] ^= 1 << random.u8(0..8),
         1 => bytes[at] = random.u8(..),
         2 => drop(bytes.drain(range(bytes.len(), 16, random))),
@@ -84,6 +87,9 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
             }
             let end = (at + width).min(bytes.len());
             bytes.splice(at..end, number);
+        }
+        8 => {
+            drop(bytes.splice(at..at + random.usize(0..2), random.choice(TELLING.iter().copied())))
         }
         _ => replace_number(bytes, at, random),
     }

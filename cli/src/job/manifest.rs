@@ -126,6 +126,9 @@ impl Manifest {
     }
 
     fn is_consistent(&self) -> bool {
+        if !(1..=2).contains(&self.eyes) {
+            return false;
+        }
         if self.unit == UnitKind::Depth {
             let follows = self.groups.windows(2).all(|pair| pair[0][1] == pair[1][0]);
             let are_some = self.groups.iter().all(|[first, end]| first < end);

@@ -13,6 +13,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("bricks::pictures_are_those_of_the_data", pictures_of_bricks),
         trial("bricks::merged_groups_are_the_same_bytes", by_depth),
         trial("job::merged_bytes_are_those_of_one_machine", same),
+        trial("job::a_device_that_hangs_ends_with_a_code_of_its_own", hangs),
         trial("job::noise_is_removed_by_the_device_of_the_parts", denoised),
     ]
 }
@@ -50,6 +51,22 @@ fn same(headless: &'static Headless) {
     assert_same(headless, SCENE, " --integrator primary", &layers);
     assert_same(headless, SCENE, " --integrator studio --outline 2 --samples 5", &layers);
     assert_same(headless, SCENE, " --integrator path --samples 9 --tone agx", &layers);
+}
+
+/// A unit that takes minutes stands for a driver that does not answer.
+fn hangs(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.toml"), SCENE).unwrap();
+    let split = "job split a.toml -o job -q --size 3000x3000 --integrator path --samples 4096";
+    succeed(&mut command_on(headless, &folder, split));
+    for _ in 0..3 {
+        let output = command(&folder, "job part job 0 --timeout 2 -q").output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(5), "{said}");
+        let line = "error: unit 0 did not end within 2 s; the device may hang: try again\n";
+        assert!(said.ends_with(line), "{said}");
+        assert!(fs::read_dir(folder.path().join("job/parts")).unwrap().next().is_none());
+    }
 }
 
 fn denoised(headless: &'static Headless) {

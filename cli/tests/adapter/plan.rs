@@ -1,12 +1,14 @@
 //! Tests of plans, measurements and signals on an adapter.
 
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
-use crate::{command, succeed};
+use crate::{command, command_on, succeed};
 use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -18,6 +20,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("plan::shadows_follow_the_choice_of_structure", shadows),
         trial("bench::a_file_is_measured_with_two_structures", bench),
         trial_of_signals("interrupt::tracing_is_stopped", stopped),
+        trial("light::a_time_gives_at_least_one_sample", time),
+        trial_of_signals("light::a_signal_keeps_the_partial_picture_if_asked", signal),
     ]
 }
 
@@ -137,6 +141,74 @@ fn stopped(_: &'static Headless) {
 
 const SCENE: &str = "[film]\nwidth = 64\nheight = 48\n[camera.pinhole]\neye = [0, 1, 6]\nlook_at = [0, 0, 0]\n\
                      [ground]\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
+
+fn folder_of_light() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    folder
+}
+
+/// Reads the number of samples, which is the same in all pixels.
+fn samples(folder: &Path) -> u32 {
+    let bytes = std::fs::read(folder.join("s.npy")).unwrap();
+    let samples: Vec<u32> = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
+    assert!(samples.iter().all(|count| *count == samples[0]));
+    samples[0]
+}
+
+fn time(headless: &'static Headless) {
+    let folder = folder_of_light();
+    let flags = "render scene.toml -o out.png --layer samples=s.npy --time";
+    for (time, most) in [("0.001s --keep-partial", u32::MAX), ("1h --samples 3", 3)] {
+        succeed(&mut command_on(headless, &folder, &format!("{flags} {time}")));
+        assert!((1..=most).contains(&samples(folder.path())), "{time}");
+    }
+    // This time is too short for a sample in every pixel.
+    std::fs::remove_file(folder.path().join("out.png")).unwrap();
+    let flags = "render scene.toml -o out.png --integrator path --size 4000x3000 --time 0.02s";
+    let output = command_on(headless, folder.path(), flags).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let words = "nothing was written; give more time or a smaller --size, or wait for it with --keep-partial\n";
+    assert!(said.starts_with("error: --time: after 0.020 s ") && said.ends_with(words), "{said}");
+    assert!(!folder.path().join("out.png").exists());
+}
+
+fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration) -> Output {
+    let flags = format!("render scene.toml -o out.png --quiet --layer samples=s.npy {flags}");
+    let mut command = command_on(headless, folder, &flags);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(after);
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    child.wait_with_output().unwrap()
+}
+
+fn signal(headless: &'static Headless) {
+    let folder = folder_of_light();
+    let endless = "--integrator path --size 320x240 --samples 10000000";
+    let output = interrupted(folder.path(), headless, endless, Duration::from_secs(1));
+    assert_eq!(output.status.code(), Some(130));
+    assert!(!folder.path().join("out.png").exists());
+    // Nothing can be kept before the device is open, so later signals are tried until a picture is written.
+    for seconds in [1, 2, 4, 8, 16, 32] {
+        let flags = format!("{endless} --keep-partial");
+        let output = interrupted(folder.path(), headless, &flags, Duration::from_secs(seconds));
+        let said = String::from_utf8(output.stderr).unwrap();
+        if output.status.code() == Some(0) {
+            let count = samples(folder.path());
+            // Before every pixel has a sample, the program says that it goes on until then.
+            let last = format!("stopped; the picture has {count} samples per pixel");
+            assert_eq!(said.lines().last(), Some(&*last), "{said}");
+            assert!((1..10_000_000).contains(&count));
+            assert!(image::open(folder.path().join("out.png")).is_ok());
+            return;
+        }
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        assert!(!folder.path().join("out.png").exists());
+    }
+    panic!("whenever it is stopped, nothing is kept");
+}
 
 fn light(_: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();

@@ -13,6 +13,7 @@ use crate::trial;
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("verify::a_recording_of_a_scene_is_legal_again", proved),
+        trial("verify::no_sphere_and_one_pixel", small),
         trial("verify::paths_are_proved", paths),
         trial("verify::studios_are_proved", studio),
         trial("verify::saved_light_is_legal_again", saved_light),
@@ -26,6 +27,7 @@ fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let scene = include_str!("../../../examples/three-spheres.toml");
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    std::fs::write(folder.path().join("none.toml"), "").unwrap();
     folder
 }
 
@@ -81,6 +83,19 @@ fn proved(headless: &'static Headless) {
     let [first, second] = [&first, &second].map(|bytes| run_file::read(bytes).unwrap());
     assert_eq!(second.provenance.structure, "8-wide tree");
     assert!(first.recording == second.recording, "the recordings differ");
+}
+
+fn small(_: &'static Headless) {
+    let folder = folder();
+    for arguments in [
+        "verify none.toml --size 40x30 --save run --report page",
+        "verify scene.toml --size 1x1 --save run --report page",
+        "verify none.toml --size 1x1 --save run --report page",
+    ] {
+        let found = table(&folder, arguments);
+        let again = replayed(&folder, "verify --replay run", 0);
+        assert_eq!(String::from_utf8(again.stdout).unwrap(), found, "{arguments}");
+    }
 }
 
 const PATHS: &str = "integrator = 'path'\n[film]\nwidth = 40\nheight = 30\n[camera.pinhole]\neye = [0, 1, 6]\n\
@@ -147,6 +162,18 @@ fn saved_light(_: &'static Headless) {
         assert!(read("a.json") == read("b.json"), "the documents differ");
         assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
         assert!(page_of(&folder, "page")["pictures"]["light"].is_string());
+        // A byte of a state that is another, and a file that is cut off.
+        let mut bytes = read("run");
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        std::fs::write(folder.path().join("altered"), &bytes).unwrap();
+        std::fs::write(folder.path().join("cut"), &bytes[..middle]).unwrap();
+        for (file, words) in [("altered", "was altered after"), ("cut", "is cut off")] {
+            let output = replayed(&folder, &format!("verify --replay {file} --json c.json"), 1);
+            let stderr = String::from_utf8(output.stderr).unwrap();
+            assert!(stderr.contains(words) && stderr.lines().count() == 1, "{stderr}");
+        }
+        assert!(!folder.path().join("c.json").exists());
     }
     // No temporary file is left behind.
     let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());

@@ -404,6 +404,16 @@ fn a_category_has_the_same_color_in_all_frames() {
 }
 
 #[test]
+fn numbers_have_one_scale_in_all_frames() {
+    // The first and the last frame alone have so few whole numbers that these are categories.
+    let (colors, legends) = colors_of('R', &[&["0", "7"], &["0.5", "3", "0"], &["7"]], "");
+    assert_eq!(colors[0][0], [0x44, 0x01, 0x54]);
+    assert_eq!(colors[0][1], [0xfd, 0xe7, 0x25]);
+    assert_eq!([colors[1][2], colors[2][0]], [colors[0][0], colors[0][1]]);
+    assert!(legends.iter().all(|legend| *legend == legends[0]));
+}
+
+#[test]
 fn what_the_frame_of_the_camera_lacks_has_the_color_of_missing_values() {
     let (colors, legends) = colors_of('S', &[&["b", "a"], &["c", "b"]], "--camera-from 0");
     assert_eq!(colors[1][0], [0x80; 3]);

@@ -241,10 +241,19 @@ fn merged_groups_are_the_same_bytes() {
 }
 
 #[test]
-fn parts_of_groups_of_another_file_are_named() {
+fn missing_damaged_and_foreign_groups_are_named() {
     let folder = bricks();
     split_by_depth(&folder, 4);
+    folder.run("job part job 0-2 -q").succeeded();
+    let merge = || folder.run("job merge job -o merged.png -q");
+    merge().refused(1, "missing 3; render them again with --array=3");
+    folder.run("job part job 3 -q").succeeded();
+    let good = fs::read(part(&folder, 2)).unwrap();
+    fs::write(part(&folder, 2), &good[..good.len() - 9]).unwrap();
+    fs::copy(part(&folder, 0), part(&folder, 1)).unwrap();
+    merge().refused(1, "damaged 2, of another job 1");
     folder.run("job part job 0-3 -q").succeeded();
+    assert_merged(&folder);
     // A part of the same groups of another file.
     let other = Folder::new();
     fs::write(other.path("a.npy"), f32_array(&spheres(4000, [-0.25; 3]))).unwrap();
@@ -252,7 +261,7 @@ fn parts_of_groups_of_another_file_are_named() {
     split_by_depth(&other, 4);
     other.run("job part job 0 -q").succeeded();
     fs::copy(part(&other, 0), part(&folder, 0)).unwrap();
-    folder.refuses("job merge job -o merged.png -q", 1, "of another job 0");
+    merge().refused(1, "of another job 0");
     fs::copy(other.path("a.bricks"), folder.path("a.bricks")).unwrap();
     folder.refuses("job part job 0", 1, "this file has changed since the job was split");
 }

@@ -48,6 +48,7 @@ fn compare(
     let files = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
     let names = files.filter_map(|file| file.to_str()?.strip_suffix(".txt").map(str::to_owned));
     let names: Vec<String> = names.filter(|name| is_about(name)).collect();
+    assert!(!names.is_empty(), "there is nothing to compare");
     let differences: String = std::thread::scope(|scope| {
         let compared = &compared;
         let threads: Vec<_> =

@@ -134,10 +134,11 @@ impl LitRecording {
                     let has_light = match self.given.is_studio() {
                         true => {
                             let [of_lights, of_ambient] = self.given.batches();
-                            are_all(lights, of_lights, pixels)
+                            open.is_empty()
+                                && are_all(lights, of_lights, pixels)
                                 && are_all(ambient, of_ambient, pixels)
                         }
-                        false => open.len() == pixels,
+                        false => open.len() == pixels && lights.is_empty() && ambient.is_empty(),
                     };
                     [hits.len(), states.len()] == [pixels; 2] && has_light
                 };
