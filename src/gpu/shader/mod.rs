@@ -4,6 +4,8 @@
 //! system. The lists are in `shaders/kernels.txt`. The comment at the start of each part lists what it provides and
 //! needs. A test compares the lists with the source, and writes the tables of `shaders/README.md`.
 
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) mod fold;
 pub(super) mod formats;
 mod kernel;
 pub(super) mod layouts;

@@ -28,13 +28,9 @@ pub(in crate::gpu) fn pipeline_with(
     let name = kernel.name();
     let constants = kernel.values_of_constants();
     let create = || {
-        let module = shader_module(
-            device,
-            wgpu::ShaderModuleDescriptor {
-                label: Some(&name),
-                source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
-            },
-        );
+        let (source, constants) = source(kernel, &constants);
+        let label = Some(name.as_str());
+        let module = shader_module(device, wgpu::ShaderModuleDescriptor { label, source });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&name),
             bind_group_layouts: groups,
@@ -45,7 +41,7 @@ pub(in crate::gpu) fn pipeline_with(
             layout: Some(&layout),
             module: &module,
             entry_point: Some(kernel.entry_point),
-            compilation_options: with_constants(&constants),
+            compilation_options: with_constants(constants),
             cache: None,
         })
     };
@@ -56,6 +52,19 @@ pub(in crate::gpu) fn pipeline_with(
         }
         other => other,
     })
+}
+
+/// The source of a kernel as a device takes it, and the constants that it still has to be given. A browser takes WGSL.
+fn source<'a>(
+    kernel: &Kernel,
+    constants: &'a [(&'a str, f64)],
+) -> (wgpu::ShaderSource<'static>, &'a [(&'a str, f64)]) {
+    let source = kernel.source();
+    #[cfg(not(target_arch = "wasm32"))]
+    if let Some(module) = super::fold::folded(&source, kernel.entry_point, constants) {
+        return (wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)), &[]);
+    }
+    (wgpu::ShaderSource::Wgsl(source.into()), constants)
 }
 
 /// The options of a stage whose `override` constants have some values.
