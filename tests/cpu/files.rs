@@ -27,9 +27,12 @@ fn accepted_files() {
 /// Compares a folder of cases with what is found, or writes it.
 fn compare(folder: &str, answer: fn(&Case<'_>) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(folder);
-    for entry in std::fs::read_dir(folder).unwrap() {
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
+    assert!(files.len() >= 8, "only {} files of cases", files.len());
+    for entry in files {
         let file = entry.unwrap().path();
         let text = std::fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+        assert!(text.contains("$ pinhole "), "{} has no cases", file.display());
         let found = answered(&text, answer);
         if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
             std::fs::write(&file, &found).unwrap();

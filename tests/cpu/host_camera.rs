@@ -27,7 +27,11 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
     let mut projection = convention.projection([low.x, high.x, low.y, high.y], range, into);
     let mut view = view(&random_pose(random), into);
     match random.u8(0..7) {
-        change @ 0..3 => view *= changes()[usize::from(change) + 1],
+        change @ 0..3 => {
+            let turn = glam::DQuat::from_rotation_y(0.7);
+            let place = DMat4::from_rotation_translation(turn, DVec3::new(1.0, -2.0, 0.5));
+            view *= place * changes()[usize::from(change) + 1];
+        }
         // A screen that is turned by a quarter.
         3 => projection = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2) * projection,
         // An oblique near plane.

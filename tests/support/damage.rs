@@ -89,7 +89,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
             bytes.splice(at..end, number);
         }
         8 => {
-            drop(bytes.splice(at..at + random.usize(0..2), random.choice(TELLING.iter().copied())))
+            bytes.splice(at..at + random.usize(0..2), random.choice(TELLING.iter().copied()));
         }
         _ => replace_number(bytes, at, random),
     }

@@ -84,7 +84,8 @@ impl RenderPlan {
         device: &DeviceLimits,
         keeps_rays: bool,
     ) -> Self {
-        let PictureRequest { scene, layers, host_bytes_per_pixel, .. } = *request;
+        let PictureRequest { scene, host_bytes_per_pixel, .. } = *request;
+        let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
         let scene_buffers = scene_buffers(scene, &accel);
         let tile_size = tile_size(limits, device.shape(), film, keeps_rays);
@@ -339,7 +340,7 @@ mod tests {
     #[test]
     fn a_recording_keeps_rays_and_hits() {
         let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
-        let recording = planned(1024, LayerSet::DATA, DeviceType::DiscreteGpu, true);
+        let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
         assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
         // Both rays of each pixel, and the read-back buffers of rays and hits.
         assert_eq!(recording.device_bytes, plan.device_bytes + ((64 + 80) << 20));
