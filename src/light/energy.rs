@@ -4,7 +4,9 @@
 //! scattering compensation for microfacet models", 2019. Renderers divide by it, so that a white surface loses no
 //! light. [`Lobe`] defines the samples and the weights.
 
+use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::PI;
+use std::sync::{Mutex, PoisonError};
 
 use glam::DVec3;
 
@@ -76,9 +78,9 @@ pub(crate) struct EnergyTables {
 }
 
 impl EnergyTables {
-    /// Computes the tables for a list of surfaces.
+    /// The tables for a list of surfaces.
     pub(crate) fn of(surfaces: &[SurfaceProperties]) -> Self {
-        let mut indices = std::collections::HashMap::new();
+        let mut indices = HashMap::new();
         let mut lobes: Vec<Lobe> = Vec::new();
         let starts = surfaces.iter().map(|surface| {
             let of_surface = Lobe::of(surface);
@@ -92,8 +94,27 @@ impl EnergyTables {
             })
         });
         let starts = starts.collect();
-        Self { entries: lobes.into_iter().flat_map(albedo_table).collect(), starts }
+        Self { entries: lobes.into_iter().flat_map(remembered_table).collect(), starts }
     }
+}
+
+/// The table of a lobe, computed unless this process remembers it: each picture of a series and its check need it again.
+fn remembered_table(lobe: Lobe) -> Vec<f32> {
+    static TABLES: Mutex<BTreeMap<[u32; 3], Vec<f32>>> = Mutex::new(BTreeMap::new());
+    /// A quarter of a megabyte.
+    const MOST: usize = 256;
+    let tables = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = tables().get(&lobe.bits()).cloned();
+    // The lock is not held meanwhile: a thread that waits for others may take up work that needs a table.
+    known.unwrap_or_else(|| {
+        let table = albedo_table(lobe);
+        let mut tables = tables();
+        if tables.len() >= MOST {
+            tables.clear();
+        }
+        tables.insert(lobe.bits(), table.clone());
+        table
+    })
 }
 
 /// The table of a lobe: E at [`ENTRIES`] cosines, by a quadrature that takes about ten milliseconds.

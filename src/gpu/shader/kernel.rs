@@ -1,5 +1,7 @@
 //! Kernels, whose source is the concatenation of a list of parts.
 
+use std::collections::BTreeSet;
+
 use super::part::{Part, parts};
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
@@ -42,11 +44,11 @@ impl Kernel {
 
     /// The kernel with the values of those of some constants that it declares.
     pub(in crate::gpu) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
-        let is_declared = |(name, _): &Constant| {
-            let declaration = format!("override {name}:");
-            self.parts.iter().any(|part| part.source.contains(&declaration))
-        };
-        let declared: Vec<_> = constants.into_iter().filter(is_declared).collect();
+        let lines = self.parts.iter().flat_map(|part| part.source.lines());
+        let names: BTreeSet<_> = lines
+            .filter_map(|line| Some(line.strip_prefix("override ")?.split_once(':')?.0))
+            .collect();
+        let declared = constants.into_iter().filter(|(name, _)| names.contains(name));
         self.constants.extend(declared);
         self
     }

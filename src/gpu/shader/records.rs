@@ -379,10 +379,11 @@ mod tests {
         ];
         let mut declared = BTreeSet::new();
         for kernel in kernels::all_kernels() {
-            let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
+            let source = kernel.source();
+            let module = naga::front::wgsl::parse_str(&source).unwrap();
             for (name, in_rust) in &records {
                 // A kernel that does not use a record does not declare it.
-                if kernel.source().contains(&format!("struct {name} ")) {
+                if source.contains(&format!("struct {name} ")) {
                     declared.insert(*name);
                     assert_eq!(
                         *in_rust,
