@@ -165,11 +165,9 @@ impl PassNames {
         self.0.iter_mut().for_each(|names| names.push(name));
     }
 
-    /// The name of all passes of the submission.
-    pub(crate) fn of_all(&self) -> Option<&'static str> {
-        let names = self.0.as_ref()?;
-        let first = *names.first()?;
-        Some(if names.iter().all(|name| *name == first) { first } else { "several passes" })
+    /// The name of the pass of the submission: its only one, or the last, before which a short one counts its work.
+    pub(crate) fn of_last(&self) -> Option<&'static str> {
+        self.0.as_ref()?.last().copied()
     }
 }
 

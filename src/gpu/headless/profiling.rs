@@ -25,7 +25,7 @@ impl Headless {
     /// Adds the passes of a submission to the profile, which has just finished. The device may have begun with it at
     /// `began`.
     pub(crate) fn note_passes(&self, names: &PassNames, began: Instant) {
-        if let (Some(profile), Some(name)) = (&self.options.profile, names.of_all()) {
+        if let (Some(profile), Some(name)) = (&self.options.profile, names.of_last()) {
             profile.add_pass(name, began.elapsed());
         }
     }
