@@ -166,7 +166,7 @@ fn random_with_size(width: u32, height: u32) -> View {
 fn more_than_one_slice() -> View {
     let mut spheres = random_spheres(8, 120_000, 0.01);
     spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
-    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), [48, 32])
+    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), [24, 16])
 }
 
 fn random_1000(y_axis: YAxis, lens: Lens) -> View {

@@ -7,6 +7,7 @@ use pinhole::gpu::{
 use pinhole::{RenderSettings, Scene, View};
 use wgpu::TextureFormat::{R32Float, R32Uint, Rgba32Float};
 
+#[derive(Clone)]
 pub(crate) struct Host {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,

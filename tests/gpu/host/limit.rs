@@ -1,17 +1,19 @@
 //! Rays that end at the host's depth give the pictures of those that do not, to the bit.
 
+use std::sync::Arc;
+
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
 use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
-    DepthTest, Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
+    Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 use pinhole::{LinearRgb, Scene};
 use wgpu::TextureFormat;
 
-use super::stage::{FIRST, SIZE, Stage, settings};
+use super::stage::{FIRST, SIZE, Shared, Stage, settings};
 use crate::host_program::{Host, view_of};
 use crate::planted::planted;
 use crate::support::hosts::Convention;
@@ -27,7 +29,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 /// A renderer whose rays end at the host's depth, or do not.
-fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Renderer {
+fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Arc<Shared> {
     let options = RendererOptions {
         data_layers: true,
         cameras: vec![stage.camera.kind()],
@@ -35,7 +37,7 @@ fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Renderer {
         edits: edits.to_vec(),
         ..RendererOptions::default()
     };
-    Renderer::new(&stage.host.device, &options).wait().unwrap()
+    if edits.is_empty() { Shared::with(&options) } else { Arc::new(Shared::new(&options)) }
 }
 
 /// The host's depth, at the first pixel of a picture.
@@ -73,7 +75,7 @@ fn own_depth(stage: &Stage) -> HostPicture {
 /// The bytes of all layers of a picture with the host's depth.
 fn picture(
     stage: &Stage,
-    renderer: &Renderer,
+    Shared { renderer, test }: &Shared,
     scene: &SceneBuffers,
     depth: &HostPicture,
 ) -> [Vec<u8>; 4] {
@@ -82,11 +84,10 @@ fn picture(
     let mut frame =
         layers.with(true, |targets| Frame::new(renderer, device, targets).wait()).unwrap();
     frame.set_view(queue, scene, &stage.view(), &settings()).unwrap();
-    let test = DepthTest::new(renderer, device).wait().unwrap();
-    let mut host_depth = HostDepth::new(&test, device, &view_of(&depth.texture)).wait().unwrap();
+    let mut host_depth = HostDepth::new(test, device, &view_of(&depth.texture)).wait().unwrap();
     host_depth.set_camera(queue, &stage.camera, &frame, depth.first_pixel).unwrap();
     let mut encoder = stage.host.encoder();
-    renderer.record_with_depth(&mut encoder, scene, &frame, &test, &host_depth).unwrap();
+    renderer.record_with_depth(&mut encoder, scene, &frame, test, &host_depth).unwrap();
     stage.host.submit(encoder);
     layers.all().map(|layer| stage.host.read(layer))
 }
@@ -137,7 +138,7 @@ fn different(stage: &Stage, seed: u64, edits: &[ShaderEdit]) -> usize {
         (random_spheres(30_000, seed), AccelChoice::Auto),
     ] {
         let [a, b] =
-            [&without, &with].map(|renderer| scene(stage, renderer, spheres.clone(), choice));
+            [&without, &with].map(|shared| scene(stage, &shared.renderer, spheres.clone(), choice));
         for depth in &depths {
             let (a, b) = (picture(stage, &without, &a, depth), picture(stage, &with, &b, depth));
             let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&a[3]);
@@ -183,7 +184,8 @@ fn near(_: &'static Headless) {
     for stage in stages() {
         let fault = planted("limit").find(|fault| fault.name == "misses_not_hidden").unwrap();
         let renderer = renderer(&stage, true, &[fault.edit]);
-        let scene = scene(&stage, &renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
+        let scene =
+            scene(&stage, &renderer.renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
         let [_, limits, _, ids] = picture(&stage, &renderer, &scene, &own_depth(&stage));
         let limits: Vec<f32> = bytemuck::pod_collect_to_vec(&limits);
         let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&ids);

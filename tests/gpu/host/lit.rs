@@ -153,10 +153,13 @@ fn budgets(headless: &'static Headless) {
 }
 
 fn every_scene(headless: &'static Headless) {
+    // All have the same film.
+    let show = Show::of(&named("path_glass", 3));
     for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = 3;
         view.settings.is_transparent = true;
-        let (show, scene, mut picture) = Show::ready(&view);
+        let scene = show.scene(&view.scene);
+        let mut picture = show.picture(&scene, &view).unwrap();
         show.finish(&mut picture, &scene, u64::MAX);
         show.assert_shows(&view.picture(headless, LAYERS), &name);
     }

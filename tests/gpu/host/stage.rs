@@ -1,5 +1,7 @@
 //! A host program with a camera, attachments and spheres, and what its picture must be, in f64.
 
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, HostCamera, Pose};
 use pinhole::glam::{DMat4, DVec2, DVec3};
@@ -10,7 +12,7 @@ use pinhole::gpu::{
 use pinhole::{LinearRgb, RenderSettings, Scene, Shading, Sphere};
 use wgpu::TextureFormat;
 
-use crate::host_program::{Drawing, Host, Layers, view_of};
+use crate::host_program::{Host, Layers, view_of};
 use crate::support::hosts::{Convention, view};
 use crate::support::shaded;
 
@@ -27,10 +29,39 @@ pub(super) struct Stage {
     /// From world space to clip space.
     pub(super) to_clip: DMat4,
     pub(super) spheres: Vec<Sphere>,
-    renderer: Renderer,
+    shared: Arc<Shared>,
     scene: SceneBuffers,
     pub(super) frame: Frame,
     pub(super) layers: Layers,
+}
+
+/// The host of all stages, which are drawn one after the other.
+static HOST: LazyLock<Host> = LazyLock::new(Host::new);
+
+/// A renderer and its test of the host's depth, which stages with the same options share.
+pub(super) struct Shared {
+    pub(super) renderer: Renderer,
+    pub(super) test: DepthTest,
+}
+
+impl Shared {
+    pub(super) fn new(options: &RendererOptions) -> Self {
+        let renderer = Renderer::new(&HOST.device, options).wait().unwrap();
+        let test = DepthTest::new(&renderer, &HOST.device).wait().unwrap();
+        Self { renderer, test }
+    }
+
+    /// With options that some stage may have had before.
+    pub(super) fn with(options: &RendererOptions) -> Arc<Self> {
+        static ALL: Mutex<Vec<(RendererOptions, Arc<Shared>)>> = Mutex::new(Vec::new());
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = all.iter().find(|(of, _)| of == options) {
+            return Arc::clone(known);
+        }
+        let new = Arc::new(Self::new(options));
+        all.push((options.clone(), Arc::clone(&new)));
+        new
+    }
 }
 
 /// The point of a sphere that a pixel shows.
@@ -84,20 +115,24 @@ impl Stage {
     }
 
     fn with(convention: Convention, projection: DMat4, to_view: DMat4) -> Self {
-        let host = Host::new();
+        let host = HOST.clone();
         let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
         let spheres = random_spheres();
         let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-        let drawing = Drawing::new(&host, &options, SIZE);
-        let scene = drawing.scene(&host, &Scene::new(&spheres).unwrap());
-        let Drawing { renderer, layers, frame } = drawing;
+        let shared = Shared::with(&options);
+        let (renderer, Host { device, queue }) = (&shared.renderer, &host);
+        let of_spheres = Scene::new(&spheres).unwrap();
+        let scene = SceneBuffers::new(renderer, device, queue, &of_spheres).wait().unwrap();
+        let layers = host.layers(SIZE, options.color.texture_format());
+        let frame =
+            layers.with(true, |targets| Frame::new(renderer, device, targets).wait()).unwrap();
         let mut stage = Self {
             host,
             convention,
             camera,
             to_clip: projection * to_view,
             spheres,
-            renderer,
+            shared,
             scene,
             frame,
             layers,
@@ -170,7 +205,7 @@ impl Stage {
 
     /// Records the spheres.
     pub(super) fn trace(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.renderer.record(encoder, &self.scene, &self.frame).unwrap();
+        self.shared.renderer.record(encoder, &self.scene, &self.frame).unwrap();
     }
 
     /// Records the spheres that the depth texture does not hide.
@@ -181,14 +216,13 @@ impl Stage {
         first_pixel: [u32; 2],
     ) {
         let Host { device, queue } = &self.host;
-        let test = DepthTest::new(&self.renderer, device).wait().unwrap();
-        let mut depth = HostDepth::new(&test, device, depth).wait().unwrap();
-        let missing =
-            self.renderer.record_with_depth(encoder, &self.scene, &self.frame, &test, &depth);
+        let Shared { renderer, test } = &*self.shared;
+        let mut depth = HostDepth::new(test, device, depth).wait().unwrap();
+        let missing = renderer.record_with_depth(encoder, &self.scene, &self.frame, test, &depth);
         assert_eq!(missing, Err(pinhole::gpu::GpuError::NoView));
         depth.set_camera(queue, &self.camera, &self.frame, first_pixel).unwrap();
         assert!(depth.set_camera(queue, &self.camera, &self.frame, [20, 0]).is_err());
-        self.renderer.record_with_depth(encoder, &self.scene, &self.frame, &test, &depth).unwrap();
+        renderer.record_with_depth(encoder, &self.scene, &self.frame, test, &depth).unwrap();
     }
 
     /// The depth to which the host clears.

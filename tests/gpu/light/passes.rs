@@ -74,7 +74,10 @@ fn one_pass(headless: &'static Headless) {
                 occlusion.samples = 5;
             }
         }
-        for (index, settings) in [&view.settings, &sharp, &caught].into_iter().enumerate() {
+        // Only a studio has others.
+        let mut all = vec![&view.settings, &sharp, &caught];
+        all.dedup();
+        for (index, settings) in all.into_iter().enumerate() {
             let [one, several] = [headless, &several].map(|device| {
                 device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).wait().unwrap()
             });
