@@ -117,7 +117,7 @@ fn quieten_lost_devices() {
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the layer reads nothing but the environment")]
 fn quieten_device_select() {
-    let is_set = |name| std::env::var_os(name).is_some();
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if !is_set("XDG_RUNTIME_DIR") && !is_set("MESA_VK_DEVICE_SELECT") {
         // SAFETY: this is the first thing that `main` does, so there is no other thread yet.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
