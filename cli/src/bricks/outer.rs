@@ -250,8 +250,7 @@ mod tests {
             [(&cube, 3000), (&radii, 6000), (&ball, 9000), (&lattice, 8), (&flat, 1000)];
         for (kind, (sphere, most)) in kinds.into_iter().enumerate() {
             let all: Vec<[f32; 4]> = (0..20_000).map(sphere).collect();
-            // One of them with small cells, which take seconds.
-            let outer = outer_of(&all, if kind == 1 { MANY } else { 0 });
+            let outer = outer_of(&all, if kind == 1 { MANY } else { 0 }); // Small cells take seconds.
             assert!(outer.len() <= most, "{kind}: {}", outer.len());
             let scene = Scene::from_f32(all, LinearRgb::WHITE).unwrap();
             let kept = Scene::from_f32(outer, LinearRgb::WHITE).unwrap();
