@@ -156,18 +156,13 @@ impl Drop for ProfilePhase {
     }
 }
 
-/// The names of the passes of a submission, which are noted only for a profile.
-#[derive(Debug, Default)]
-pub(crate) struct PassNames(pub(crate) Option<Vec<&'static str>>);
+/// The name of the pass of a submission: of its only one, or of the last, before which a short one counts its work.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NotedPass(pub(crate) Option<&'static str>);
 
-impl PassNames {
+impl NotedPass {
     pub(crate) fn note(&mut self, name: &'static str) {
-        self.0.iter_mut().for_each(|names| names.push(name));
-    }
-
-    /// The name of the pass of the submission: its only one, or the last, before which a short one counts its work.
-    pub(crate) fn of_last(&self) -> Option<&'static str> {
-        self.0.as_ref()?.last().copied()
+        self.0 = Some(name);
     }
 }
 

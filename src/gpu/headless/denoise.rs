@@ -8,6 +8,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
@@ -103,15 +104,15 @@ impl Headless {
         });
         checks.passed().await?;
         drop(phase);
-        let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+        let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
         for group in &passes {
-            let mut pass = begin_pass(&mut encoder, &mut names, "denoise");
+            let mut pass = begin_pass(&mut encoder, &mut noted, "denoise");
             pass.set_pipeline(&filter);
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
         }
         back.record_copy(&mut encoder, &result);
-        self.run_timed(encoder, names, &[&back.buffer]).await?;
+        self.run_timed(encoder, noted, &[&back.buffer]).await?;
         back.read(|lights: &[[f32; 4]]| lights.to_vec())
     }
 }

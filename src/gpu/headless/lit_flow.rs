@@ -10,7 +10,7 @@ use crate::gpu::passes::lit::{
     RecordedBy, Recorder, Round, Step,
 };
 use crate::gpu::passes::tiles::{Groups, Tile};
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
@@ -71,7 +71,7 @@ struct Submitted {
     index: SubmissionIndex,
     at: Instant,
     groups: u64,
-    names: PassNames,
+    noted: NotedPass,
 }
 
 impl<'a> Flow<'a> {
@@ -81,8 +81,7 @@ impl<'a> Flow<'a> {
         passes: &'a LitPasses,
         scene: &'a SceneBuffers,
     ) -> Self {
-        let mut recorder = Recorder::new(frame, &passes.advance, headless.options.indirect, 0);
-        recorder.replace_names(headless.pass_names());
+        let recorder = Recorder::new(frame, &passes.advance, headless.options.indirect, 0);
         Self {
             headless,
             frame,
@@ -183,14 +182,14 @@ impl<'a> Flow<'a> {
         };
         let queue = self.headless.queue();
         self.frame.queue_parameters(queue, 0, &self.recorder.take_parameters());
-        let names = self.recorder.replace_names(self.headless.pass_names());
+        let noted = self.recorder.take_noted();
         let at = Instant::now();
         let index = self.headless.start(encoder);
         for (tile, samples) in self.accumulated.drain(..) {
             self.samples[tile] = samples;
         }
         let groups = std::mem::take(&mut self.gathered);
-        let before = self.submitted.replace(Submitted { index, at, groups, names });
+        let before = self.submitted.replace(Submitted { index, at, groups, noted });
         self.wait_for(before).await?;
         after()
     }
@@ -210,7 +209,7 @@ impl<'a> Flow<'a> {
         self.encoder = None;
         self.accumulated.clear();
         self.recorder.take_parameters();
-        self.recorder.replace_names(self.headless.pass_names());
+        self.recorder.take_noted();
         let last = self.submitted.take();
         self.wait_for(last).await
     }
@@ -224,14 +223,14 @@ impl<'a> Flow<'a> {
     }
 
     async fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
-        let Some(Submitted { index, at, groups, names }) = submitted else {
+        let Some(Submitted { index, at, groups, noted }) = submitted else {
             return Ok(());
         };
         self.headless.wait(&[], index).await?;
         // The device began this work when it was submitted, or when the previous submission had finished.
         let began = at.max(self.last_done);
         let elapsed = began.elapsed();
-        self.headless.note_passes(&names, began);
+        self.headless.note_pass(noted, began);
         self.last_done = Instant::now();
         let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
         self.scene.adapt_submission_size(Groups { first: [0, 0], size }, elapsed);

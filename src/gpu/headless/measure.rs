@@ -13,7 +13,7 @@ use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::{Groups, tiles};
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::buffer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::PrimarySettings;
@@ -136,7 +136,7 @@ impl Headless {
                         stamps.iter().for_each(|stamps| stamps.record_copy(&mut encoder));
                         let mapped: Vec<_> =
                             stamps.iter().map(|stamps| &stamps.readable.buffer).collect();
-                        let unnoted = PassNames::default();
+                        let unnoted = NotedPass::default();
                         let elapsed =
                             self.submit_slice(encoder, unnoted, groups, scene, &mapped).await?;
                         time.pixels += groups.pixels();

@@ -20,6 +20,7 @@ use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::gpu::passes::visible_bricks::{VisibleBricks, space_of};
+use crate::gpu::profile::NotedPass;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, UploadedBricks};
@@ -163,25 +164,25 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(queue, part.slot, groups.first);
-                    let (mut encoder, mut names) = (self.encoder(), self.pass_names());
-                    let mut pass = begin_pass(&mut encoder, &mut names, "trace");
+                    let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                    let mut pass = begin_pass(&mut encoder, &mut noted, "trace");
                     let slice = BandBrick { groups, brick: 0, ..*part };
                     renderer.record_trace(&mut pass, &scene, &frame, slice)?;
                     drop(pass);
-                    self.submit_slice(encoder, names, groups, &scene, &[]).await?;
+                    self.submit_slice(encoder, noted, groups, &scene, &[]).await?;
                     done.add(groups, watch)?;
                 }
                 // What a later brick hides will be shaded again.
-                let (mut encoder, mut names) = (self.encoder(), self.pass_names());
-                let mut pass = begin_pass(&mut encoder, &mut names, "shade");
+                let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
                 renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
                 drop(pass);
                 if number + 1 == parts.len() {
-                    self.run_timed(encoder, names, &[]).await?;
+                    self.run_timed(encoder, noted, &[]).await?;
                     break;
                 }
                 seen_buffer.record_copy(&mut encoder, frame.traced().0);
-                self.run_timed(encoder, names, &[&seen_buffer.buffer]).await?;
+                self.run_timed(encoder, noted, &[&seen_buffer.buffer]).await?;
                 seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
             }
             if let (Some(traced), Some(first)) = (&mut traced, parts.first()) {

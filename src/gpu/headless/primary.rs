@@ -15,7 +15,7 @@ use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_bricks::traced_pixels;
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::image::{Image, LayerSet};
@@ -102,7 +102,7 @@ impl Headless {
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, primary);
-            let (mut encoder, mut names) = (self.encoder(), self.pass_names());
+            let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
             if renderer.keeps_rays {
                 // Pixels that are not traced are recognised by their cleared rays.
                 frame.record_clear(&mut encoder);
@@ -112,7 +112,7 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.slot, groups.first);
-                    let mut pass = begin_pass(&mut encoder, &mut names, "trace");
+                    let mut pass = begin_pass(&mut encoder, &mut noted, "trace");
                     let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
@@ -121,12 +121,12 @@ impl Headless {
                         unfinished = groups;
                         break;
                     }
-                    self.submit_slice(encoder, names, groups, scene, &[]).await?;
+                    self.submit_slice(encoder, noted, groups, scene, &[]).await?;
                     done.add(groups, watch)?;
-                    (encoder, names) = (self.encoder(), self.pass_names());
+                    (encoder, noted) = (self.encoder(), NotedPass::default());
                 }
                 if part.is_last_of_band {
-                    let mut pass = begin_pass(&mut encoder, &mut names, "shade");
+                    let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
                     renderer.record_shade(&mut pass, scene, &frame, part.band)?;
                 }
             }
@@ -135,7 +135,7 @@ impl Headless {
                 traced.record_copy(&mut encoder, &frame);
                 mapped.extend(traced.buffers());
             }
-            self.submit_slice(encoder, names, unfinished, scene, &mapped).await?;
+            self.submit_slice(encoder, noted, unfinished, scene, &mapped).await?;
             let _phase = self.phase("read back");
             textures.read_into(output.image, tile, &derived)?;
             if let (Some(traced), Some(pixels)) = (&traced, &mut output.pixels) {
@@ -150,9 +150,9 @@ impl Headless {
 /// Begins a compute pass, and notes its name.
 pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    names: &mut PassNames,
+    noted: &mut NotedPass,
     name: &'static str,
 ) -> wgpu::ComputePass<'a> {
-    names.note(name);
+    noted.note(name);
     encoder.begin_compute_pass(&ComputePassDescriptor::default())
 }

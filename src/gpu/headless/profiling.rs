@@ -1,4 +1,4 @@
-//! What a device notes for its profile, and submissions whose passes it notes.
+//! What a device notes for its profile, and submissions whose pass it notes.
 
 use std::time::Duration;
 
@@ -8,24 +8,19 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::tiles::Groups;
-use crate::gpu::profile::{PassNames, ProfilePhase};
+use crate::gpu::profile::{NotedPass, ProfilePhase};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 impl Headless {
-    /// What notes the passes of one submission.
-    pub(crate) fn pass_names(&self) -> PassNames {
-        PassNames(self.options.profile.as_ref().map(|_| Vec::new()))
-    }
-
     /// Whether every pass is submitted by itself, so that the host's clock can measure it for a profile.
     pub(crate) fn submits_one_by_one(&self) -> bool {
         self.options.profile.is_some()
     }
 
-    /// Adds the passes of a submission to the profile, which has just finished. The device may have begun with it at
+    /// Adds the pass of a submission to the profile, which has just finished. The device may have begun with it at
     /// `began`.
-    pub(crate) fn note_passes(&self, names: &PassNames, began: Instant) {
-        if let (Some(profile), Some(name)) = (&self.options.profile, names.of_last()) {
+    pub(crate) fn note_pass(&self, noted: NotedPass, began: Instant) {
+        if let (Some(profile), Some(name)) = (&self.options.profile, noted.0) {
             profile.add_pass(name, began.elapsed());
         }
     }
@@ -40,28 +35,28 @@ impl Headless {
     pub(crate) async fn submit_slice(
         &self,
         encoder: CommandEncoder,
-        names: PassNames,
+        noted: NotedPass,
         groups: Groups,
         scene: &SceneBuffers,
         mapped: &[&wgpu::Buffer],
     ) -> Result<Duration, GpuError> {
         let started = Instant::now();
-        self.run_timed(encoder, names, mapped).await?;
+        self.run_timed(encoder, noted, mapped).await?;
         let elapsed = started.elapsed();
         scene.adapt_submission_size(groups, elapsed);
         Ok(elapsed)
     }
 
-    /// Submits an encoder like [`Headless::run`], and adds its passes to the profile.
+    /// Submits an encoder like [`Headless::run`], and adds its pass to the profile.
     pub(crate) async fn run_timed(
         &self,
         encoder: CommandEncoder,
-        names: PassNames,
+        noted: NotedPass,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
         let submitted = Instant::now();
         self.run(encoder, mapped).await?;
-        self.note_passes(&names, submitted);
+        self.note_pass(noted, submitted);
         Ok(())
     }
 }

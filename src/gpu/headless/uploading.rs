@@ -10,6 +10,7 @@ use crate::gpu::headless::progress::{UploadProgress, UploadStep, UploadWatch, go
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::Make;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -138,10 +139,10 @@ impl Headless {
             let work = async |_: &mut Renderers| {
                 let recolor = self.recolor.of((), Recolor::new(&self.device)).await?;
                 let make = Make { device: &self.device, queue: &self.queue };
-                let (mut encoder, mut names) = (self.encoder(), self.pass_names());
-                let recorded = (&mut encoder, &mut names);
+                let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                let recorded = (&mut encoder, &mut noted);
                 recolor.record_noted(make, recorded, buffers, scene, update).await?;
-                self.run_timed(encoder, names, &[]).await
+                self.run_timed(encoder, noted, &[]).await
             };
             return self.alone(work).await;
         }

@@ -5,7 +5,7 @@ use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipelin
 
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::{Make, numbered_group};
 use crate::gpu::scene::appearance::color_words;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
@@ -73,15 +73,15 @@ impl Recolor {
         scene: &Scene,
         update: &SceneUpdate<'_>,
     ) -> Result<(), GpuError> {
-        let (make, names) = (Make { device, queue }, &mut PassNames::default());
-        self.record_noted(make, (encoder, names), buffers, scene, update).await
+        let (make, noted) = (Make { device, queue }, &mut NotedPass::default());
+        self.record_noted(make, (encoder, noted), buffers, scene, update).await
     }
 
-    /// Records the new colours like [`Recolor::record`], and notes the names of the passes.
+    /// Records the new colours like [`Recolor::record`], and notes the pass.
     pub(crate) async fn record_noted(
         &self,
         make: Make<'_>,
-        (encoder, names): (&mut CommandEncoder, &mut PassNames),
+        (encoder, noted): (&mut CommandEncoder, &mut NotedPass),
         buffers: &mut SceneBuffers,
         scene: &Scene,
         update: &SceneUpdate<'_>,
@@ -97,7 +97,7 @@ impl Recolor {
             let ids = first..range.end.min(first.saturating_add(max_count));
             let words = color_words(scene.appearance().colors(), ids);
             checks.create(make.device, || {
-                self.record_range(make, (encoder, names), buffers, first, &words);
+                self.record_range(make, (encoder, noted), buffers, first, &words);
             });
         }
         checks.passed().await?;
@@ -108,7 +108,7 @@ impl Recolor {
     fn record_range(
         &self,
         make: Make<'_>,
-        (encoder, names): (&mut CommandEncoder, &mut PassNames),
+        (encoder, noted): (&mut CommandEncoder, &mut NotedPass),
         buffers: &SceneBuffers,
         first: u32,
         words: &[u32],
@@ -122,7 +122,7 @@ impl Recolor {
             let range = make.filled(label, bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
             let bound = [&range, &new_words, ids, appearances].map(Buffer::as_entire_binding);
             let group = numbered_group(make.device, label, &self.layout, bound);
-            names.note("recolor");
+            noted.note("recolor");
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some(label),
                 timestamp_writes: None,

@@ -16,7 +16,7 @@ use crate::gpu::passes::lit::records::{
     DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD,
 };
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::shader::{pipeline, records};
 
@@ -171,9 +171,9 @@ impl Pass {
         encoder: &mut CommandEncoder,
         bound: Bound<'_>,
         extent: Extent<'_>,
-        names: &mut PassNames,
+        noted: &mut NotedPass,
     ) {
-        names.note(self.name);
+        noted.note(self.name);
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,

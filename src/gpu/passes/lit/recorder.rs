@@ -7,7 +7,7 @@ use crate::gpu::passes::lit::passes::{Bound, Extent, Pass};
 use crate::gpu::passes::lit::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
 use crate::gpu::passes::lit::round::{Step, Work};
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
-use crate::gpu::profile::PassNames;
+use crate::gpu::profile::NotedPass;
 
 /// Number of paths that a workgroup processes.
 const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
@@ -25,7 +25,7 @@ pub(crate) struct Recorder<'a> {
     /// Whether indirect dispatches are used.
     is_indirect: bool,
     parameters: Vec<DispatchParameters>,
-    names: PassNames,
+    noted: NotedPass,
 }
 
 impl<'a> Recorder<'a> {
@@ -36,8 +36,8 @@ impl<'a> Recorder<'a> {
         is_indirect: bool,
         place: usize,
     ) -> Self {
-        let (parameters, names) = (Vec::new(), PassNames::default());
-        Self { frame, tile: 0, place, advance, is_indirect, parameters, names }
+        let (parameters, noted) = (Vec::new(), NotedPass::default());
+        Self { frame, tile: 0, place, advance, is_indirect, parameters, noted }
     }
 
     /// Number of dispatches since the last call of [`Recorder::take_parameters`].
@@ -50,9 +50,9 @@ impl<'a> Recorder<'a> {
         std::mem::take(&mut self.parameters)
     }
 
-    /// Notes the dispatches of the next submission in `names`, and returns what was noted of the last one.
-    pub(crate) fn replace_names(&mut self, names: PassNames) -> PassNames {
-        std::mem::replace(&mut self.names, names)
+    /// Returns the name of the recorded pass, and starts a new submission.
+    pub(crate) fn take_noted(&mut self) -> NotedPass {
+        std::mem::take(&mut self.noted)
     }
 
     /// The maximum number of workgroups of a dispatch, in each of its [`Step::layers`].
@@ -180,7 +180,7 @@ impl<'a> Recorder<'a> {
         self.parameters.push(dispatch);
         let lighting = &self.frame.lit.group;
         let bound = Bound { frame: group, dispatch: offset, brick, lighting, last };
-        pass.record(encoder, bound, extent, &mut self.names);
+        pass.record(encoder, bound, extent, &mut self.noted);
     }
 }
 
