@@ -154,7 +154,7 @@ fn treated_as(device_type: DeviceType) -> Headless {
 
 /// However a device is opened, it makes the same pictures.
 fn opened_otherwise(headless: &'static Headless) {
-    let mut types = vec![DeviceType::Cpu, DeviceType::DiscreteGpu];
+    let mut types = vec![DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::DiscreteGpu];
     types.retain(|kind| *kind != headless.adapter_info().device_type);
     let treated = types.into_iter().map(|kind| (format!("{kind:?}"), treated_as(kind)));
     let mut others: Vec<_> = treated.collect();

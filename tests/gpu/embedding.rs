@@ -134,9 +134,7 @@ fn several_views(_: &'static Headless) {
     let mut encoder = host.encoder();
     let textures = views.each_ref().map(|view| {
         let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
-        let frame =
-            layers.with(false, |targets| Frame::new(&renderer, &host.device, targets).wait());
-        let mut frame = frame.unwrap();
+        let mut frame = layers.frame(&renderer, &host.device, false);
         frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
         renderer.record(&mut encoder, &scene, &frame).unwrap();
         layers.color
@@ -373,8 +371,7 @@ fn pieces(_: &'static Headless) {
     let mut renderer = Renderer::begin(device, &RendererOptions::default());
     let scene = SceneBuffers::new(&renderer, device, queue, &view.scene).wait().unwrap();
     let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
-    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets).wait());
-    let mut frame = frame.unwrap();
+    let mut frame = layers.frame(&renderer, device, false);
     frame.set_view(queue, &scene, &view.seen(), &view.settings).unwrap();
     let mut encoder = host.encoder();
     let mut refused = 0;

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::gpu::{
-    ColorTarget, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
+    ColorTarget, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View};
@@ -116,8 +116,7 @@ fn survives(headless: &'static Headless) {
     let mut buffers = SceneBuffers::new(&renderer, device, queue, &scene).wait().unwrap();
     let host = Host { device: device.clone(), queue: queue.clone() };
     let layers = host.layers([40, 40], options.color.texture_format());
-    let frame = layers.with(false, |targets| Frame::new(&renderer, device, targets).wait());
-    let mut frame = frame.unwrap();
+    let mut frame = layers.frame(&renderer, device, false);
     let camera = camera();
     let view = View::new(&camera, Film::new(40, 40).unwrap());
     let settings = RenderSettings::default();

@@ -160,6 +160,16 @@ impl Layers {
         let data = DataTargets { depth: &depth, normal: &normal, id: &id };
         then(&Targets { color: &color, data: has_data.then_some(data) })
     }
+
+    /// A frame in these textures.
+    pub(crate) fn frame(
+        &self,
+        renderer: &Renderer,
+        device: &wgpu::Device,
+        has_data: bool,
+    ) -> Frame {
+        self.with(has_data, |targets| Frame::new(renderer, device, targets).wait().unwrap())
+    }
 }
 
 /// A renderer of a program, and a frame in its textures.
@@ -181,9 +191,7 @@ impl Drawing {
         size: [u32; 2],
     ) -> Self {
         let layers = host.layers(size, options.color.texture_format());
-        let frame = layers.with(options.data_layers, |targets| {
-            Frame::new(&renderer, &host.device, targets).wait().unwrap()
-        });
+        let frame = layers.frame(&renderer, &host.device, options.data_layers);
         Self { renderer, layers, frame }
     }
 

@@ -6,9 +6,7 @@ use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
 use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
-use pinhole::gpu::{
-    Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
-};
+use pinhole::gpu::{Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, Wait, wgpu};
 use pinhole::internals::ShaderEdit;
 use pinhole::{LinearRgb, Scene};
 use wgpu::TextureFormat;
@@ -81,8 +79,7 @@ fn picture(
 ) -> [Vec<u8>; 4] {
     let Host { device, queue } = &stage.host;
     let layers = stage.host.layers(SIZE, TextureFormat::Rgba8Unorm);
-    let mut frame =
-        layers.with(true, |targets| Frame::new(renderer, device, targets).wait()).unwrap();
+    let mut frame = layers.frame(renderer, device, true);
     frame.set_view(queue, scene, &stage.view(), &settings()).unwrap();
     let mut host_depth = HostDepth::new(test, device, &view_of(&depth.texture)).wait().unwrap();
     host_depth.set_camera(queue, &stage.camera, &frame, depth.first_pixel).unwrap();

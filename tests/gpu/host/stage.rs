@@ -35,7 +35,7 @@ pub(super) struct Stage {
     pub(super) layers: Layers,
 }
 
-/// The host of all stages, which are drawn one after the other.
+/// The host of all stages.
 static HOST: LazyLock<Host> = LazyLock::new(Host::new);
 
 /// A renderer and its test of the host's depth, which stages with the same options share.
@@ -124,8 +124,7 @@ impl Stage {
         let of_spheres = Scene::new(&spheres).unwrap();
         let scene = SceneBuffers::new(renderer, device, queue, &of_spheres).wait().unwrap();
         let layers = host.layers(SIZE, options.color.texture_format());
-        let frame =
-            layers.with(true, |targets| Frame::new(renderer, device, targets).wait()).unwrap();
+        let frame = layers.frame(renderer, device, true);
         let mut stage = Self {
             host,
             convention,
