@@ -305,10 +305,10 @@ fn margins() {
     println!("{:<35}{}", "all", sums.map(|sum| format!("{sum:>9}")).concat());
 }
 
-type Named = (&'static str, Scene);
+type NamedScene = (&'static str, Scene);
 
 /// The scenes of a round; each round has random numbers of its own.
-fn campaign_scenes(round: u64) -> Vec<Named> {
+fn campaign_scenes(round: u64) -> Vec<NamedScene> {
     let seed = 7 + 100 * round;
     let made = |kind: Kind, count| kind.spheres(count, seed).unwrap();
     let offset = |spheres: Vec<[f32; 4]>| {

@@ -4,7 +4,7 @@
 
 use std::io::Write as _;
 
-use pinhole::load::{self, Column, ColumnValues, LoadErrorKind, Loaded, Options, Trajectory};
+use pinhole::load::{self, Column, ColumnValues, Dataset, LoadErrorKind, Options, Trajectory};
 use pinhole::{LinearRgb, SphereArray};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn print(out: &mut impl std::io::Write, index: usize, frame: &Loaded) -> std::io::Result<()> {
+fn print(out: &mut impl std::io::Write, index: usize, frame: &Dataset) -> std::io::Result<()> {
     writeln!(out, "frame\t{index}\t{}", frame.spheres.len())?;
     for edge in frame.cell.iter().flatten() {
         writeln!(out, "cell\t{}\t{}\t{}", edge[0], edge[1], edge[2])?;

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory};
 
-use super::device::Opened;
+use super::device::OpenDevice;
 use super::failure::Failure;
 use super::input::Input;
 use super::render_args::RenderLine;
@@ -138,7 +138,7 @@ pub(super) fn judge(
     let is_png = matches!(written.samples, FileSamples::Encoded { .. });
     let per_pixel = written.per_pixel;
     let reference = other_estimate(input, per_pixel, |input| {
-        let image = render::render(input, layers, &Opened::Cpu)?;
+        let image = render::render(input, layers, &OpenDevice::Cpu)?;
         Ok(FilePicture::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
     })?;
     let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
@@ -159,7 +159,7 @@ pub(super) fn means_of_light(
     let per_pixel = image.samples().and_then(|samples| samples.first().copied()).unwrap_or(1);
     let reference = other_estimate(input, per_pixel, |input| {
         let film = input.film;
-        Ok(colors(&render::render_part(input, film, layers, &Opened::Cpu)?[0]))
+        Ok(colors(&render::render_part(input, film, layers, &OpenDevice::Cpu)?[0]))
     })?;
     means(input, (per_pixel, 0), &colors(image), &reference)
 }

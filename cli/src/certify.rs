@@ -235,7 +235,7 @@ pub(crate) struct Report {
     decided_fraction: f64,
     largest: Option<f64>,
     histogram: Vec<Bin>,
-    worst: Vec<Listed>,
+    worst: Vec<PixelReport>,
     outcome: &'static str,
     command: String,
     #[serde(skip)]
@@ -258,7 +258,7 @@ struct Bin {
 
 /// A pixel with its message.
 #[derive(Serialize)]
-struct Listed {
+struct PixelReport {
     pixel: [u32; 2],
     id: Option<u32>,
     depth: Option<f64>,
@@ -276,7 +276,7 @@ fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-impl From<&Finding> for Listed {
+impl From<&Finding> for PixelReport {
     fn from(finding: &Finding) -> Self {
         let id = Some(finding.id).filter(|id| *id != NO_ID);
         Self {
@@ -327,7 +327,7 @@ impl Report {
                 .into_iter()
                 .map(|(up_to, count)| Bin { up_to: finite(up_to), count })
                 .collect(),
-            worst: found.worst.iter().map(Listed::from).collect(),
+            worst: found.worst.iter().map(PixelReport::from).collect(),
             outcome: found.outcome().name(),
             command: command_line(),
             table: table(found),

@@ -10,7 +10,7 @@ use crate::memory;
 use crate::read_file::read as read_bytes;
 use pinhole::LinearRgb;
 use pinhole::load::{
-    FORMATS, Format, LoadError, LoadErrorKind, Loaded, Options, Place, Trajectory,
+    Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
 };
 
 /// The options for a data file, from flags or from a scene file.
@@ -77,7 +77,7 @@ impl DataOptions {
 
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
-pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
+pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
     let mut loaded = if format.has_frames() && path.is_file() {
         read_frame(path, format, options)?
     } else {
@@ -87,7 +87,7 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     Ok(loaded)
 }
 
-fn complete_notes(loaded: &mut Loaded, path: &Path, options: &DataOptions) {
+fn complete_notes(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
     if options.color.is_some() && loaded.colors.is_some() {
         loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
     }
@@ -101,7 +101,7 @@ pub(super) fn read_frame_of(
     path: &Path,
     file: &mut Trajectory,
     options: &DataOptions,
-) -> Result<Loaded> {
+) -> Result<Dataset> {
     let frame = options.frame.unwrap_or_default();
     check_frame(path, file, frame)?;
     let mut loaded = file.frame(frame).map_err(|error| named(path, error))?;
@@ -110,7 +110,7 @@ pub(super) fn read_frame_of(
 }
 
 /// Reads the frame that is asked for, if there is memory for it.
-fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
+fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
     let frame = options.frame.unwrap_or_default();
     let options = options.to_read().with_format(format);
     let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
@@ -145,7 +145,7 @@ pub(super) fn named(path: &Path, error: LoadError) -> Error {
     }
 }
 
-fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {
+fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dataset> {
     let bytes = &read_bytes(path)?;
     let file_name = || path.display().to_string();
     let extra = format.extra_bytes(bytes).with_context(file_name)?;

@@ -64,7 +64,7 @@ impl Device {
 }
 
 /// What renders, opened and ready.
-pub(crate) enum Opened {
+pub(crate) enum OpenDevice {
     Cpu,
     /// The CPU reference, used because there is no adapter.
     #[cfg(feature = "gpu")]
@@ -78,7 +78,7 @@ pub(crate) enum Opened {
     },
 }
 
-impl Opened {
+impl OpenDevice {
     pub(crate) fn adapter(&self) -> Option<&str> {
         match self {
             #[cfg(feature = "gpu")]
@@ -90,22 +90,22 @@ impl Opened {
 
 impl Device {
     /// Opens the device and runs the quick part of its self-test.
-    pub(crate) fn open(&self) -> Result<Opened, Failure> {
+    pub(crate) fn open(&self) -> Result<OpenDevice, Failure> {
         match self {
-            Self::Cpu => Ok(Opened::Cpu),
+            Self::Cpu => Ok(OpenDevice::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => {
                 match interrupt::opening(|| wanted.tested())? {
                     Ok((headless, warning)) => {
                         let (headless, choice) = (Box::new(headless), *choice);
-                        Ok(Opened::Device { headless, choice, warning })
+                        Ok(OpenDevice::Device { headless, choice, warning })
                     }
-                    Err(_) if *or_cpu => Ok(Opened::CpuInstead),
+                    Err(_) if *or_cpu => Ok(OpenDevice::CpuInstead),
                     Err(error) => Err(Failure::Job(error.into())),
                 }
             }
             #[cfg(not(feature = "gpu"))]
-            Self::Adapter { or_cpu: true, .. } => Ok(Opened::Cpu),
+            Self::Adapter { or_cpu: true, .. } => Ok(OpenDevice::Cpu),
             #[cfg(not(feature = "gpu"))]
             Self::Adapter { or_cpu: false, .. } => Err(Failure::usage(
                 "this program was built without the feature `gpu`; use --backend cpu",
@@ -117,7 +117,7 @@ impl Device {
     pub(crate) fn open_beside<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
-    ) -> Result<(T, Opened), Failure> {
+    ) -> Result<(T, OpenDevice), Failure> {
         thread::scope(|scope| {
             let opening = match self {
                 Self::Cpu => None,

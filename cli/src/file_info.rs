@@ -13,7 +13,7 @@ use crate::progress::answer;
 use crate::{bricks, read_file, text};
 use pinhole::LinearRgb;
 use pinhole::internals::text::one_line;
-use pinhole::load::{Column, ColumnValues, Format, Loaded};
+use pinhole::load::{Column, ColumnValues, Dataset, Format};
 
 /// The file to describe, and how it is read.
 #[derive(Debug, Args)]
@@ -107,7 +107,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
 }
 
 /// Adds what the spheres themselves say. Those that cannot be rendered are named, and left out of the box.
-fn with_spheres(path: &Path, kind: Kind, loaded: &Loaded) -> Report {
+fn with_spheres(path: &Path, kind: Kind, loaded: &Dataset) -> Report {
     let mut notes = loaded.notes.clone();
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     let mut radii = [f64::INFINITY, f64::NEG_INFINITY];

@@ -13,7 +13,7 @@ use crate::device::WantedAdapter;
 use crate::file_info::{self, FileArgs};
 use crate::progress::answer;
 #[cfg(feature = "gpu")]
-use crate::self_test::{SelfTested, dump};
+use crate::self_test::{SelfTestResults, dump};
 use crate::text;
 
 pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
@@ -62,7 +62,7 @@ struct Info {
     problem: Option<String>,
     #[cfg(feature = "gpu")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    self_test: Option<SelfTested>,
+    self_test: Option<SelfTestResults>,
 }
 
 /// An adapter, with the limits that bound the size of pictures and scenes, and the optional features that are of interest
@@ -106,7 +106,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 /// Runs the self-test. JSON contains its report and the list of adapters; text contains only the report.
 #[cfg(feature = "gpu")]
 fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
-    let tested = SelfTested::new(&WantedAdapter::named(args.adapter.clone()))?;
+    let tested = SelfTestResults::new(&WantedAdapter::named(args.adapter.clone()))?;
     let verdict = tested.verdict();
     if args.json {
         print(&Info { self_test: Some(tested), ..info() }, true)?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bricks::BrickFile;
 use super::report::Report;
-pub(super) use crate::input::look::{Framed, Look};
+pub(super) use crate::input::look::{FramedScene, Look};
 #[cfg(feature = "gpu")]
 pub(super) use crate::input::source::OpenFrames;
 pub(super) use crate::input::source::{FoundFrames, Source, check_flags, default_color};

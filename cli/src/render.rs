@@ -19,7 +19,7 @@ use crate::args::Stereo;
 use crate::data_flags::{ColorFlags, StructureFlags};
 #[cfg(feature = "gpu")]
 use crate::device::explained;
-use crate::device::{Device, Opened};
+use crate::device::{Device, OpenDevice};
 use crate::progress::{self, tell};
 #[cfg(feature = "gpu")]
 use crate::with_scene::{upload, watch_upload, with_structures};
@@ -104,7 +104,7 @@ pub(super) fn render_part(
     input: &mut Input,
     part: Film,
     layers: LayerSet,
-    opened: &Opened,
+    opened: &OpenDevice,
 ) -> Result<Vec<Image>, Failure> {
     let layers = input.settings.layers_for(layers);
     let unfinished = input.settings.unfinished();
@@ -120,7 +120,7 @@ pub(super) fn finish_joined(
     images: Vec<Image>,
     settings: &RenderSettings,
     layers: LayerSet,
-    opened: &Opened,
+    opened: &OpenDevice,
 ) -> Result<Image, Failure> {
     let finished = images.into_iter().map(|image| finish(image, settings, layers, opened));
     joined(finished.collect::<Result<_, _>>()?)
@@ -131,11 +131,11 @@ pub(super) fn finish(
     image: Image,
     settings: &RenderSettings,
     layers: LayerSet,
-    opened: &Opened,
+    opened: &OpenDevice,
 ) -> Result<Image, Failure> {
     match opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, .. } => {
+        OpenDevice::Device { headless, .. } => {
             let finished = headless.finish(image, settings, layers).wait();
             finished.map_err(|error| explained(headless, &error))
         }
@@ -144,9 +144,9 @@ pub(super) fn finish(
 }
 
 /// Renders the view of the camera, or of the middle between two eyes.
-pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+pub(super) fn render(input: &Input, layers: LayerSet, on: &OpenDevice) -> Result<Image, Failure> {
     let (views, stop_rule) = (&[input.view()], StopRule::default());
-    render_joined(&Shot { input, views, layers, stop_rule, opened })
+    render_joined(&Shot { input, views, layers, stop_rule, opened: on })
 }
 
 /// Renders the picture, or the pictures of both eyes side by side.
@@ -177,7 +177,7 @@ pub(super) fn render_views(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
     }
     match shot.opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, .. } => on_gpu(headless, shot, *choice),
+        OpenDevice::Device { headless, choice, .. } => on_gpu(headless, shot, *choice),
         _ => on_cpu(shot),
     }
 }
@@ -185,9 +185,9 @@ pub(super) fn render_views(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
 /// Refuses pictures of the CPU that do not fit into memory, and tells the user once if the device is not the expected one.
 pub(super) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
     match shot.opened {
-        Opened::Cpu => check_on_cpu(shot),
+        OpenDevice::Cpu => check_on_cpu(shot),
         #[cfg(feature = "gpu")]
-        Opened::CpuInstead => {
+        OpenDevice::CpuInstead => {
             check_on_cpu(shot)?;
             tell_once(|| {
                 format!(
@@ -198,7 +198,7 @@ pub(super) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
             Ok(())
         }
         #[cfg(feature = "gpu")]
-        Opened::Device { warning, .. } => {
+        OpenDevice::Device { warning, .. } => {
             warning.iter().for_each(|warning| tell_once(|| warning.clone()));
             Ok(())
         }

@@ -3,7 +3,7 @@
 use anyhow::{Result, anyhow};
 
 use super::certified::{self, FilePicture, Judgement};
-use super::device::Opened;
+use super::device::OpenDevice;
 use super::failure::Failure;
 use super::input::Input;
 use super::picture::{Outputs, PictureFormat};
@@ -21,7 +21,7 @@ use pinhole::verify::denoised;
 const COUNTED: Layer = Layer::Samples;
 
 /// A picture and what was found about it.
-struct Made {
+struct JudgedPicture {
     image: Image,
     written: FilePicture,
     judged: Judgement,
@@ -32,7 +32,7 @@ struct Making<'a> {
     stop_rule: StopRule,
     outputs: &'a Outputs,
     encoding: &'a Encoding,
-    opened: &'a Opened,
+    opened: &'a OpenDevice,
 }
 
 /// Renders, judges and writes a picture, and returns whether enough is decided. A picture that is not legal is an error
@@ -42,12 +42,12 @@ pub(super) fn run(
     stop_rule: StopRule,
     outputs: Outputs,
     encoding: &Encoding,
-    opened: &Opened,
+    opened: &OpenDevice,
 ) -> Result<Result<(), Failure>, Failure> {
     let arguments = certified::arguments()?;
     certified::check(input, !outputs.annotations.is_empty())?;
     let making = Making { stop_rule, outputs: &outputs, encoding, opened };
-    let Made { image, written, judged } = match input.settings.is_denoised {
+    let JudgedPicture { image, written, judged } = match input.settings.is_denoised {
         true => making.denoised(input)?,
         false => making.plain(input)?,
     };
@@ -64,18 +64,18 @@ pub(super) fn run(
 }
 
 impl Making<'_> {
-    fn plain(&self, input: &mut Input) -> Result<Made, Failure> {
+    fn plain(&self, input: &mut Input) -> Result<JudgedPicture, Failure> {
         let wanted = self.outputs.layers(self.encoding);
         let (views, layers) = (&views_of(input, input.film), wanted.with(COUNTED));
         let Self { stop_rule, opened, .. } = *self;
         let image = render_joined(&Shot { input, views, layers, stop_rule, opened })?;
         let written = self.written(&image)?;
         let judged = certified::judge(input, self.encoding, wanted, &written)?;
-        Ok(Made { image, written, judged })
+        Ok(JudgedPicture { image, written, judged })
     }
 
     /// Judges the light before the denoiser, and the denoiser by itself.
-    fn denoised(&self, input: &mut Input) -> Result<Made, Failure> {
+    fn denoised(&self, input: &mut Input) -> Result<JudgedPicture, Failure> {
         if let Some(flag) = self.stop_rule.open_end() {
             return Err(Failure::usage(format!(
                 "--certify: {flag} and the denoiser exclude each other here; add --denoise=false, or choose --samples N"
@@ -92,7 +92,7 @@ impl Making<'_> {
         let image = finish(quiet, &with_lines, layers, self.opened)?;
         let written = self.written(&image)?;
         let means = certified::means_of_light(input, &noisy, GUIDES)?;
-        Ok(Made { image, written, judged: Judgement::Means(means, Some(denoiser)) })
+        Ok(JudgedPicture { image, written, judged: Judgement::Means(means, Some(denoiser)) })
     }
 
     /// The samples that are written of an image.

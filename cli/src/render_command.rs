@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
 }
 
 fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
-    if let Some(wanted) = frames::Wanted::new(args)? {
+    if let Some(wanted) = frames::SeriesRequest::new(args)? {
         if args.certify {
             return Err(Failure::usage(
                 "--certify: only single pictures are certified; render the frames one by one",

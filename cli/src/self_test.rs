@@ -19,7 +19,7 @@ use pinhole::gpu::{
 
 /// The results of the self-test of an adapter.
 #[derive(Serialize)]
-pub(crate) struct SelfTested {
+pub(crate) struct SelfTestResults {
     adapter: AdapterReport,
     passed: bool,
     properties: Vec<PropertyReport>,
@@ -37,7 +37,7 @@ struct PropertyReport {
     figures: BTreeMap<&'static str, f64>,
 }
 
-impl SelfTested {
+impl SelfTestResults {
     /// Opens an adapter and runs the full test.
     pub(crate) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
         let headless = wanted.open_any()?;
@@ -140,7 +140,7 @@ fn file_name(kernel: &str) -> String {
 mod tests {
     use super::*;
 
-    fn tested(failure: Option<&str>) -> SelfTested {
+    fn tested(failure: Option<&str>) -> SelfTestResults {
         let text = || "some".to_owned();
         let adapter = AdapterReport {
             name: text(),
@@ -157,7 +157,7 @@ mod tests {
             figures: BTreeMap::from([("tested", 3.0)]),
         };
         let failure = failure.map(str::to_owned);
-        SelfTested { adapter, passed: failure.is_none(), properties: vec![property], failure }
+        SelfTestResults { adapter, passed: failure.is_none(), properties: vec![property], failure }
     }
 
     #[test]

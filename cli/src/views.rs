@@ -1,6 +1,6 @@
 //! The view of one picture, or the two views of a stereo camera, and what is rendered of them.
 
-use super::device::Opened;
+use super::device::OpenDevice;
 use super::input::Input;
 use super::stop_rule::StopRule;
 use crate::memory;
@@ -16,7 +16,7 @@ pub(super) struct Shot<'a> {
     pub(super) views: &'a [View<'a>],
     pub(super) layers: LayerSet,
     pub(super) stop_rule: StopRule,
-    pub(super) opened: &'a Opened,
+    pub(super) opened: &'a OpenDevice,
 }
 
 impl Shot<'_> {

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy.typing as npt
 
+from . import _report
 from ._errors import InputError
 from ._image import write
 from ._pinhole import Judged
@@ -57,17 +58,13 @@ class Certificate:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a page for people, .html, that needs no other files."""
-        from . import _report
-
         path = os.fspath(path)
         if os.path.splitext(path)[1].lower() not in (".html", ".htm"):
             raise InputError(f"{path}: a certificate is written as .html; change the extension")
-        write(path, _report.page(self).encode())
+        write(path, _report.page(self._judged).encode())
 
     def _repr_html_(self) -> str:
-        from . import _report
-
-        return _report.part(self)
+        return _report.part(self._judged)
 
     def __bool__(self) -> bool:
         return self.is_legal

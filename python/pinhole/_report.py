@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import base64
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._pinhole import png_of
-
-if TYPE_CHECKING:
-    from ._certificate import Certificate
+from ._pinhole import Judged, png_of
 
 #: The colour and the meaning of each verdict; those of the program's report.
 VERDICTS = {
@@ -39,13 +36,13 @@ LONGEST = 1024
 LISTED = 50
 
 
-def part(certificate: Certificate) -> str:
+def part(judged: Judged) -> str:
     """The report as a part of a page."""
-    counts = certificate.counts
+    counts = dict(judged.counts())
     pixels = sum(counts.values())
-    title, says = OUTCOMES[certificate.outcome]
-    color, ground = ("#00563f", "#e6f2ee") if certificate.is_legal else ("#9a3f00", "#fdeee3")
-    verdicts = certificate.verdicts
+    title, says = OUTCOMES[judged.outcome]
+    color, ground = ("#00563f", "#e6f2ee") if judged.is_legal else ("#9a3f00", "#fdeee3")
+    verdicts = judged.verdicts()
     height, width = verdicts.shape
     rows = "".join(_row(name, count, pixels) for name, count in counts.items())
     parts = [
@@ -53,12 +50,12 @@ def part(certificate: Certificate) -> str:
         'font: 15px/1.5 system-ui, sans-serif">',
         f'<div style="padding: 0.8em 1.2em; border-left: 8px solid {color}; background: {ground}">'
         f'<b style="font-size: 1.6em; color: {color}">{title}</b><br>{says}<br>'
-        f"{width}\u2009×\u2009{height} pixels on {escape(certificate.adapter)}, one ray for each. "
+        f"{width}\u2009×\u2009{height} pixels on {escape(judged.adapter)}, one ray for each. "
         "Light is not checked.</div>",
         '<table style="margin: 1em 0; border-collapse: collapse; color: inherit">'
         "<tr><th></th><th style='text-align: left'>verdict</th><th style='text-align: right'>pixels</th>"
         f"<th></th><th style='text-align: left'>meaning</th></tr>{rows}</table>",
-        _violations(certificate.violations),
+        _violations(judged.violations()),
     ]
     if verdicts.size:
         shown = max(width, min(640, 8 * width))
@@ -67,18 +64,18 @@ def part(certificate: Certificate) -> str:
             f'style="width: {shown}px; max-width: 100%; image-rendering: pixelated; border: 1px solid #dde1e5">'
             "<br>The verdict about each pixel, in the colors of the table."
         )
-    numbers = escape(str(certificate))
+    numbers = escape(str(judged))
     parts.append(f"<details><summary>All numbers</summary><pre style='color: inherit'>{numbers}</pre></details></div>")
     return "\n".join(parts)
 
 
-def page(certificate: Certificate) -> str:
+def page(judged: Judged) -> str:
     """The report as a page."""
-    title = f"{OUTCOMES[certificate.outcome][0]}: {escape(certificate.adapter)}"
+    title = f"{OUTCOMES[judged.outcome][0]}: {escape(judged.adapter)}"
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<title>{title}</title>\n</head>\n<body style="margin: 0; background: #fbfbfa">\n{part(certificate)}\n</body>\n</html>\n'
+        f'<title>{title}</title>\n</head>\n<body style="margin: 0; background: #fbfbfa">\n{part(judged)}\n</body>\n</html>\n'
     )
 
 

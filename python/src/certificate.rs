@@ -13,8 +13,8 @@ use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, Wait, with_re
 use pinhole::verify::{Certificate, Checker, Verdict};
 
 /// The result of the checker.
-#[pyclass(frozen, module = "pinhole._pinhole")]
-pub(crate) struct Judged {
+#[pyclass(frozen, name = "Judged", module = "pinhole._pinhole")]
+pub(crate) struct CertificateData {
     certificate: Certificate,
     /// The name of the adapter that rendered.
     #[pyo3(get)]
@@ -22,7 +22,7 @@ pub(crate) struct Judged {
 }
 
 #[pymethods]
-impl Judged {
+impl CertificateData {
     /// The outcome: proved, undecided or violated.
     #[getter]
     fn outcome(&self) -> &'static str {
@@ -61,7 +61,7 @@ impl Judged {
 }
 
 /// Renders a view with one ray for each pixel, records it, and judges it.
-pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judged> {
+pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<CertificateData> {
     let Some(opened) = device::device(Backend::Gpu)? else {
         return Err(Fault::Device(GpuError::NoAdapter.to_string()));
     };
@@ -80,5 +80,5 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judge
     let recording = with_retries(AccelChoice::Auto, plan, |_| {}, record).wait()??;
     let checker = Checker::new(scene).map_err(Fault::input)?;
     let certificate = checker.certify(&recording);
-    Ok(Judged { certificate, adapter: headless.adapter_info().name.clone() })
+    Ok(CertificateData { certificate, adapter: headless.adapter_info().name.clone() })
 }

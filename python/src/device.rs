@@ -34,25 +34,25 @@ impl Backend {
 }
 
 /// An open device, with the note about it.
-pub(crate) struct Opened {
+pub(crate) struct OpenDevice {
     pub(crate) headless: Headless,
     /// A warning if the quick self-test failed.
     pub(crate) warning: Option<String>,
 }
 
-struct Shared {
+struct SharedDevice {
     process: u32,
     /// The device; `None` if there is no adapter.
-    opened: Option<Arc<Opened>>,
+    opened: Option<Arc<OpenDevice>>,
 }
 
 /// A part of the name of the adapter that is wanted; `None` for the best.
 static WANTED: Mutex<Option<String>> = Mutex::new(None);
 
-static SHARED: Mutex<Option<Shared>> = Mutex::new(None);
+static SHARED: Mutex<Option<SharedDevice>> = Mutex::new(None);
 
 /// The shared device; `None` if the CPU renders.
-pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
+pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<OpenDevice>>> {
     if backend == Backend::Cpu {
         return Ok(None);
     }
@@ -60,7 +60,7 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
     let process = std::process::id();
     let opened = match &*shared {
         Some(found) if found.process == process => found.opened.clone(),
-        Some(Shared { opened: Some(_), .. }) => {
+        Some(SharedDevice { opened: Some(_), .. }) => {
             return Err(Fault::Device(
                 "this process was forked from one that had opened a device, which does not survive that; start \
                  processes with multiprocessing.get_context(\"spawn\"), or render with backend=\"cpu\""
@@ -69,7 +69,7 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
         }
         _ => {
             let opened = open()?.map(Arc::new);
-            *shared = Some(Shared { process, opened: opened.clone() });
+            *shared = Some(SharedDevice { process, opened: opened.clone() });
             opened
         }
     };
@@ -79,7 +79,7 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
     }
 }
 
-fn open() -> Outcome<Option<Opened>> {
+fn open() -> Outcome<Option<OpenDevice>> {
     let adapter = WANTED.lock().unwrap_or_else(PoisonError::into_inner).clone();
     let headless =
         match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() }).wait() {
@@ -94,7 +94,7 @@ fn open() -> Outcome<Option<Opened>> {
     };
     let warning =
         failed.map(|failed| format!("{name} {failed}; its pictures may be wrong: verify them"));
-    Ok(Some(Opened { headless, warning }))
+    Ok(Some(OpenDevice { headless, warning }))
 }
 
 /// The names of all adapters of this machine, the best first.
@@ -121,7 +121,7 @@ pub(crate) fn use_adapter(py: Python<'_>, name: Option<String>) -> PyResult<()> 
 }
 
 /// Forgets a device that was lost, so that the next caller opens a new one.
-pub(crate) fn forget(lost: &Arc<Opened>) {
+pub(crate) fn forget(lost: &Arc<OpenDevice>) {
     let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
     let is_shared = shared.as_ref().and_then(|shared| shared.opened.as_ref());
     if is_shared.is_some_and(|opened| Arc::ptr_eq(opened, lost)) {

@@ -7,11 +7,11 @@ use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
-use crate::scene::Given;
+use crate::scene::DataExtras;
 use crate::spheres::SphereData;
 use crate::worker;
 use pinhole::color_by::JoinedKeys;
-use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{self, Dataset, Format, LoadError, Options, Trajectory};
 
 /// A file of spheres, perhaps with several frames, of which one at a time is read.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -77,7 +77,7 @@ impl FileData {
             for note in &mut loaded.notes {
                 *note = format!("{}: {note}", this.path);
             }
-            let given = Given { colors: None, radii: this.options.radius.is_some(), keys };
+            let given = DataExtras { colors: None, radii: this.options.radius.is_some(), keys };
             SphereData::of_loaded(loaded, &text, given, this.format.z_is_up)
                 .map_err(|fault| this.in_file(fault))
         })?)
@@ -85,7 +85,7 @@ impl FileData {
 }
 
 impl FileData {
-    fn read(&self, index: usize) -> Outcome<Loaded> {
+    fn read(&self, index: usize) -> Outcome<Dataset> {
         let read = match &self.frames {
             Some(frames) => frames.lock().unwrap_or_else(PoisonError::into_inner).frame(index),
             None => load::open(&self.path, &self.options),

@@ -32,7 +32,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // What a panic says becomes an exception.
     std::panic::set_hook(Box::new(|_| {}));
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add_class::<certificate::Judged>()?;
+    module.add_class::<certificate::CertificateData>()?;
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
     module.add_class::<files::FrameKeys>()?;

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::Duration;
 
-use crate::device::{self, Backend, Opened};
+use crate::device::{self, Backend, OpenDevice};
 use crate::fault::{Fault, Outcome};
 use crate::look::Look;
 use crate::worker::Stop;
@@ -18,8 +18,8 @@ use pinhole::{Image, LayerSet, RenderSettings, Scene, View};
 /// How long a thread sleeps before it looks again whether another has rendered its picture.
 const WAIT: Duration = Duration::from_millis(2);
 
-struct Uploaded {
-    opened: Arc<Opened>,
+struct DeviceScene {
+    opened: Arc<OpenDevice>,
     buffers: SceneBuffers,
     for_light: Light,
     /// The number of updates that the scene had.
@@ -47,11 +47,11 @@ impl Light {
 /// A scene on the device, if it was copied there. It is taken while a picture is rendered.
 #[derive(Default)]
 pub(crate) struct OnDevice {
-    uploaded: Mutex<Option<Uploaded>>,
+    uploaded: Mutex<Option<DeviceScene>>,
 }
 
 /// A picture, and by whom it was rendered.
-pub(crate) struct Rendered {
+pub(crate) struct RenderedImage {
     pub(crate) image: Image,
     /// The name of the adapter, if an adapter rendered.
     pub(crate) adapter: Option<String>,
@@ -67,7 +67,7 @@ impl OnDevice {
         layers: LayerSet,
         backend: Backend,
         stop: &Stop,
-    ) -> Outcome<Rendered> {
+    ) -> Outcome<RenderedImage> {
         let Some(opened) = device::device(backend)? else {
             return on_cpu(scene, look, layers, stop);
         };
@@ -84,7 +84,7 @@ impl OnDevice {
     }
 
     /// What is on the device, as soon as no other thread renders it.
-    fn wait(&self, stop: &Stop) -> Outcome<MutexGuard<'_, Option<Uploaded>>> {
+    fn wait(&self, stop: &Stop) -> Outcome<MutexGuard<'_, Option<DeviceScene>>> {
         loop {
             match self.uploaded.try_lock() {
                 Ok(slot) => return Ok(slot),
@@ -97,15 +97,15 @@ impl OnDevice {
 
     fn on_gpu(
         &self,
-        opened: &Arc<Opened>,
+        opened: &Arc<OpenDevice>,
         (scene, version): (&Scene, u64),
         look: &Look,
         layers: LayerSet,
         stop: &Stop,
-    ) -> Outcome<Rendered> {
+    ) -> Outcome<RenderedImage> {
         let (headless, light) = (&opened.headless, Light::of(&look.settings));
         let mut slot = self.wait(stop)?;
-        let fits = |found: &Uploaded| {
+        let fits = |found: &DeviceScene| {
             Arc::ptr_eq(&found.opened, opened)
                 && [Light::None, found.for_light].contains(&light)
                 && found.version == version
@@ -142,7 +142,7 @@ impl OnDevice {
                 let tried = with_retries(AccelChoice::Auto, plan, |_| {}, attempt).wait();
                 let done = tried.and_then(|done| done);
                 let copied = copied.into_inner().unwrap_or_else(PoisonError::into_inner);
-                kept = copied.map(|buffers| Uploaded {
+                kept = copied.map(|buffers| DeviceScene {
                     opened: Arc::clone(opened),
                     buffers,
                     for_light: light,
@@ -155,7 +155,7 @@ impl OnDevice {
         *slot = kept;
         let images = images?;
         let adapter = Some(headless.adapter_info().name.clone());
-        Ok(Rendered { image: joined(images)?, adapter, warning: opened.warning.clone() })
+        Ok(RenderedImage { image: joined(images)?, adapter, warning: opened.warning.clone() })
     }
 
     /// Brings what the device has up to date with a scene to which an update was applied. What cannot be updated is
@@ -165,7 +165,7 @@ impl OnDevice {
         if let Some(uploaded) = slot.as_mut() {
             // Of two updates at the same time, the later may come first.
             let is_next = uploaded.version + 1 == version;
-            let Uploaded { opened, buffers, .. } = uploaded;
+            let DeviceScene { opened, buffers, .. } = uploaded;
             if is_next && opened.headless.update(buffers, scene, update).wait().is_ok() {
                 uploaded.version = version;
             } else {
@@ -175,7 +175,7 @@ impl OnDevice {
     }
 }
 
-fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
+fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<RenderedImage> {
     let plan = SearchPlan::new(scene);
     device::check_on_cpu(&plan, look, layers)?;
     let structure = plan.build().map_err(Fault::input)?;
@@ -186,7 +186,7 @@ fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<
         RenderError::Stopped => Fault::Stopped,
         error => Fault::input(error),
     })?;
-    Ok(Rendered { image: joined(images)?, adapter: None, warning: None })
+    Ok(RenderedImage { image: joined(images)?, adapter: None, warning: None })
 }
 
 /// Renders each view, and says how far all of them are.

@@ -3,13 +3,13 @@
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
 use pinhole::color_by::{ColorBy, ColorKey, JoinedKeys};
-use pinhole::load::Loaded;
+use pinhole::load::Dataset;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::{Appearance, Colors, LinearRgb, Scene};
 
 /// A scene, and what is known about its spheres.
-pub(crate) struct Made {
+pub(crate) struct DataScene {
     pub(crate) scene: Scene,
     /// What colours mean, if a column gives them.
     pub(crate) key: Option<ColorKey>,
@@ -18,7 +18,7 @@ pub(crate) struct Made {
 
 /// What is known of data besides what was loaded.
 #[derive(Default)]
-pub(crate) struct Given {
+pub(crate) struct DataExtras {
     /// The colours of spheres that have bytes for colours, where nothing else gives them.
     pub(crate) colors: Option<Vec<[u8; 4]>>,
     /// Whether the caller gave radii, which bonds then leave as they are.
@@ -28,7 +28,7 @@ pub(crate) struct Given {
 }
 
 /// Makes the scene of data.
-pub(crate) fn scene_of(loaded: Loaded, text: &SceneText, given: Given) -> Outcome<Made> {
+pub(crate) fn scene_of(loaded: Dataset, text: &SceneText, given: DataExtras) -> Outcome<DataScene> {
     let file = text.parse()?;
     let mut data = file.data().cloned().unwrap_or_else(|| Data::of_file(""));
     if data.color.is_some() && loaded.colors.is_some() {
@@ -59,7 +59,7 @@ pub(crate) fn scene_of(loaded: Loaded, text: &SceneText, given: Given) -> Outcom
 }
 
 /// Makes a scene as of a data file with flags.
-fn dressed(mut loaded: Loaded, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Outcome<Made> {
+fn dressed(mut loaded: Dataset, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Outcome<DataScene> {
     let kept = data.select.as_ref().map(|select| select.apply(&mut loaded)).transpose();
     let kept = kept.map_err(|error| Fault::Input(format!("select: {error}")))?;
     loaded.correct_notes(data.mapping.color.is_some(), data.mapping.radius.is_some(), |_| false);
@@ -69,23 +69,23 @@ fn dressed(mut loaded: Loaded, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Out
         // These need no list of distinct colours, which takes long.
         let appearance = Appearance::new(Colors::Rgba8(colors));
         let scene = Scene::from_parts(loaded.spheres, appearance).map_err(Fault::input)?;
-        return Ok(Made { scene, key: None, notes });
+        return Ok(DataScene { scene, key: None, notes });
     }
     let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
     let made = data.mapping.scene_with(loaded, color, &data.additions);
     let (scene, mapped, added) = made.map_err(Fault::input)?;
     notes.extend_from_slice(mapped.notes());
     notes.extend_from_slice(added.notes());
-    Ok(Made { scene, key: mapped.key().cloned(), notes })
+    Ok(DataScene { scene, key: mapped.key().cloned(), notes })
 }
 
 /// Makes a scene as of a scene file with data.
-fn applied(loaded: Loaded, file: &SceneFile, data: &Data, text: &SceneText) -> Outcome<Made> {
+fn applied(loaded: Dataset, file: &SceneFile, data: &Data, text: &SceneText) -> Outcome<DataScene> {
     let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
     let applied = data.apply(loaded).map_err(Fault::input)?;
     let scene = file.scene_of(applied.spheres, color);
     let scene = scene.map_err(|error| text.fault(&error))?.with_added(applied.added.len());
-    Ok(Made { scene, key: applied.color_key, notes: applied.notes })
+    Ok(DataScene { scene, key: applied.color_key, notes: applied.notes })
 }
 
 /// Whether the keys say no more about the data than flags of the program can.

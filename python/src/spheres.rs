@@ -7,19 +7,19 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyA
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Centers, ColorArray, Radii};
-use crate::certificate::{self, Judged};
+use crate::certificate::{self, CertificateData};
 use crate::device::Backend;
 use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
 use crate::look::{self, Look, SceneText};
 use crate::render::OnDevice;
-use crate::scene::{Given, Made, scene_of};
+use crate::scene::{DataExtras, DataScene, scene_of};
 use crate::worker;
 use pinhole::camera::Viewpoint;
 use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
 use pinhole::image::Layer;
-use pinhole::load::{Column, ColumnValues, Labels, Loaded};
+use pinhole::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
 
@@ -31,7 +31,7 @@ pub(crate) struct SphereData {
     /// What colours mean, if a column gives them.
     pub(crate) key: Option<ColorKey>,
     /// What was loaded, if it says more than the scene does.
-    pub(crate) loaded: Option<Arc<Loaded>>,
+    pub(crate) loaded: Option<Arc<Dataset>>,
     /// Whether the caller gave radii.
     has_radii: bool,
     z_is_up: bool,
@@ -54,15 +54,15 @@ enum Values<'py> {
 impl SphereData {
     /// Makes spheres of what was loaded.
     pub(crate) fn of_loaded(
-        loaded: Loaded,
+        loaded: Dataset,
         text: &SceneText,
-        given: Given,
+        given: DataExtras,
         z_is_up: bool,
     ) -> Outcome<Self> {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
         let has_radii = given.radii;
-        let Made { scene, key, notes } = scene_of(loaded, text, given)?;
+        let DataScene { scene, key, notes } = scene_of(loaded, text, given)?;
         let scene = Mutex::new(Arc::new(scene));
         Ok(Self {
             scene,
@@ -119,10 +119,10 @@ impl SphereData {
         let has_radius = radius.is_some();
         Ok(worker::run(py, None, move |_| {
             let mut loaded =
-                if has_radius { Loaded::new(spheres) } else { Loaded::of_centers(spheres) };
+                if has_radius { Dataset::new(spheres) } else { Dataset::of_centers(spheres) };
             (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
             let given =
-                Given { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
+                DataExtras { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
             Self::of_loaded(loaded, &text, given, false)
         })?)
     }
@@ -144,7 +144,7 @@ impl SphereData {
         };
         let (radii, z_is_up) = (self.has_radii, self.z_is_up);
         Ok(worker::run(py, None, move |_| {
-            let given = Given { colors: None, radii, keys: None };
+            let given = DataExtras { colors: None, radii, keys: None };
             Self::of_loaded(loaded.as_ref().clone(), &text, given, z_is_up)
         })?)
     }
@@ -236,7 +236,7 @@ impl SphereData {
     }
 
     /// Renders the view by one ray for each pixel on the device, and decides whether the picture is legal.
-    fn verify(slf: Bound<'_, Self>, py: Python<'_>, text: SceneText) -> PyResult<Judged> {
+    fn verify(slf: Bound<'_, Self>, py: Python<'_>, text: SceneText) -> PyResult<CertificateData> {
         let this = slf.unbind();
         Ok(worker::run(py, None, move |stop| {
             let this = this.get();

@@ -55,7 +55,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 static LEFT_ALONE: AtomicUsize = AtomicUsize::new(0);
 
 /// What a thread that works and the thread that waits for it share.
-struct Shared<T> {
+struct State<T> {
     stop: Stop,
     done: Mutex<Option<Outcome<T>>>,
     is_done: Condvar,
@@ -70,7 +70,7 @@ pub(crate) fn run<T: Send + 'static>(
     work: impl FnOnce(&Stop) -> Outcome<T> + Send + 'static,
 ) -> Outcome<T> {
     let shared =
-        Arc::new(Shared { stop: Stop::default(), done: Mutex::new(None), is_done: Condvar::new() });
+        Arc::new(State { stop: Stop::default(), done: Mutex::new(None), is_done: Condvar::new() });
     let of_thread = Arc::clone(&shared);
     let spawned = thread::Builder::new().name("pinhole".to_owned()).spawn(move || {
         let done = catch_unwind(AssertUnwindSafe(|| on_live_threads(|| work(&of_thread.stop))));
@@ -95,7 +95,7 @@ pub(crate) fn run<T: Send + 'static>(
     }
 }
 
-impl<T> Shared<T> {
+impl<T> State<T> {
     /// The result, if there is one within a time.
     fn wait(&self, time: Duration) -> Option<Outcome<T>> {
         let done = self.done.lock().unwrap_or_else(PoisonError::into_inner);

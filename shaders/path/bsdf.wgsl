@@ -1,7 +1,7 @@
 // The BSDF of reflecting surfaces: Lambertian, with or without a specular lobe, and metal. Twin:
 // src/cpu/light/bsdf.rs.
 // provides: reflect_by_any, scatter_reflection
-// needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
+// needs: BsdfSample, CONDUCTOR, DIELECTRIC, Material, PI, Reflection, cosine_direction, energy, ggx_lambda,
 //   mirrors_brdf, reflected_density, visible_mirror
 
 fn schlick(color: vec3f, cosine: f32) -> vec3f {
@@ -36,7 +36,7 @@ fn reflect_by_any(material: Material, color: vec3f, out: vec3f, toward: vec3f) -
     return Reflection(color * matt + share * mirrors * lobe, density);
 }
 
-fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u: vec2u) -> Scattered {
+fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u: vec2u) -> BsdfSample {
     let is_metal = material.kind == CONDUCTOR;
     if (is_metal || lobe < material.parameter) {
         let half = visible_mirror(material.alpha, out, u);
@@ -48,13 +48,13 @@ fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u
             let seen = 1.0 + ggx_lambda(material.alpha, out.z);
             let ratio = seen / (seen + ggx_lambda(material.alpha, toward.z));
             let weight = schlick(color, dot(half, out)) * compensation(color, kept) * ratio;
-            return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
+            return BsdfSample(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
         }
-        return Scattered(toward, r.value / max(r.density, 1e-30), r.density);
+        return BsdfSample(toward, r.value / max(r.density, 1e-30), r.density);
     }
     let toward = cosine_direction(u);
     let r = reflect_by_any(material, color, out, toward);
     let mixed = r.value / max(r.density, 1e-30);
     let weight = select(mixed, color, material.parameter == 0.0);
-    return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
+    return BsdfSample(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
 }

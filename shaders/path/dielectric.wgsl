@@ -1,6 +1,6 @@
 // Scattering by smooth and rough glass. Twin: src/cpu/light/bsdf.rs.
 // provides: scatter_dielectric
-// needs: ENERGIES, Material, Scattered, energy, ggx_lambda, visible_mirror
+// needs: BsdfSample, ENERGIES, Material, energy, ggx_lambda, visible_mirror
 
 // The fraction of unpolarised light that is reflected. `relative` is the index of refraction behind the surface,
 // divided by that in front of it.
@@ -12,7 +12,7 @@ fn fresnel(relative: f32, cosine: f32) -> f32 {
     return select(0.5 * (across * across + along * along), 1.0, sine2 >= 1.0);
 }
 
-fn scatter_dielectric(material: Material, is_entering: bool, out: vec3f, lobe: f32, u: vec2u) -> Scattered {
+fn scatter_dielectric(material: Material, is_entering: bool, out: vec3f, lobe: f32, u: vec2u) -> BsdfSample {
     let relative = select(1.0 / material.parameter, material.parameter, is_entering);
     var half = vec3f(0.0, 0.0, 1.0);
     if (material.alpha > 0.0) {
@@ -24,7 +24,7 @@ fn scatter_dielectric(material: Material, is_entering: bool, out: vec3f, lobe: f
     let refracted = (cosine / relative - beyond) * half - out / relative;
     let toward = select(refracted, 2.0 * cosine * half - out, is_reflected);
     if ((toward.z > 0.0) != is_reflected) {
-        return Scattered(toward, vec3f(0.0), 0.0);
+        return BsdfSample(toward, vec3f(0.0), 0.0);
     }
     var weight = 1.0;
     if (material.alpha > 0.0) {
@@ -32,5 +32,5 @@ fn scatter_dielectric(material: Material, is_entering: bool, out: vec3f, lobe: f
         let first = material.energies + select(ENERGIES / 4u, 0u, is_entering);
         weight = 1.0 / ((1.0 + ggx_lambda(material.alpha, abs(toward.z))) * energy(first, out.z));
     }
-    return Scattered(toward, vec3f(weight), 0.0);
+    return BsdfSample(toward, vec3f(weight), 0.0);
 }

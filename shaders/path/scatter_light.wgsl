@@ -1,12 +1,12 @@
 // Scattering by the materials of a scene.
 // provides: reflect_toward, scatter_light
-// needs: ANY_MATERIALS, DIELECTRIC, Material, PI, Reflection, Scattered, Surface, cosine_direction, reflect_by_any,
+// needs: ANY_MATERIALS, BsdfSample, DIELECTRIC, Material, PI, Reflection, Surface, cosine_direction, reflect_by_any,
 //   scatter_dielectric, scatter_reflection
 
-fn scatter_light(at: Surface, out: vec3f, lobe: f32, u: vec2u) -> Scattered {
+fn scatter_light(at: Surface, out: vec3f, lobe: f32, u: vec2u) -> BsdfSample {
     if (!ANY_MATERIALS) {
         let toward = cosine_direction(u);
-        return Scattered(toward, at.vertex.color, toward.z / PI);
+        return BsdfSample(toward, at.vertex.color, toward.z / PI);
     }
     if (at.material.kind == DIELECTRIC) {
         return scatter_dielectric(at.material, !at.vertex.is_back, out, lobe, u);

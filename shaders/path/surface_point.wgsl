@@ -1,5 +1,5 @@
 // The structs of a surface point, of a BSDF value and of a scattered direction.
-// provides: Reflection, Scattered, Surface
+// provides: BsdfSample, Reflection, Surface
 // needs: Axes, Material, Vertex
 
 struct Surface {
@@ -18,7 +18,7 @@ struct Reflection {
     density: f32,
 }
 
-struct Scattered {
+struct BsdfSample {
     // Direction in the tangent frame.
     direction: vec3f,
     // Factor of the throughput; 0 if the light is absorbed.

@@ -7,7 +7,7 @@ use super::ball::BallFrame;
 use super::cells::{Cells, mean_overlapped_cells};
 use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, elements, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
-use super::grid_sort::{CHUNK, Counted, Lists, sort_by_cell};
+use super::grid_sort::{CHUNK, Lists, Overlaps, sort_by_cell};
 use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
 /// The largest number of spheres whose radii the choice of the cell size looks at.
@@ -42,14 +42,14 @@ pub(crate) fn build_grid(
         cells = coarser(&cells, max);
     }
     let (sorted, sorted_ids) = sort_by_cell(own, ids, &cells);
-    let mut counted = Counted::new(&sorted, &cells, margin);
+    let mut overlaps = Overlaps::new(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
     // cells.
-    while counted.total() > budget.listed as u64 && cells.len() > 1 {
+    while overlaps.total() > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
-        counted = Counted::new(&sorted, &cells, margin);
+        overlaps = Overlaps::new(&sorted, &cells, margin);
     }
-    let lists = counted.fill(&sorted_ids);
+    let lists = overlaps.fill(&sorted_ids);
     let mut grid = assemble(&cells, margin, budget, &sorted, &lists);
     mark_empty_surroundings(&mut grid.cells, cells.counts);
     BuiltGrid { grid, spheres: sorted, ids: sorted_ids }

@@ -141,7 +141,7 @@ pub(super) struct Lists {
 }
 
 /// The spheres that overlap cells, counted for each cell.
-pub(super) struct Counted<'a> {
+pub(super) struct Overlaps<'a> {
     cells: Cells,
     spheres: &'a [[f32; 4]],
     margin: f32,
@@ -157,7 +157,7 @@ struct Slab {
     spheres: Vec<Range<u32>>,
 }
 
-impl<'a> Counted<'a> {
+impl<'a> Overlaps<'a> {
     /// Counts the spheres that overlap each cell.
     pub(super) fn new(spheres: &'a [[f32; 4]], cells: &Cells, margin: f32) -> Self {
         let (octets, slabs) = assign(spheres, cells, margin);

@@ -84,7 +84,7 @@ impl BoxRay {
 
 /// A node that waits for its visit, and a distance before which the ray does not enter it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Waiting {
+struct NodeVisit {
     entry: f32,
     node: u32,
 }
@@ -112,9 +112,9 @@ impl WideTree {
     ) {
         let octant =
             (0..3).fold(0, |bits, axis| bits | usize::from(ray.inverse[axis] < 0.0) << axis);
-        let mut waiting = [Waiting::default(); MOST_WAITING];
+        let mut waiting = [NodeVisit::default(); MOST_WAITING];
         let mut count = 0;
-        let mut at = Waiting::default();
+        let mut at = NodeVisit::default();
         loop {
             let node = &self.nodes[at.node as usize];
             let base = f64::from(at.entry);
@@ -142,7 +142,7 @@ impl WideTree {
                 }
                 let child = node.0[4] + (inner & ((1 << slot) - 1)).count_ones();
                 let entry = (base + f64::from(entries[slot])) as f32;
-                let new = Waiting { entry: entry * (1.0 - f32::EPSILON), node: child };
+                let new = NodeVisit { entry: entry * (1.0 - f32::EPSILON), node: child };
                 // The nearest comes last.
                 let mut place = count;
                 while place > before && waiting[place - 1].entry < new.entry {

@@ -15,7 +15,7 @@ pub use spheres::{AddError, AddedSpheres};
 use glam::DVec3;
 
 use crate::image::color::LinearRgb;
-use crate::load::{ColumnValues, Loaded};
+use crate::load::{ColumnValues, Dataset};
 use crate::scene::sphere_array::SphereArray;
 use spheres::{Look, string_between, string_count};
 
@@ -39,7 +39,7 @@ impl Additions {
     }
 
     /// Makes spheres of data smaller, if bonds need it and the user did not choose the radii.
-    pub(crate) fn shrink(&self, loaded: &mut Loaded) {
+    pub(crate) fn shrink(&self, loaded: &mut Dataset) {
         if self.bonds.is_none() || self.keeps_radii {
             return;
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::image::color::LinearRgb;
-use crate::load::{Labels, Loaded};
+use crate::load::{Dataset, Labels};
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
@@ -41,7 +41,7 @@ pub(crate) struct Base<'a> {
 }
 
 impl<'a> Base<'a> {
-    pub(crate) fn of(loaded: &'a Loaded) -> Self {
+    pub(crate) fn of(loaded: &'a Dataset) -> Self {
         Self {
             spheres: &loaded.spheres,
             species: loaded.labels("species"),

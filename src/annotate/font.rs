@@ -15,14 +15,14 @@ pub(super) const HALF_CAPITAL: f32 = 0.357;
 const SMALL: f32 = 0.64;
 
 /// A character as it is drawn: another character, smaller and moved up.
-struct Drawn {
+struct ScaledGlyph {
     glyph: char,
     scale: f32,
     /// How far it is moved up, relative to the size of the text.
     up: f32,
 }
 
-impl Drawn {
+impl ScaledGlyph {
     fn of(c: char) -> Self {
         let digit = |zero: u32| char::from_digit(u32::from(c) - zero, 10);
         let (small, up) = match c {
@@ -49,7 +49,7 @@ pub fn missing_characters(text: &str) -> Vec<char> {
     let mut missing = Vec::new();
     let Some(font) = FONT.as_ref() else { return missing };
     for c in text.chars() {
-        if font.glyph_id(Drawn::of(c).glyph) == GlyphId(0) && !missing.contains(&c) {
+        if font.glyph_id(ScaledGlyph::of(c).glyph) == GlyphId(0) && !missing.contains(&c) {
             missing.push(c);
         }
     }
@@ -61,7 +61,7 @@ pub(super) fn width(text: &str, em: f32) -> f32 {
     let Some(font) = FONT.as_ref() else { return 0.0 };
     let units = font.units_per_em().unwrap_or(1.0);
     let advance = |c| {
-        let Drawn { glyph, scale, .. } = Drawn::of(c);
+        let ScaledGlyph { glyph, scale, .. } = ScaledGlyph::of(c);
         font.h_advance_unscaled(font.glyph_id(glyph)) * scale
     };
     text.chars().map(advance).sum::<f32>() * em / units
@@ -79,7 +79,7 @@ pub(super) fn draw(
     let units = font.units_per_em().unwrap_or(1.0);
     let mut x = x;
     for c in text.chars() {
-        let Drawn { glyph, scale, up } = Drawn::of(c);
+        let ScaledGlyph { glyph, scale, up } = ScaledGlyph::of(c);
         let id = font.glyph_id(glyph);
         // `ab_glyph` scales by the height of a line.
         let height = PxScale::from(em * scale * font.height_unscaled() / units);

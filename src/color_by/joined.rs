@@ -4,7 +4,7 @@
 use super::coloring::order;
 use super::key::{ColorKey, KeyKind};
 use super::{ColorBy, Limit, Limits};
-use crate::load::Loaded;
+use crate::load::Dataset;
 
 /// What colours mean in several frames of a trajectory together, so that equal values have equal colours in all of them.
 ///
@@ -110,7 +110,7 @@ impl ColorBy {
     /// Colours by the kinds of spheres that have no colours: by the column `species` or else `type`, if it is text, and
     /// there are from 2 to 32 kinds to tell apart. `None` if the data gives colours or says no kinds.
     #[must_use]
-    pub fn of_kinds(loaded: &Loaded) -> Option<Self> {
+    pub fn of_kinds(loaded: &Dataset) -> Option<Self> {
         if loaded.colors.is_some() {
             return None;
         }

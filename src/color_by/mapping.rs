@@ -8,7 +8,7 @@ use super::number::short;
 use super::{ColorBy, ColorKey, Coloring, is_kept};
 use crate::added::{AddedSpheres, Additions, Base};
 use crate::image::color::LinearRgb;
-use crate::load::{Column, Loaded};
+use crate::load::{Column, Dataset};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors, Scene};
@@ -103,7 +103,7 @@ impl Mapping {
     /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
     pub fn scene(
         &self,
-        loaded: Loaded,
+        loaded: Dataset,
         color: LinearRgb,
     ) -> Result<(Scene, MappedColumns), ColorByError> {
         let (scene, mapped, _) = self.scene_with(loaded, color, &Additions::default())?;
@@ -117,7 +117,7 @@ impl Mapping {
     /// The errors of [`Mapping::scene`], and an error if the file lacks what the additions need.
     pub fn scene_with(
         &self,
-        mut loaded: Loaded,
+        mut loaded: Dataset,
         color: LinearRgb,
         additions: &Additions,
     ) -> Result<(Scene, MappedColumns, AddedSpheres), ColorByError> {

@@ -47,7 +47,7 @@ pub use host::depth_test::{DepthTest, HostDepth};
 pub use host::lit_picture::{LitPicture, LitProgress, LitState, LitSums};
 pub use host::lit_renderer::LitRenderer;
 pub use host::live_picture::{LivePicture, LiveProgress};
-pub use host::pick::{PickError, Picked, PickedHit, Picker};
+pub use host::pick::{PickError, PickedHit, PickedPixel, Picker};
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::Frame;

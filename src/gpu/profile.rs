@@ -19,7 +19,7 @@ use crate::gpu::headless::waiting::Instant;
 pub struct Profile {
     start: Instant,
     thread: ThreadId,
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<State>>,
 }
 
 /// Where time was spent.
@@ -50,7 +50,7 @@ pub struct ProfileTotal {
 
 /// What clones of a profile share.
 #[derive(Debug, Default)]
-struct Shared {
+struct State {
     totals: Vec<ProfileTotal>,
     /// The phases of each thread that have begun, the outer first.
     open: HashMap<ThreadId, Vec<Open>>,
@@ -120,12 +120,12 @@ impl Profile {
         self.shared().add(name, ProfileTrack::Device, duration);
     }
 
-    fn shared(&self) -> MutexGuard<'_, Shared> {
+    fn shared(&self) -> MutexGuard<'_, State> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Shared {
+impl State {
     fn add(&mut self, name: &'static str, track: ProfileTrack, own: Duration) {
         match self.totals.iter_mut().find(|total| (total.name, total.track) == (name, track)) {
             Some(total) => {

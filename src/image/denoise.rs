@@ -44,7 +44,7 @@ fn divisors(albedo: [f32; 3], color: [f32; 3]) -> [f32; 3] {
 
 /// What is filtered and what guides the filter, row by row from the top.
 #[derive(Clone, Debug)]
-pub(crate) struct Guided {
+pub(crate) struct Guides {
     /// Colour divided by albedo, and the variance of its luminance.
     pub(crate) lights: Vec<[f32; 4]>,
     /// Normal (zero for a miss) and depth (zero for a miss).
@@ -53,7 +53,7 @@ pub(crate) struct Guided {
     pub(crate) albedos: Vec<[f32; 4]>,
 }
 
-impl Guided {
+impl Guides {
     /// Collects the layers of a picture that has been rendered with light.
     pub(crate) fn of(image: &Image) -> Result<Self, MissingGuide> {
         let missing = |missing| move || MissingGuide { missing };

@@ -4,10 +4,10 @@ pub(super) mod element;
 
 use std::collections::{HashMap, HashSet};
 
+use super::dataset::retain;
 use super::elements::{Appearance, UnknownSpecies, appearance};
 use super::labels::{LabelsBuilder, Memo};
-use super::loaded::retain;
-use super::{Column, ColumnValues, Loaded};
+use super::{Column, ColumnValues, Dataset};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere_array::SphereArray;
 use crate::text::listed;
@@ -194,11 +194,11 @@ impl Atoms {
     }
 
     /// Returns the atoms as loaded data, without a cell and a number of frames.
-    pub(super) fn into_loaded(mut self) -> Loaded {
+    pub(super) fn into_loaded(mut self) -> Dataset {
         let doubtful = self.decide_doubtful();
         let left_out = self.keep_one_location();
         let unknown = self.species.unknown();
-        let mut loaded = Loaded::new(SphereArray::F64(self.spheres));
+        let mut loaded = Dataset::new(SphereArray::F64(self.spheres));
         loaded.colors = Some(self.colors);
         loaded.columns = [
             ("species", self.species.labels.into_values()),

@@ -4,10 +4,10 @@
 //! are comments, and the last comment before the first row may have the names of the columns. What the names mean is the
 //! same as in all tables. A value that is missing (empty, `NaN`, `NA`, `null`) is NaN.
 
+use super::dataset::{ColumnValues, Dataset};
 use super::error::LoadError;
 use super::format::Options;
 use super::labels::LabelsBuilder;
-use super::loaded::{ColumnValues, Loaded};
 use super::numbers::number;
 use super::rows::{Lines, Values};
 use super::table::{Table, TableColumn};
@@ -18,13 +18,13 @@ use crate::text::without_byte_order_mark;
 ///
 /// # Errors
 /// If the columns have no names, a row has more or fewer values than the others, or positions or radii are not numbers.
-pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let text = without_byte_order_mark(bytes);
     let first = First::of(text, &options.columns)?;
-    let mut columns: Vec<Building> = first.names.iter().map(|name| Building::new(name)).collect();
+    let mut columns: Vec<_> = first.names.iter().map(|name| ColumnBuilder::new(name)).collect();
     // A column is of text if any of its values is; that is known after all rows, which are read again then.
     if read_rows(&first, &mut columns)? {
-        columns.iter_mut().for_each(Building::clear);
+        columns.iter_mut().for_each(ColumnBuilder::clear);
         read_rows(&first, &mut columns)?;
     }
     let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
@@ -43,13 +43,13 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     rows::into_loaded(table, options, line_of)
 }
 
-struct Building {
+struct ColumnBuilder {
     is_text: bool,
     numbers: Vec<f64>,
     labels: LabelsBuilder,
 }
 
-impl Building {
+impl ColumnBuilder {
     fn new(name: &str) -> Self {
         let is_text = table::is_element(name);
         Self { is_text, numbers: Vec::new(), labels: LabelsBuilder::default() }
@@ -70,7 +70,7 @@ impl Building {
 }
 
 /// Reads all rows. Returns whether a column has turned out to be of text, so that its values are not whole.
-fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LoadError> {
+fn read_rows(first: &First<'_>, columns: &mut [ColumnBuilder]) -> Result<bool, LoadError> {
     let declared = columns.len();
     let mut is_new_text = false;
     first.each_row(|line, values| {
@@ -78,22 +78,22 @@ fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LoadEr
         for value in values {
             let column = found;
             found += 1;
-            let Some(building) = columns.get_mut(column) else { continue };
-            if !building.is_text {
+            let Some(builder) = columns.get_mut(column) else { continue };
+            if !builder.is_text {
                 let parsed = if is_missing(value) { Some(f64::NAN) } else { number(value) };
                 if let Some(parsed) = parsed {
-                    building.numbers.push(parsed);
+                    builder.numbers.push(parsed);
                     continue;
                 }
                 if table::must_be_numbers(&first.names[column]) {
                     return Err(rows::not_a_number(value, line, column, &first.names[column]));
                 }
-                (building.is_text, is_new_text) = (true, true);
+                (builder.is_text, is_new_text) = (true, true);
             }
             if !value.is_ascii() && std::str::from_utf8(value).is_err() {
                 return Err(rows::not_text(line));
             }
-            building.labels.push(value);
+            builder.labels.push(value);
         }
         if found < declared {
             return Err(rows::missing(line, &first.names[found], found, found));

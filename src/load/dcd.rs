@@ -10,9 +10,9 @@
 use std::ops::Range;
 
 use super::atoms::edges_of;
+use super::dataset::Dataset;
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use super::loaded::Loaded;
 use super::numbers::{Order, Reader, numbers, wrong_position, wrong_start};
 use super::source::Bytes;
 use super::topology::{Positions, Topology};
@@ -81,7 +81,7 @@ impl FrameReader for Dcd {
         frame: usize,
         span: &FrameSpan,
         _: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let header = &self.header;
         let mut reader = Reader::new(source, header.order)?;
         let mut positions = Positions::default();

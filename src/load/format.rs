@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::{fmt, io};
 
+use super::dataset::Dataset;
 use super::error::LoadError;
-use super::loaded::Loaded;
 use super::source::{Bytes, LineReader, bytes, gzip_size_hint, is_gzip};
 use super::topology::Topology;
 
@@ -19,7 +19,7 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Contents of such a file, in a few words for users.
     pub about: &'static str,
-    pub(super) reading: Reading,
+    pub(super) method: ReadMethod,
     /// Whether a file has positions alone, so that [`Options::topology`] names a file that says what the spheres are.
     pub needs_topology: bool,
     /// Whether a file can lack names for its columns, so that [`Options::columns`] gives them.
@@ -37,9 +37,9 @@ pub struct Format {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Reading {
+pub(super) enum ReadMethod {
     /// As a whole.
-    Whole(fn(&[u8], &Options) -> Result<Loaded, LoadError>),
+    Whole(fn(&[u8], &Options) -> Result<Dataset, LoadError>),
     /// Frame by frame, because a file can have several.
     Frames(Frames),
 }
@@ -51,7 +51,7 @@ pub(super) enum Frames {
     Lines {
         /// Finds all frames, or those up to one that is wanted.
         find: fn(&mut LineReader<'_>, Option<usize>) -> io::Result<FrameIndex>,
-        read: fn(&FrameText<'_>, &Options) -> Result<Loaded, LoadError>,
+        read: fn(&FrameText<'_>, &Options) -> Result<Dataset, LoadError>,
     },
     /// Binary data, where a reader goes to any place.
     Bytes {
@@ -78,7 +78,7 @@ pub(super) trait FrameReader: fmt::Debug + Send + Sync {
         frame: usize,
         span: &FrameSpan,
         options: &Options,
-    ) -> Result<Loaded, LoadError>;
+    ) -> Result<Dataset, LoadError>;
 }
 
 #[derive(Debug, Default)]
@@ -117,7 +117,7 @@ impl Format {
     /// Whether a file can have several frames, which [`Trajectory`](super::Trajectory) reads one by one.
     #[must_use]
     pub const fn has_frames(&self) -> bool {
-        matches!(self.reading, Reading::Frames(_))
+        matches!(self.method, ReadMethod::Frames(_))
     }
 
     /// Returns how many bytes of memory reading takes in addition to the file itself, or 0 if the file does not say.
@@ -215,7 +215,7 @@ impl Frames {
         index: &FrameIndex,
         wanted: usize,
         options: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let frames = index.frames.len();
         let Some(span) = index.frames.get(wanted) else {
             return Err(LoadError::no_such_frame(wanted, frames));
@@ -244,7 +244,7 @@ pub(super) fn read_from_memory(
     frames: Frames,
     options: &Options,
     topology: Option<Topology>,
-) -> Result<Loaded, LoadError> {
+) -> Result<Dataset, LoadError> {
     let wanted = options.frame.unwrap_or_default();
     let mut source = io::Cursor::new(bytes);
     let index = frames.find(&mut source, None, options, topology)?;
@@ -260,7 +260,7 @@ pub(super) fn read_from_memory(
 impl FrameIndex {
     /// A frame, with a note on what is wrong after the last one; or else this as an error, because a wrong number of atoms
     /// in a text makes what follows them wrong.
-    pub(super) fn with_problem(self, mut loaded: Loaded) -> Result<Loaded, LoadError> {
+    pub(super) fn with_problem(self, mut loaded: Dataset) -> Result<Dataset, LoadError> {
         match self.problem {
             Some(problem) if self.stands_alone => loaded.notes.push(problem.to_string()),
             Some(problem) => return Err(problem),

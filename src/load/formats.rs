@@ -5,9 +5,9 @@ use std::io;
 use std::io::Read as _;
 use std::path::Path;
 
+use super::dataset::Dataset;
 use super::error::LoadError;
-use super::format::{Format, Options, Reading};
-use super::loaded::Loaded;
+use super::format::{Format, Options, ReadMethod};
 use super::raw;
 use super::source::{Source, without_gz};
 
@@ -16,7 +16,7 @@ const RAW: Format = Format {
     name: "raw-f32x4",
     extensions: &[],
     about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
-    reading: Reading::Whole(|bytes, _| Ok(Loaded::new(raw::read_spheres(bytes)?))),
+    method: ReadMethod::Whole(|bytes, _| Ok(Dataset::new(raw::read_spheres(bytes)?))),
     needs_topology: false,
     may_lack_names: false,
     may_lack_radii: false,
@@ -32,7 +32,7 @@ pub static FORMATS: &[Format] = &[
         name: "xyz",
         extensions: &["xyz"],
         about: "Text with one atom on each line (XYZ)",
-        reading: Reading::Frames(super::xyz::FRAMES),
+        method: ReadMethod::Frames(super::xyz::FRAMES),
         may_lack_radii: true,
         has_colors: true,
         starts: super::xyz::starts,
@@ -42,7 +42,7 @@ pub static FORMATS: &[Format] = &[
         name: "extxyz",
         extensions: &["extxyz"],
         about: "Text with one atom on each line and named columns (extended XYZ)",
-        reading: Reading::Frames(super::xyz::FRAMES),
+        method: ReadMethod::Frames(super::xyz::FRAMES),
         may_lack_radii: true,
         has_colors: true,
         ..RAW
@@ -51,7 +51,7 @@ pub static FORMATS: &[Format] = &[
         name: "pdb",
         extensions: &["pdb", "ent"],
         about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
-        reading: Reading::Frames(super::pdb::FRAMES),
+        method: ReadMethod::Frames(super::pdb::FRAMES),
         has_colors: true,
         starts: super::pdb::starts,
         ..RAW
@@ -60,7 +60,7 @@ pub static FORMATS: &[Format] = &[
         name: "lammps-dump",
         extensions: &["lammpstrj", "dump"],
         about: "A dump of atoms of LAMMPS; a frame is a step",
-        reading: Reading::Frames(super::lammps::dump::FRAMES),
+        method: ReadMethod::Frames(super::lammps::dump::FRAMES),
         may_lack_names: true,
         may_lack_radii: true,
         z_is_up: true,
@@ -71,7 +71,7 @@ pub static FORMATS: &[Format] = &[
         name: "lammps-data",
         extensions: &["data", "lmp"],
         about: "A data file of LAMMPS, with the section Atoms",
-        reading: Reading::Whole(super::lammps::data::read),
+        method: ReadMethod::Whole(super::lammps::data::read),
         may_lack_names: true,
         may_lack_radii: true,
         z_is_up: true,
@@ -82,7 +82,7 @@ pub static FORMATS: &[Format] = &[
         name: "mmcif",
         extensions: &["cif", "mmcif"],
         about: "Text of named items (mmCIF), or the CIF of a small molecule; a frame is a model",
-        reading: Reading::Frames(super::mmcif::FRAMES),
+        method: ReadMethod::Frames(super::mmcif::FRAMES),
         has_colors: true,
         starts: super::mmcif::starts,
         ..RAW
@@ -91,7 +91,7 @@ pub static FORMATS: &[Format] = &[
         name: "las",
         extensions: &["las"],
         about: "Points of a laser scanner (LAS)",
-        reading: Reading::Whole(super::las::read),
+        method: ReadMethod::Whole(super::las::read),
         may_lack_radii: true,
         z_is_up: true,
         starts: super::las::starts,
@@ -101,7 +101,7 @@ pub static FORMATS: &[Format] = &[
         name: "gsd",
         extensions: &["gsd"],
         about: "Particles of HOOMD-blue (GSD)",
-        reading: Reading::Frames(super::gsd::FRAMES),
+        method: ReadMethod::Frames(super::gsd::FRAMES),
         may_lack_radii: true,
         z_is_up: true,
         starts: super::gsd::starts,
@@ -111,7 +111,7 @@ pub static FORMATS: &[Format] = &[
         name: "dcd",
         extensions: &["dcd"],
         about: "Positions of atoms by CHARMM, NAMD, OpenMM or LAMMPS, with a topology",
-        reading: Reading::Frames(super::dcd::FRAMES),
+        method: ReadMethod::Frames(super::dcd::FRAMES),
         needs_topology: true,
         starts: super::dcd::starts,
         ..RAW
@@ -120,7 +120,7 @@ pub static FORMATS: &[Format] = &[
         name: "trr",
         extensions: &["trr"],
         about: "Positions and velocities of atoms by GROMACS, with a topology",
-        reading: Reading::Frames(super::gromacs::TRR),
+        method: ReadMethod::Frames(super::gromacs::TRR),
         needs_topology: true,
         starts: super::gromacs::starts_trr,
         ..RAW
@@ -129,7 +129,7 @@ pub static FORMATS: &[Format] = &[
         name: "xtc",
         extensions: &["xtc"],
         about: "Compressed positions of atoms by GROMACS, with a topology",
-        reading: Reading::Frames(super::gromacs::XTC),
+        method: ReadMethod::Frames(super::gromacs::XTC),
         needs_topology: true,
         starts: super::gromacs::starts_xtc,
         ..RAW
@@ -138,7 +138,7 @@ pub static FORMATS: &[Format] = &[
         name: "npy",
         extensions: &["npy"],
         about: "A NumPy array of x, y, z, and radius, a value or colors, or of structures",
-        reading: Reading::Whole(|bytes, options| super::npy::read(bytes, options.radius)),
+        method: ReadMethod::Whole(|bytes, options| super::npy::read(bytes, options.radius)),
         may_lack_radii: true,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
         extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
@@ -148,7 +148,7 @@ pub static FORMATS: &[Format] = &[
         name: "npz",
         extensions: &["npz"],
         about: "A NumPy archive with arrays of positions, radii, colors and so on",
-        reading: Reading::Whole(|bytes, options| super::npz::read(bytes, options.radius)),
+        method: ReadMethod::Whole(|bytes, options| super::npz::read(bytes, options.radius)),
         may_lack_radii: true,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
         extra_bytes: |bytes| super::npz::array_bytes(bytes),
@@ -158,7 +158,7 @@ pub static FORMATS: &[Format] = &[
         name: "csv",
         extensions: &["csv", "tsv"],
         about: "A table of text with commas, tabs, semicolons or white space",
-        reading: Reading::Whole(super::csv::read),
+        method: ReadMethod::Whole(super::csv::read),
         may_lack_names: true,
         may_lack_radii: true,
         starts: super::csv::starts,
@@ -168,7 +168,7 @@ pub static FORMATS: &[Format] = &[
         name: "ply",
         extensions: &["ply"],
         about: "The vertices of a PLY file, as text or binary data",
-        reading: Reading::Whole(super::ply::read),
+        method: ReadMethod::Whole(super::ply::read),
         may_lack_radii: true,
         starts: super::ply::starts,
         ..RAW
@@ -178,7 +178,7 @@ pub static FORMATS: &[Format] = &[
         name: "vtk",
         extensions: &["vtp", "vtu"],
         about: "The points of a VTK XML file: PolyData or UnstructuredGrid",
-        reading: Reading::Whole(super::vtk::read),
+        method: ReadMethod::Whole(super::vtk::read),
         may_lack_radii: true,
         starts: super::vtk::starts,
         ..RAW

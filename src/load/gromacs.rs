@@ -8,9 +8,9 @@ mod xtc;
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::{FrameIndex, FrameReader, FrameSpan, Options};
-use super::loaded::Loaded;
 use super::numbers::{Order, Reader};
 use super::source::Bytes;
 use super::topology::{Positions, Topology};
@@ -36,7 +36,7 @@ impl FrameReader for Trajectory {
         frame: usize,
         span: &FrameSpan,
         _: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let mut reader = Reader::new(source, Order::Big)?;
         reader.seek(span.bytes.start)?;
         let positions = (self.read)(&mut reader, frame, &self.topology)?;

@@ -9,10 +9,10 @@ pub(super) use index::starts;
 
 use std::collections::BTreeSet;
 
+use super::dataset::{Column, ColumnValues, Dataset, Labels};
 use super::elements::appearance;
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::numbers::{Order, Reader, component_names, shown, wrong_position, wrong_start};
 use super::source::Bytes;
 use super::table::{Table, TableColumn};
@@ -75,7 +75,7 @@ impl FrameReader for Gsd {
         frame: usize,
         _: &FrameSpan,
         options: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let mut reader = Reader::new(source, Order::Little)?;
         let index = &self.index;
         let particles =
@@ -105,7 +105,7 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    fn read(mut self, options: &Options) -> Result<Loaded, LoadError> {
+    fn read(mut self, options: &Options) -> Result<Dataset, LoadError> {
         let mut columns = self.positions()?;
         let mut notes = Vec::new();
         let species = self.species()?;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::loaded::{ColumnValues, Labels};
+use super::dataset::{ColumnValues, Labels};
 
 /// A map from keys to indices. A small table in front of the hash map holds the last key found in each of its slots.
 #[derive(Debug)]

@@ -6,8 +6,8 @@
 pub(super) mod data;
 pub(super) mod dump;
 
+use super::dataset::ColumnValues;
 use super::error::LoadError;
-use super::loaded::ColumnValues;
 use super::numbers::number;
 use super::rows::Values;
 use super::table::{Table, TableColumn};

@@ -4,9 +4,9 @@
 //! compressed, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes asks for
 //! 50 GB of memory, which ends the program.
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
-use super::loaded::Loaded;
 use super::table::{Table, TableColumn};
 use crate::parallel;
 
@@ -20,7 +20,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")
 }
 
-pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let points = Points::new(bytes)?;
     let mut notes = Vec::new();
     let columns = points.columns(&mut notes)?;

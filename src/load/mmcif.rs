@@ -14,7 +14,7 @@ use std::io::SeekFrom;
 
 use memchr::memchr;
 
-use super::Loaded;
+use super::Dataset;
 use super::atoms::{Atom, Atoms};
 use super::error::LoadError;
 use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
@@ -76,7 +76,7 @@ impl FrameReader for MmCif {
         wanted: usize,
         span: &FrameSpan,
         _: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let frames = &self.models;
         let FrameSpan { bytes: rows, lines_before } = span;
         // Models of a block follow each other without a gap; the text between blocks has their names and cells.
@@ -127,7 +127,7 @@ fn read_rows(
     lines_before: usize,
     columns: &Columns,
     cell: Option<[[f64; 3]; 3]>,
-) -> Result<Loaded, LoadError> {
+) -> Result<Dataset, LoadError> {
     let mut tokens = Tokens::new(text, lines_before);
     // Rows are hardly ever shorter.
     let mut atoms = Atoms::with_capacity(text.len() / 80);

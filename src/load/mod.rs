@@ -1,4 +1,4 @@
-//! Reads files of spheres: [`open`] takes a path, [`from_bytes`] takes bytes, and both return a [`Loaded`].
+//! Reads files of spheres: [`open`] takes a path, [`from_bytes`] takes bytes, and both return a [`Dataset`].
 //!
 //! [`FORMATS`] lists every format that this build can read; no other module names a format. The format of a file is
 //! the one in [`Options::format`], or else follows from the file's extension, or else from its content.
@@ -15,6 +15,7 @@
 
 mod atoms;
 pub mod csv;
+mod dataset;
 mod dcd;
 mod elements;
 #[cfg(feature = "exr")]
@@ -27,7 +28,6 @@ mod gsd;
 mod labels;
 pub mod lammps;
 mod las;
-mod loaded;
 pub mod mmcif;
 pub mod npy;
 pub mod npz;
@@ -47,10 +47,10 @@ mod topology;
 mod vtk;
 pub mod xyz;
 
+pub use dataset::{Column, ColumnValues, Dataset, Labels};
 #[cfg(feature = "scene-file")]
 pub(crate) use elements::{Covalent, covalent};
 pub use error::{LoadError, LoadErrorKind, Place};
 pub use format::{Format, Options};
 pub use formats::FORMATS;
-pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{Trajectory, from_bytes, open};

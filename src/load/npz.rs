@@ -11,9 +11,9 @@ use flate2::bufread::DeflateDecoder;
 use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
+use super::dataset::Dataset;
 use super::error::{LoadError, Place, first_names};
 use super::format::Options;
-use super::loaded::Loaded;
 use super::npy::{Array, Spheres};
 use super::table::Table;
 use crate::text::{one_line, shortened};
@@ -43,7 +43,7 @@ const MAX_RATIO: u64 = 1032;
 ///
 /// # Errors
 /// If no array has positions, an array is damaged, or they do not make spheres.
-pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, LoadError> {
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
     let main = main_array(&entries)?;

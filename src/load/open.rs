@@ -4,9 +4,9 @@
 use std::io::{self, BufRead as _, Read as _};
 use std::path::{Path, PathBuf};
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind, Place};
-use super::format::{Format, FrameIndex, Frames, Options, Reading, read_from_memory};
-use super::loaded::Loaded;
+use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_memory};
 use super::source::{Source, decompressed, is_gzip, without_gz};
 use super::topology::Topology;
 
@@ -15,7 +15,7 @@ use super::topology::Topology;
 ///
 /// # Errors
 /// If the file cannot be read, its format is not known, or an option does not apply to it.
-pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadError> {
+pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let path = path.as_ref();
     let failed = |error: io::Error| LoadError::from(error).in_file(path);
     let format = match options.format {
@@ -41,7 +41,7 @@ pub fn from_bytes(
     bytes: &[u8],
     name: impl AsRef<Path>,
     options: &Options,
-) -> Result<Loaded, LoadError> {
+) -> Result<Dataset, LoadError> {
     let format = match options.format {
         Some(format) => format,
         None if is_gzip(bytes) => {
@@ -58,7 +58,7 @@ impl Format {
     ///
     /// # Errors
     /// If the file cannot be read, or an option does not apply to this format.
-    pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+    pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         self.check(options)?;
         if is_gzip(bytes) {
             return self.read_plain(&decompressed(bytes)?, options);
@@ -67,10 +67,10 @@ impl Format {
     }
 
     /// Reads a file that is not compressed.
-    fn read_plain(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-        match self.reading {
-            Reading::Whole(read) => read(bytes, options),
-            Reading::Frames(frames) => {
+    fn read_plain(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
+        match self.method {
+            ReadMethod::Whole(read) => read(bytes, options),
+            ReadMethod::Frames(frames) => {
                 read_from_memory(bytes, frames, options, open_topology(options)?)
             }
         }
@@ -141,7 +141,7 @@ impl Trajectory {
             }
         };
         format.check(options)?;
-        let Reading::Frames(frames) = format.reading else {
+        let ReadMethod::Frames(frames) = format.method else {
             let name = format.name;
             let message = format!("a file of the format {name} has no frames; read it as a whole");
             return Err(LoadError::new(message).of_kind(LoadErrorKind::NoFrames));
@@ -183,7 +183,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// If there is no such frame, or it cannot be read. Lines are counted from the start of the file.
-    pub fn frame(&mut self, index: usize) -> Result<Loaded, LoadError> {
+    pub fn frame(&mut self, index: usize) -> Result<Dataset, LoadError> {
         let Self { path, source, frames, index: found, options } = self;
         frames.read(source, found, index, options).map_err(|error| error.in_file(path))
     }
@@ -193,7 +193,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// As [`Trajectory::frame`], and then [`Trajectory::problem`].
-    pub fn into_frame(mut self, index: usize) -> Result<Loaded, LoadError> {
+    pub fn into_frame(mut self, index: usize) -> Result<Dataset, LoadError> {
         let loaded = self.frame(index)?;
         self.index.with_problem(loaded)
     }

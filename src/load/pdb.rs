@@ -14,7 +14,7 @@ mod record;
 
 use std::io;
 
-use super::Loaded;
+use super::Dataset;
 use super::atoms::{Atom, Atoms};
 use super::error::{LoadError, Place};
 use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
@@ -25,11 +25,11 @@ use record::{Kind, Lines, Record, cell_of, hybrid36};
 /// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.
 ///
 /// A file without MODEL records has one frame. The file is read to its end, so that
-/// [`Loaded::frames`] is known, but atoms of other models are not checked.
+/// [`Dataset::frames`] is known, but atoms of other models are not checked.
 ///
 /// # Errors
 /// If the text is not a valid PDB file, or has no such frame.
-pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
+pub fn read(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
@@ -71,7 +71,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
     Ok(found)
 }
 
-fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
+fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
     // Few lines of atoms are shorter: they end after the B-factor, which is in columns 61 to 66.
@@ -201,7 +201,7 @@ impl Reader {
     }
 
     /// Returns the atoms of the frame, which is the one with this index in the file.
-    fn finish(self, index: usize) -> Result<Loaded, LoadError> {
+    fn finish(self, index: usize) -> Result<Dataset, LoadError> {
         if self.atoms.is_empty() {
             let message = format!(
                 "frame {index} is the model that begins here, which has no ATOM or HETATM records; choose another frame"

@@ -5,15 +5,15 @@
 //! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
 //! one by one, such as the crate ply-rs-bw, would take more memory and time.
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
-use super::loaded::Loaded;
 use super::numbers::{Order, Scalar};
 use super::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened};
 
-pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let header = read_header(bytes)?;
     let data = &bytes[header.bytes..];
     let vertex = header.elements.iter().position(|element| element.name == "vertex");

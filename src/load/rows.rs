@@ -5,10 +5,10 @@
 
 use memchr::{memchr, memchr_iter};
 
+use super::dataset::{Dataset, Labels};
 use super::error::{LoadError, Place};
 use super::format::Options;
 use super::labels::LabelsBuilder;
-use super::loaded::{Labels, Loaded};
 use super::numbers::number;
 use super::table::{Table, TableColumn};
 use crate::parallel;
@@ -288,7 +288,7 @@ pub(super) fn into_loaded(
     table: Table,
     options: &Options,
     line_of: impl Fn(usize) -> usize,
-) -> Result<Loaded, LoadError> {
+) -> Result<Dataset, LoadError> {
     let loaded = table.into_loaded(options).map_err(|error| match error.place {
         Place::Row(row) => LoadError { place: Place::Line(line_of(row)), ..error },
         _ => error,
@@ -303,7 +303,7 @@ pub(super) fn into_loaded(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::loaded::ColumnValues;
+    use crate::load::dataset::ColumnValues;
 
     fn fields() -> Vec<Field> {
         vec![

@@ -3,10 +3,10 @@
 
 use glam::DVec3;
 
+use super::dataset::{Column, ColumnValues, Dataset, Labels};
 use super::elements::{UnknownSpecies, appearance};
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
-use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
 use crate::image::color::LinearRgb;
 use crate::parallel;
@@ -45,7 +45,7 @@ impl TableColumn {
 impl Table {
     /// Makes spheres of the table. Columns that are not needed for them become columns of the result. Radii are those of
     /// a column, or the one in the options, or those of chemical elements, or else follow from the spacing of the points.
-    pub(super) fn into_loaded(mut self, options: &Options) -> Result<Loaded, LoadError> {
+    pub(super) fn into_loaded(mut self, options: &Options) -> Result<Dataset, LoadError> {
         let positions = self.take_set(POSITIONS).ok_or_else(|| self.no_positions())?;
         let names = positions.each_ref().map(|column| column.name.clone());
         let [x, y, z] = positions.map(numbers_of);
@@ -70,7 +70,7 @@ impl Table {
         mut spheres: SphereArray,
         have_radii: bool,
         options: &Options,
-    ) -> Result<Loaded, LoadError> {
+    ) -> Result<Dataset, LoadError> {
         let mut notes = Vec::new();
         let (colors, opacities) = (self.colors(&mut notes), self.opacities(&mut notes));
         let found_radii = if have_radii { None } else { self.radii()? };
@@ -116,7 +116,7 @@ impl Table {
         let unknown = UnknownSpecies::new(unknown.collect(), colors.is_none(), lacks_radius);
         notes.extend(unknown.as_ref().map(UnknownSpecies::note));
         let colors = colors.or(by_element);
-        let mut loaded = Loaded::new(spheres);
+        let mut loaded = Dataset::new(spheres);
         loaded.colors = colors;
         loaded.opacities = opacities;
         loaded.unknown = unknown;
@@ -338,7 +338,7 @@ pub(super) fn guessed_radius(
     digits
 }
 
-impl Loaded {
+impl Dataset {
     /// Spheres without radii in the file, which all get one radius: half of the median distance to the nearest neighbour,
     /// so that neighbours about touch. A note says which. The radii of `centers` are not used.
     #[must_use]

@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
+use super::dataset::{Column, Dataset};
 use super::error::{LoadError, LoadErrorKind};
-use super::loaded::{Column, Loaded};
 use crate::scene::sphere_array::SphereArray;
 
 /// What the spheres of a trajectory are.
 #[derive(Debug)]
 pub(super) struct Topology {
     path: PathBuf,
-    loaded: Loaded,
+    loaded: Dataset,
 }
 
 #[derive(Debug, Default)]
@@ -22,7 +22,7 @@ pub(super) struct Positions {
 }
 
 impl Topology {
-    pub(super) fn new(path: PathBuf, loaded: Loaded) -> Self {
+    pub(super) fn new(path: PathBuf, loaded: Dataset) -> Self {
         Self { path, loaded }
     }
 
@@ -51,12 +51,12 @@ impl Topology {
 
     /// Returns the spheres of a frame: radii, colours and columns are those of the topology; positions, cell and further
     /// columns are those of the frame.
-    pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Loaded, LoadError> {
+    pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Dataset, LoadError> {
         let Positions { centers, cell, columns } = positions;
         self.check(frame, centers.len())?;
         let radius = |index: usize| self.loaded.spheres.at(index)[3];
         let spheres = centers.iter().enumerate().map(|(i, [x, y, z])| [*x, *y, *z, radius(i)]);
-        let mut loaded = Loaded::new(SphereArray::F64(spheres.collect()));
+        let mut loaded = Dataset::new(SphereArray::F64(spheres.collect()));
         loaded.colors.clone_from(&self.loaded.colors);
         loaded.opacities.clone_from(&self.loaded.opacities);
         let is_new = |column: &&Column| columns.iter().all(|new| new.name != column.name);

@@ -13,9 +13,9 @@ use std::io::Read as _;
 use data_encoding::BASE64;
 use flate2::bufread::ZlibDecoder;
 
+use super::dataset::Dataset;
 use super::error::{LoadError, Place};
 use super::format::Options;
-use super::loaded::Loaded;
 use super::numbers::{Number, Scalar};
 use super::table::{Table, TableColumn};
 use crate::parallel;
@@ -33,7 +33,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
         || (first.starts_with(b"<") && first.windows(NAME.len()).any(|window| window == NAME))
 }
 
-pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let bytes = without_byte_order_mark(bytes);
     if bytes.starts_with(LEGACY) {
         return Err(LoadError::new(

@@ -4,14 +4,14 @@
 //! atom. A trajectory is several frames, one after the other. In an extended XYZ file the comment line names the
 //! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. A property of several numbers is several columns:
 //! `forces:R:3` is `forces.x`, `forces.y` and `forces.z`. What they mean follows from their names, as in all tables: of
-//! `species` (or `Z`), `pos`, `radius`, `color` and others spheres are made, and the rest become columns of [`Loaded`].
-//! `Lattice` is the cell, which starts at `Origin`. Lengths are taken as they are, in Å.
+//! `species` (or `Z`), `pos`, `radius`, `color` and others spheres are made, and the rest become columns of
+//! [`Dataset`]. `Lattice` is the cell, which starts at `Origin`. Lengths are taken as they are, in Å.
 
 use std::io;
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
-use super::loaded::Loaded;
 use super::numbers::component_names;
 use super::numbers::number;
 use super::rows::{self, Field, Kind, Lines, Rows, Values};
@@ -25,7 +25,7 @@ use crate::text::{one_line, shortened, without_byte_order_mark};
 ///
 /// # Errors
 /// If the text is not a valid XYZ file, or has no such frame.
-pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
+pub fn read(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
@@ -91,7 +91,7 @@ fn counted(atoms: usize) -> String {
     if atoms == 1 { "1 atom".to_owned() } else { format!("{atoms} atoms") }
 }
 
-fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
+fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> {
     let mut lines = Lines::new(without_byte_order_mark(frame.text));
     let mut lines_before = frame.lines_before;
     // Blank lines may come before the number of atoms.

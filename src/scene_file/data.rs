@@ -12,7 +12,7 @@ use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
 use crate::added::{AddError, AddedSpheres, Additions, Base, BondLength, Bonds, CellEdges};
 use crate::color_by::Mapping;
 use crate::image::color::LinearRgb;
-use crate::load::{Labels, Loaded};
+use crate::load::{Dataset, Labels};
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
@@ -246,7 +246,7 @@ pub(super) fn read_additions(
 pub(super) fn add_spheres(
     additions: &Additions,
     spheres: &mut Vec<Sphere>,
-    loaded: &Loaded,
+    loaded: &Dataset,
     kept: &[usize],
 ) -> Result<AddedSpheres, AddError> {
     if additions.is_empty() {

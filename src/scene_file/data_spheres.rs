@@ -5,7 +5,7 @@ use super::span::DEFAULT_COLOR;
 use crate::added::{AddError, AddedSpheres};
 use crate::color_by::{ColorByError, ColorKey, MappedColumns, Mapping};
 use crate::image::color::LinearRgb;
-use crate::load::{ColumnValues, Labels, Loaded};
+use crate::load::{ColumnValues, Dataset, Labels};
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::select::{KeptSpheres, SelectError};
@@ -60,7 +60,7 @@ impl Data {
     /// # Errors
     /// If the scene file names a column that the data does not have, or whose values cannot be used; if it selects
     /// nothing; or if the data lacks what bonds or a box need.
-    pub fn apply(&self, mut loaded: Loaded) -> Result<AppliedData, DataError> {
+    pub fn apply(&self, mut loaded: Dataset) -> Result<AppliedData, DataError> {
         let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let Mapping { color, radius, .. } = &self.mapping;
         let is_given = |species: &str| {
@@ -173,7 +173,7 @@ impl Data {
     /// Returns the text column that a key of the scene file names.
     fn labels<'a>(
         &self,
-        loaded: &'a Loaded,
+        loaded: &'a Dataset,
         key: &str,
         column: &str,
     ) -> Result<&'a Labels, DataError> {
@@ -197,7 +197,7 @@ impl Data {
     }
 
     /// Returns for each sphere whether it is left out; the result is empty if the scene file leaves out nothing.
-    fn left_out(&self, loaded: &Loaded, notes: &mut Vec<String>) -> Result<Vec<bool>, DataError> {
+    fn left_out(&self, loaded: &Dataset, notes: &mut Vec<String>) -> Result<Vec<bool>, DataError> {
         let mut is_left_out = Vec::new();
         for (column, values) in &self.leave_out {
             let labels = self.labels(loaded, "leave_out", column)?;

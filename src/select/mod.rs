@@ -8,11 +8,11 @@
 //!
 //! ```
 //! use pinhole::SphereArray;
-//! use pinhole::load::Loaded;
+//! use pinhole::load::Dataset;
 //! use pinhole::select::Selection;
 //!
 //! let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0], [9.0, 0.0, 0.0, 1.0]]);
-//! let mut loaded = Loaded::new(spheres);
+//! let mut loaded = Dataset::new(spheres);
 //! let kept = "x >= 5 and not index == 2".parse::<Selection>()?.apply(&mut loaded)?;
 //! assert_eq!((kept.kept, kept.of), (1, 3));
 //! assert_eq!(loaded.spheres, SphereArray::F32(vec![[5.0, 0.0, 0.0, 1.0]]));
@@ -27,7 +27,7 @@ pub use parse::SelectError;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::load::{Column, ColumnValues, Loaded};
+use crate::load::{Column, ColumnValues, Dataset};
 use crate::scene::sphere_array::SphereArray;
 
 /// An expression that says which spheres are kept.
@@ -90,7 +90,7 @@ impl Selection {
     /// # Errors
     /// Returns the errors of [`Selection::matches`], and an error if no sphere of several matches. Then nothing is
     /// changed.
-    pub fn apply(&self, loaded: &mut Loaded) -> Result<KeptSpheres, SelectError> {
+    pub fn apply(&self, loaded: &mut Dataset) -> Result<KeptSpheres, SelectError> {
         let (is_kept, notes) = self.matches(&loaded.spheres, &loaded.columns)?;
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
         if kept == 0 && of > 0 {

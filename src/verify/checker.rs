@@ -14,7 +14,7 @@ use crate::verify::certificate::{
 };
 use crate::verify::hit::{Candidates, LegalHits};
 use crate::verify::recording::{
-    NO_HIT, Recording, Rendered, TracedPixel, TracedRay, check_recording,
+    NO_HIT, PlainRender, Recording, TracedPixel, TracedRay, check_recording,
 };
 use crate::verify::rounding::{Interval, PAD, U, unit_error};
 use crate::verify::sphere::{
@@ -71,7 +71,7 @@ impl<'a> Checker<'a> {
             model: CameraModel::new(camera.kind, uploaded, film),
             recording,
         };
-        let is_compared = recording.rendered != Rendered::None;
+        let is_compared = recording.rendered != PlainRender::None;
         certificate.rendered_otherwise = is_compared.then_some(0);
         let pixels = ranges(recording.pixels.len(), CHUNK);
         for part in map_parts(pixels, |range| judge(&check, range, size[0])) {
@@ -125,7 +125,7 @@ pub(super) struct PixelCheck<'a> {
 }
 
 /// The result for a legal pixel.
-pub(super) struct Judged {
+pub(super) struct PixelResult {
     pub(super) verdict: Verdict,
     /// The deviation of the distance from the middle of its legal interval, relative to half the width of the interval.
     pub(super) depth: f64,
@@ -134,7 +134,7 @@ pub(super) struct Judged {
 }
 
 /// The ray with which a hit is shaded, and how far the device's may be from it.
-struct Shaded {
+struct ShadingRay {
     line: Line,
     slack: Slack,
     direction: [Interval; 3],
@@ -170,7 +170,7 @@ impl PixelCheck<'_> {
         pixel: [u32; 2],
         legal: &mut LegalHits,
         measured: Option<&mut Deviations>,
-    ) -> Result<Judged, Mismatch> {
+    ) -> Result<PixelResult, Mismatch> {
         let TracedPixel { ray, t, id, shading_ray } = self.recording.pixels[index];
         let layers = Layers::of(&self.recording.image, index);
         let illegal = |legal: &LegalHits| Mismatch::new("hit", legal.message(id, t));
@@ -186,7 +186,7 @@ impl PixelCheck<'_> {
                 return Err(illegal(legal));
             }
             self.check_miss(&layers, t)?;
-            return Ok(Judged { verdict: Verdict::Decided, depth: 0.0, normal: 0.0 });
+            return Ok(PixelResult { verdict: Verdict::Decided, depth: 0.0, normal: 0.0 });
         };
         let line = Line::new(ray.origin, ray.direction);
         let entered = camera_ray.entered(&self.model, line.direction);
@@ -203,7 +203,7 @@ impl PixelCheck<'_> {
                 return Err(illegal(legal));
             }
             self.check_miss(&layers, t)?;
-            return Ok(Judged { verdict, depth: 0.0, normal: 0.0 });
+            return Ok(PixelResult { verdict, depth: 0.0, normal: 0.0 });
         }
         if !legal.allows(id, t.into()) {
             return Err(illegal(legal));
@@ -212,12 +212,12 @@ impl PixelCheck<'_> {
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
         // Without the ray of shading, it is known only as well as the ray that it must have had.
-        let mut shading = Shaded { line, slack: entered.slack(), direction: entered.direction };
+        let mut shading = ShadingRay { line, slack: entered.slack(), direction: entered.direction };
         if let Some(ray) = shading_ray {
             let line = Line::new(ray.origin, ray.direction);
             check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
             let direction = ray.direction.map(exactly);
-            shading = Shaded { line, slack: Slack::default(), direction };
+            shading = ShadingRay { line, slack: Slack::default(), direction };
         }
         let normal = self.check_hit(&layers, depths, id, &shading)?;
         if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
@@ -229,7 +229,7 @@ impl PixelCheck<'_> {
             }
             self.measure_shading(&layers, &shading, measured);
         }
-        Ok(Judged { verdict, depth, normal })
+        Ok(PixelResult { verdict, depth, normal })
     }
 
     fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), Mismatch> {
@@ -260,7 +260,7 @@ impl PixelCheck<'_> {
         layers: &Layers,
         depths: Interval,
         id: u32,
-        shading: &Shaded,
+        shading: &ShadingRay,
     ) -> Result<f64, Mismatch> {
         if layers.id != id {
             return Err(wrong_id(layers.id, id));
@@ -273,7 +273,7 @@ impl PixelCheck<'_> {
 
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
     /// bound.
-    fn check_shading(&self, layers: &Layers, ray: &Shaded) -> Result<f64, Mismatch> {
+    fn check_shading(&self, layers: &Layers, ray: &ShadingRay) -> Result<f64, Mismatch> {
         let (scene, id) = (self.checker.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
         let normals = LegalNormals::new(&ray.line, sphere, ray.slack);
@@ -291,7 +291,7 @@ impl PixelCheck<'_> {
     }
 
     /// Adds the deviations of a legal normal and colour.
-    fn measure_shading(&self, layers: &Layers, ray: &Shaded, measured: &mut Deviations) {
+    fn measure_shading(&self, layers: &Layers, ray: &ShadingRay, measured: &mut Deviations) {
         let (scene, id) = (self.checker.scene, layers.id);
         let normal = wide(layers.normal);
         let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
@@ -346,7 +346,7 @@ impl PixelCheck<'_> {
         pixel: [u32; 2],
         legal: &mut LegalHits,
     ) -> Option<Result<(), Mismatch>> {
-        let Rendered::Other(image) = &self.recording.rendered else {
+        let PlainRender::Other(image) = &self.recording.rendered else {
             return None;
         };
         let layers = Layers::of(image, index);
@@ -385,7 +385,7 @@ impl PixelCheck<'_> {
             return Err(Mismatch::value("depth", depth, legal));
         }
         let AnyRay { line, slack, direction, .. } = ray;
-        self.check_shading(layers, &Shaded { line, slack, direction }).map(|_| ())
+        self.check_shading(layers, &ShadingRay { line, slack, direction }).map(|_| ())
     }
 
     /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not

@@ -15,7 +15,7 @@ use super::certificate::{channel_name, pixel_at};
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
-use crate::image::denoise::{Guided, MissingGuide, PASSES};
+use crate::image::denoise::{Guides, MissingGuide, PASSES};
 use crate::parallel::{map_parts, ranges};
 use crate::verify::certificate::Outcome;
 
@@ -105,10 +105,10 @@ impl std::fmt::Display for DenoiseViolation {
 /// Returns an error if the noisy picture lacks one of [the layers](crate::image::denoise::GUIDES) that denoising needs.
 pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, MissingGuide> {
     let filter =
-        Filter { guided: Guided::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
+        Filter { guides: Guides::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
     let exact = |x: &f32| Interval { low: f64::from(*x), high: f64::from(*x) };
     let mut lights: Vec<Light> =
-        filter.guided.lights.iter().map(|light| light.each_ref().map(exact)).collect();
+        filter.guides.lights.iter().map(|light| light.each_ref().map(exact)).collect();
     for pass in 0..PASSES {
         let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
             range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
@@ -116,7 +116,7 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
         lights = parts.concat();
     }
     let mut certificate = DenoiseCertificate::default();
-    for (index, (light, albedo)) in lights.iter().zip(&filter.guided.albedos).enumerate() {
+    for (index, (light, albedo)) in lights.iter().zip(&filter.guides.albedos).enumerate() {
         // A picture of another size is not legal where it has no pixels.
         let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
         let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
@@ -154,7 +154,7 @@ fn product(light: Interval, albedo: f64) -> Interval {
 }
 
 struct Filter {
-    guided: Guided,
+    guides: Guides,
     size: [i64; 2],
 }
 
@@ -162,7 +162,7 @@ impl Filter {
     /// The light that a pass may give to a pixel.
     fn filtered(&self, lights: &[Light], middle: usize, step: i64) -> Light {
         let light = lights[middle];
-        let is_miss = self.guided.shapes[middle][..3].iter().all(|c| *c == 0.0);
+        let is_miss = self.guides.shapes[middle][..3].iter().all(|c| *c == 0.0);
         let variance = light[3];
         if is_miss && variance.high <= NO_NOISE {
             return light;
@@ -243,7 +243,7 @@ impl Filter {
 
     /// The similarity of two pixels in shape and albedo, which are known exactly.
     fn likeness(&self, a: usize, b: usize, distance: f64) -> Interval {
-        let [shape, other] = [a, b].map(|index| self.guided.shapes[index].map(f64::from));
+        let [shape, other] = [a, b].map(|index| self.guides.shapes[index].map(f64::from));
         let products: [f64; 3] = std::array::from_fn(|i| shape[i] * other[i]);
         let is_miss = |shape: [f64; 4]| shape[..3].iter().all(|c| *c == 0.0);
         let error = PAD * gamma(3) * products.iter().map(|p| p.abs()).sum::<f64>() + 4.0 * FLUSH;
@@ -272,7 +272,7 @@ impl Filter {
                 }
             }
         };
-        let tints = [a, b].map(|index| self.guided.albedos[index].map(f64::from));
+        let tints = [a, b].map(|index| self.guides.albedos[index].map(f64::from));
         let tint: f64 = (0..3).map(|i| (tints[0][i] - tints[1][i]).powi(2)).sum();
         let divisor = 1.0 + 400.0 * tint;
         let off = PAD * (gamma(8) + DIVIDE);

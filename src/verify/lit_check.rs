@@ -9,19 +9,19 @@ use crate::verify::lit::certificate::{Address, LitCertificate, LitStage};
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::film::{check_sums, judge_start};
 use crate::verify::lit::judge::{
-    Expected, Judged, Mismatch, Name, StageOutcome, along_choices, judge_pixels, searched,
+    Judge, Mismatch, Name, StageOutcome, StageResult, along_choices, judge_pixels, searched,
 };
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{
     BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
     flag, slot,
 };
-use crate::verify::lit::search::{Hidden, OPEN, check_hit, check_open};
+use crate::verify::lit::search::{OPEN, Obstacle, check_hit, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::radiance_so_far;
 use crate::verify::studio::light::Change;
-use crate::verify::studio::surface::Met;
+use crate::verify::studio::surface::HitKind;
 
 impl Checker<'_> {
     /// Judges every stage of every sample. The recording must be of the scene of this checker.
@@ -85,7 +85,7 @@ impl LitCheck<'_> {
         for (surface, found) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
             let after = found.states[index];
-            let mut met = Some(Met::Nothing);
+            let mut met = Some(HitKind::Nothing);
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(found.hits[index]);
                 let result = check_hit(self, &state, last, hit, legal);
@@ -94,7 +94,7 @@ impl LitCheck<'_> {
                 part.note(stage, address, result);
                 (met, last) = (seen, Some(hit));
             } else if let Err(mismatch) =
-                Expected::default().unchanged((stage, ended), [&state, &after])
+                Judge::default().unchanged((stage, ended), [&state, &after])
             {
                 part.note(stage, address, Err(mismatch));
             }
@@ -105,7 +105,7 @@ impl LitCheck<'_> {
         }
         if state.has(flag::ALIVE) {
             let words = format!("the {ray} was not followed to its end");
-            let unfinished = Expected::default().fail((LitStage::Extend, "the hit"), words);
+            let unfinished = Judge::default().fail((LitStage::Extend, "the hit"), words);
             part.note(LitStage::Extend, address, Err(unfinished));
         }
         let color = match self.is_studio {
@@ -123,7 +123,7 @@ impl LitCheck<'_> {
         before: &PathState,
         hit: Hit,
         after: &PathState,
-    ) -> (Result<Judged, Mismatch>, Option<Met>) {
+    ) -> (Result<StageResult, Mismatch>, Option<HitKind>) {
         let mut met = None;
         let is_last = address.surface + 1 >= self.inputs.max_surfaces;
         let result = along_choices(|choices| {
@@ -133,7 +133,7 @@ impl LitCheck<'_> {
                 true => met = Some(kernel.follow_surface(is_last)?),
                 false => kernel.follow()?,
             }
-            Ok(kernel.expected)
+            Ok(kernel.judge)
         });
         (result, met)
     }
@@ -154,7 +154,7 @@ impl LitCheck<'_> {
             part.note(LitStage::Occlude, address, check_open(self, &after, open));
         } else if bits != after.bits(slot::PENDING) {
             let words = format!("{open:?}, without a search");
-            let fail = Expected::default().fail(OPEN, words);
+            let fail = Judge::default().fail(OPEN, words);
             part.note(LitStage::Occlude, address, Err(fail));
         }
         after.with_visibility(bits)
@@ -164,7 +164,7 @@ impl LitCheck<'_> {
     fn judge_lights(
         &self,
         address: Address,
-        met: Option<Met>,
+        met: Option<HitKind>,
         mut after: PathState,
         surface: &RecordedSurface,
         index: usize,
@@ -188,7 +188,7 @@ impl LitCheck<'_> {
     fn judge_light(
         &self,
         address: Address,
-        met: Option<Met>,
+        met: Option<HitKind>,
         state: &PathState,
         found: Light<'_>,
         part: &mut LitCertificate,
@@ -196,12 +196,12 @@ impl LitCheck<'_> {
         match met {
             // What the ray met is not legal, so that nothing can be said about its light.
             None => {}
-            Some(Met::Nothing | Met::Emitter) => {
+            Some(HitKind::Nothing | HitKind::Emitter) => {
                 if let Err(mismatch) = found.unlit(state) {
                     part.note(LitStage::Illuminate, address, Err(mismatch));
                 }
             }
-            Some(Met::Surface) => {
+            Some(HitKind::Surface) => {
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);
                     if let Some(result) = result.transpose() {
@@ -220,7 +220,7 @@ impl LitCheck<'_> {
         state: &PathState,
         found: Light<'_>,
         offset: u32,
-    ) -> Result<Option<Judged>, Mismatch> {
+    ) -> Result<Option<StageResult>, Mismatch> {
         let is_hidden = found.bits() & (1 << offset) != 0;
         let index = found.first + offset;
         let candidates = &self.checker.candidates;
@@ -228,14 +228,14 @@ impl LitCheck<'_> {
             && (found.kind.is_ambient
                 || self.kernel(address, state, &mut Choices::default()).casts_shadow(index));
         let legal = if is_searched {
-            self.outcomes(address, state, Hidden::or, |kernel| match found.kind.is_ambient {
+            self.outcomes(address, state, Obstacle::or, |kernel| match found.kind.is_ambient {
                 false => kernel.is_light_hidden(candidates, index),
                 true => kernel.is_direction_hidden(candidates, index),
             })
         } else {
-            Some(Hidden::NEVER)
+            Some(Obstacle::NEVER)
         };
-        let Some(Hidden { may, must, doubts }) = legal else {
+        let Some(Obstacle { may, must, doubts }) = legal else {
             return Ok(Some(StageOutcome::Undecided.into()));
         };
         let answer = match (is_hidden, may, must) {
@@ -246,7 +246,7 @@ impl LitCheck<'_> {
             _ => return Ok(Some(searched(may && !must, || doubts.alternatives()))),
         };
         let words = format!("{} {index} is {answer}", found.kind.one);
-        Err(Expected::default().fail((found.kind.searches, "what is hidden"), words))
+        Err(Judge::default().fail((found.kind.searches, "what is hidden"), words))
     }
 
     /// The outcomes of a kernel for all combinations of its open decisions, joined; `None` if they are too many.
@@ -271,21 +271,21 @@ impl LitCheck<'_> {
         address: Address,
         state: &PathState,
         found: Light<'_>,
-    ) -> Result<Judged, Mismatch> {
+    ) -> Result<StageResult, Mismatch> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
         let Kind { sums: stage, radiance, opacity, .. } = *found.kind;
-        let mut expected = Expected::default();
+        let mut judge = Judge::default();
         let before = state.vector(slot::RADIANCE);
         let [r, g, b, found_opacity] = found.light.radiance[found.index].map(f32::from_bits);
         let size = before.into_iter().fold(0.0, |size: f64, c| size.max(f64::from(c.abs())));
         let legal = Vector::recorded(before) + sum.radiance;
-        expected.vector_of((stage, radiance), [r, g, b], legal, size)?;
+        judge.vector_of((stage, radiance), [r, g, b], legal, size)?;
         let alpha = Number::recorded(state.number(slot::RADIANCE)) + sum.opacity;
-        expected.number((stage, opacity), found_opacity, alpha)?;
-        expected.bits((stage, "the bits that are left"), found.light.left[found.index], 0)?;
-        Ok(expected.into())
+        judge.number((stage, opacity), found_opacity, alpha)?;
+        judge.bits((stage, "the bits that are left"), found.light.left[found.index], 0)?;
+        Ok(judge.into())
     }
 
     /// The sum of all light of a batch, given which lights are hidden. Where decisions of a light are open, its part is
@@ -365,17 +365,17 @@ impl Light<'_> {
     /// Checks that a ray on which no surface is lit does not change.
     fn unlit(&self, state: &PathState) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Illuminate, "a ray without a lit surface");
-        let mut expected = Expected::default();
+        let mut judge = Judge::default();
         let bits = state.bits(slot::NORMAL);
         let (hidden, left) = (self.bits(), self.light.left[self.index]);
         // Without a search there are no bits.
         if hidden != 0 {
-            expected.bits(KEPT, hidden, bits)?;
+            judge.bits(KEPT, hidden, bits)?;
         }
-        expected.bits(KEPT, left, bits)?;
+        judge.bits(KEPT, left, bits)?;
         let radiance = self.light.radiance[self.index].into_iter();
         radiance
             .zip(state.slots[slot::RADIANCE])
-            .try_for_each(|(found, legal)| expected.bits(KEPT, found, legal))
+            .try_for_each(|(found, legal)| judge.bits(KEPT, found, legal))
     }
 }

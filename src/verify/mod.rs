@@ -73,7 +73,8 @@ pub(crate) use lit::recording::{
     PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 pub use recording::{
-    NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadError, UploadedView,
+    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadError,
+    UploadedView,
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]

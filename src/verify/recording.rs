@@ -33,13 +33,13 @@ pub struct Recording {
     /// The picture with all layers.
     pub image: Image,
     /// The picture of the same view that the device renders without recording.
-    pub rendered: Rendered,
+    pub rendered: PlainRender,
 }
 
 /// The picture of the same view from kernels that do not record rays, as
 /// [`Headless::render`](crate::gpu::Headless::render) renders it. These are different kernels, so rounding may differ.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Rendered {
+pub enum PlainRender {
     /// There is no such picture.
     #[default]
     None,
@@ -53,7 +53,8 @@ impl Recording {
     /// Compares with a picture of the same view from kernels that do not record rays, and keeps it if it differs.
     pub fn compare(&mut self, rendered: Image) {
         let is_same = rendered == self.image;
-        self.rendered = if is_same { Rendered::Same } else { Rendered::Other(Box::new(rendered)) };
+        self.rendered =
+            if is_same { PlainRender::Same } else { PlainRender::Other(Box::new(rendered)) };
     }
 }
 
@@ -177,7 +178,7 @@ pub(super) fn check_recording(
     check_view(scene, candidates, &recording.camera, &recording.uploaded)?;
     let Recording { film, pixels, image, rendered, .. } = recording;
     let film = [film.width(), film.height()];
-    let rendered = if let Rendered::Other(image) = rendered { Some(&**image) } else { None };
+    let rendered = if let PlainRender::Other(image) = rendered { Some(&**image) } else { None };
     for image in [image].into_iter().chain(rendered) {
         let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
         if size != film || count != recording.film.pixel_count() {

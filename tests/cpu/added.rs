@@ -3,11 +3,11 @@
 use pinhole::added::{Additions, BondLength, Bonds, CellEdges};
 use pinhole::color_by::{ColorBy, ColorByError, Mapping};
 use pinhole::glam::DVec3;
-use pinhole::load::{self, Loaded, Options};
+use pinhole::load::{self, Dataset, Options};
 use pinhole::scene_file::SceneFile;
 use pinhole::{LinearRgb, Scene, SphereArray};
 
-fn read(text: &str) -> Loaded {
+fn read(text: &str) -> Dataset {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
 }
 
@@ -19,7 +19,7 @@ fn bonds() -> Additions {
     Additions { bonds: Some(Bonds::default()), ..Additions::default() }
 }
 
-fn scene(loaded: Loaded, additions: &Additions) -> (Scene, usize) {
+fn scene(loaded: Dataset, additions: &Additions) -> (Scene, usize) {
     let (scene, _, added) =
         Mapping::default().scene_with(loaded, LinearRgb::WHITE, additions).unwrap();
     assert_eq!(scene.added(), added.len());
@@ -149,7 +149,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
 
 #[test]
 fn what_is_missing_is_an_error() {
-    let error = |loaded: Loaded, additions: &Additions| {
+    let error = |loaded: Dataset, additions: &Additions| {
         let made = Mapping::default().scene_with(loaded, LinearRgb::WHITE, additions);
         made.unwrap_err().to_string()
     };
@@ -163,7 +163,7 @@ fn what_is_missing_is_an_error() {
     assert!(error(loaded.clone(), &edges(None)).contains("cannot be drawn"));
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
     assert!(error(loaded, &edges(Some(1e-9))).contains("the width of the edges is"));
-    let plain = Loaded::new(SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]));
+    let plain = Dataset::new(SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]));
     assert!(error(plain, &bonds()).contains("does not say which chemical elements"));
     assert!(error(read("2\n\nXx 0 0 0\nXx 1 0 0\n"), &bonds()).contains("--bond-length"));
     let crowd = (0..20).map(|i| format!("C {} 0 0\n", 0.01 * f64::from(i))).collect::<String>();
@@ -171,7 +171,7 @@ fn what_is_missing_is_an_error() {
     assert!(error(crowd, &bonds()).contains("choose a smaller factor or length"));
     let thin =
         Additions { bonds: Some(Bonds::new(BondLength::Below(1e5))), ..Additions::default() };
-    let far = Loaded::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1e-3], [9e4, 0.0, 0.0, 1e-3]]));
+    let far = Dataset::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1e-3], [9e4, 0.0, 0.0, 1e-3]]));
     assert!(error(far, &thin).contains("choose larger radii"));
 }
 

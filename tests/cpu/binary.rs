@@ -3,7 +3,7 @@
 use data_encoding::HEXLOWER;
 use fastrand::Rng;
 use pinhole::SphereArray;
-use pinhole::load::{ColumnValues, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{ColumnValues, Dataset, Format, LoadError, Options, Trajectory};
 use tempfile::TempDir;
 
 use crate::binary_files::dcd::{self, Layout, Order};
@@ -11,12 +11,12 @@ use crate::binary_files::gsd::{self, Chunk, Data, chunk, chunks};
 use crate::binary_files::{gromacs, topology as topology_file};
 
 /// Reads a file in memory.
-fn read(format: &str, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+fn read(format: &str, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     Format::of_name(format).unwrap().read(bytes, options)
 }
 
 /// The spheres in f64.
-fn spheres(loaded: &Loaded) -> Vec<[f64; 4]> {
+fn spheres(loaded: &Dataset) -> Vec<[f64; 4]> {
     match &loaded.spheres {
         SphereArray::F32(all) => all.iter().map(|sphere| sphere.map(f64::from)).collect(),
         SphereArray::F64(all) => all.clone(),
@@ -32,7 +32,7 @@ fn topology(atoms: usize) -> (TempDir, Options) {
 }
 
 /// The message of an error, which has one line.
-fn refused(loaded: Result<Loaded, LoadError>) -> String {
+fn refused(loaded: Result<Dataset, LoadError>) -> String {
     let message = loaded.unwrap_err().to_string();
     assert!(!message.contains('\n'), "{message}");
     message
@@ -65,7 +65,7 @@ fn files_with_other_bytes_in_one_place() {
     }
 }
 
-fn read_dcd(bytes: &[u8], frame: usize) -> Result<Loaded, LoadError> {
+fn read_dcd(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     let (_folder, options) = topology(dcd::ATOMS);
     read("dcd", bytes, &options.with_frame(frame))
 }
@@ -168,7 +168,7 @@ fn a_trajectory_seeks() {
     assert!(alone.notes[0].contains("frame 2 takes 72 bytes"), "{:?}", alone.notes);
 }
 
-fn check_gromacs(loaded: &Loaded, frame: usize, atoms: usize) {
+fn check_gromacs(loaded: &Dataset, frame: usize, atoms: usize) {
     let found = spheres(loaded);
     assert_eq!(found.len(), atoms);
     for (atom, sphere) in found.into_iter().enumerate() {
@@ -285,11 +285,11 @@ fn bad_trr_and_xtc_files() {
     }
 }
 
-fn gsd_frame(bytes: &[u8], frame: usize) -> Loaded {
+fn gsd_frame(bytes: &[u8], frame: usize) -> Dataset {
     read("gsd", bytes, &Options::default().with_frame(frame)).unwrap()
 }
 
-fn names(loaded: &Loaded) -> Vec<&str> {
+fn names(loaded: &Dataset) -> Vec<&str> {
     loaded.columns.iter().map(|column| column.name.as_str()).collect()
 }
 

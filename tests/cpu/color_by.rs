@@ -4,7 +4,7 @@ use pinhole::color_by::{
     ColorBy, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING, Mapping, RadiusBy,
     column,
 };
-use pinhole::load::{Column, ColumnValues, Labels, Loaded};
+use pinhole::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole::scene::Colors;
 use pinhole::select::{SelectError, Selection};
 use pinhole::{LinearRgb, Material, Scene, SphereArray, SurfaceProperties};
@@ -329,9 +329,9 @@ fn radii_must_be_positive() {
 }
 
 /// Six spheres at x = 0 to 5, with text and numbers.
-fn loaded() -> Loaded {
+fn loaded() -> Dataset {
     let spheres = (0..6).map(|i| [f64::from(i), -1.0, 0.5 * f64::from(i), 1.0]).collect();
-    let mut loaded = Loaded::new(SphereArray::F64(spheres));
+    let mut loaded = Dataset::new(SphereArray::F64(spheres));
     let texts = |name: &str, names: &[&str], indices: [u32; 6]| {
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         let values = ColumnValues::Labels(Labels { names, indices: indices.to_vec() });
@@ -421,7 +421,7 @@ fn what_is_kept_stays_together() {
 fn nothing_is_an_error_and_an_unknown_text_a_note() {
     let mut loaded = loaded();
     let before = loaded.clone();
-    let apply = |text: &str, loaded: &mut Loaded| text.parse::<Selection>().unwrap().apply(loaded);
+    let apply = |text: &str, loaded: &mut Dataset| text.parse::<Selection>().unwrap().apply(loaded);
     let error = apply("x > 9", &mut loaded).unwrap_err();
     assert_eq!(error.to_string(), "`x > 9` selects none of the 6 spheres");
     let error = apply("species == o", &mut loaded).unwrap_err();
@@ -434,6 +434,6 @@ fn nothing_is_an_error_and_an_unknown_text_a_note() {
     let kept = apply("chain != B", &mut loaded).unwrap();
     assert_eq!((kept.kept, kept.of), (5, 6));
     assert_eq!(kept.notes, ["no sphere has the chain `B`; there are A, x"]);
-    let empty = &mut Loaded::new(SphereArray::F32(Vec::new()));
+    let empty = &mut Dataset::new(SphereArray::F32(Vec::new()));
     assert_eq!(apply("x > 9", empty).unwrap().of, 0);
 }

@@ -17,14 +17,14 @@ use crate::verify::{hostile_spheres, poses};
 
 /// What a renderer gives.
 #[derive(Clone)]
-struct Made {
+struct Layers {
     size: [u32; 2],
     ids: Vec<u32>,
     depths: Vec<f64>,
     normals: Vec<[f64; 3]>,
 }
 
-impl Made {
+impl Layers {
     /// By the reference, in f32 as its layers are.
     fn by_reference(scene: &Scene, view: &View<'_>) -> Self {
         let image = cpu::render(scene, view, &RenderSettings::default(), LayerSet::DATA).unwrap();
@@ -99,7 +99,7 @@ fn the_reference_is_never_accused() {
         let scene = scene(&spheres);
         for (place, camera) in cameras(&scene).into_iter().enumerate() {
             let view = View::new(camera.as_ref(), film());
-            let made = Made::by_reference(&scene, &view);
+            let made = Layers::by_reference(&scene, &view);
             let answers = Answers { normals: Some(&made.normals), ..made.answers() };
             let found = certified(&scene, &answers, Rays::View(view));
             let name = format!("scene {number}, {}:\n{found}", camera.kind().name());
@@ -123,7 +123,7 @@ fn a_pixel_without_a_ray_must_be_a_miss() {
     let pose = Pose::looking_at([0.0, 0.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let camera = FisheyeCamera::new(pose, 1.0, 1.0).unwrap();
     let view = View::new(&camera, Film::new(9, 9).unwrap());
-    let mut made = Made::by_reference(&scene, &view);
+    let mut made = Layers::by_reference(&scene, &view);
     assert_eq!(certified(&scene, &made.answers(), Rays::View(view)).outcome(), Outcome::Proved);
     (made.ids[0], made.depths[0]) = (0, 2.0);
     let found = certified(&scene, &made.answers(), Rays::View(view));
@@ -132,13 +132,13 @@ fn a_pixel_without_a_ray_must_be_a_miss() {
 }
 
 /// A picture of many spheres with its rays, rounded to f32, and what a careful renderer in f32 answers.
-struct Planted {
+struct TestPicture {
     scene: Scene,
     rays: Vec<Ray>,
-    made: Made,
+    made: Layers,
 }
 
-impl Planted {
+impl TestPicture {
     fn new() -> Self {
         let scene = scene(&spheres::random(300, 5, |rng| 0.01 + 0.06 * rng.f32()));
         let camera = cameras(&scene).swap_remove(0);
@@ -151,11 +151,11 @@ impl Planted {
             Ray { origin: narrow(ray.origin), direction: narrow(ray.direction) }
         });
         let rays: Vec<Ray> = rays.collect();
-        let made = Made::by_testing_all(&scene, size, &rays, careful);
+        let made = Layers::by_testing_all(&scene, size, &rays, careful);
         Self { scene, rays, made }
     }
 
-    fn judged(&self, made: &Made) -> Conformance {
+    fn judged(&self, made: &Layers) -> Conformance {
         certified(&self.scene, &made.answers(), Rays::Given(&self.rays))
     }
 
@@ -197,24 +197,24 @@ fn textbook(origin: [f32; 3], direction: [f32; 3], [x, y, z, r]: [f32; 4]) -> Op
 
 #[test]
 fn an_honest_renderer_in_f32_is_proved() {
-    let planted = Planted::new();
-    assert!(planted.hits() > 600, "{}", planted.hits());
-    let found = planted.judged(&planted.made);
+    let picture = TestPicture::new();
+    assert!(picture.hits() > 600, "{}", picture.hits());
+    let found = picture.judged(&picture.made);
     assert_eq!((found.outcome(), found.at_most), (Outcome::Proved, 24.0), "{found}");
     assert!(found.largest() < 8.0 && found.decided_fraction() > 0.99, "{found}");
     let counted: usize = found.histogram().iter().map(|(_, count)| count).sum();
-    assert_eq!(counted, planted.rays.len());
+    assert_eq!(counted, picture.rays.len());
 }
 
 #[test]
 fn two_wrong_ids_are_found() {
-    let planted = Planted::new();
-    let mut made = planted.made.clone();
-    let [hit, miss] = [planted.inner_hit(), made.ids.iter().position(|id| *id == NO_ID).unwrap()];
+    let picture = TestPicture::new();
+    let mut made = picture.made.clone();
+    let [hit, miss] = [picture.inner_hit(), made.ids.iter().position(|id| *id == NO_ID).unwrap()];
     let id = made.ids[hit];
     made.ids[hit] = (id + 1) % 300;
     made.ids[miss] = id;
-    let found = planted.judged(&made);
+    let found = picture.judged(&made);
     assert_eq!(found.count(Outcome::Violated), 2, "{found}");
     for (index, reason) in [(hit, Some(id)), (miss, None)] {
         let pixel = [index as u32 % made.size[0], index as u32 / made.size[0]];
@@ -228,17 +228,17 @@ fn two_wrong_ids_are_found() {
 /// Also without depths: a miss, a sphere behind another, and a sphere elsewhere.
 #[test]
 fn wrong_ids_are_found_without_depths() {
-    let planted = Planted::new();
-    let hit = planted.inner_hit();
-    let id = planted.made.ids[hit];
-    let ray = planted.rays[hit];
+    let picture = TestPicture::new();
+    let hit = picture.inner_hit();
+    let id = picture.made.ids[hit];
+    let ray = picture.rays[hit];
     let behind = |(_, [x, y, z, r]): &(u32, [f32; 4])| {
         let l = DVec3::new((*x).into(), (*y).into(), (*z).into()) - ray.origin;
         let b = l.dot(ray.direction);
         let off = (l - b * ray.direction).length();
-        off < 0.5 * f64::from(*r) && b > planted.made.depths[hit] + 0.2
+        off < 0.5 * f64::from(*r) && b > picture.made.depths[hit] + 0.2
     };
-    let spheres = || (0..).zip(planted.scene.spheres().iter().copied());
+    let spheres = || (0..).zip(picture.scene.spheres().iter().copied());
     let behind = spheres().find(behind).map(|(id, _)| id);
     let mut tried = 0;
     for (wrong, reason) in [
@@ -247,10 +247,10 @@ fn wrong_ids_are_found_without_depths() {
         (Some((id + 1) % 300), Reason::Missed),
     ] {
         let Some(wrong) = wrong else { continue };
-        let mut made = planted.made.clone();
+        let mut made = picture.made.clone();
         made.ids[hit] = wrong;
         let answers = Answers { depths: None, ..made.answers() };
-        let found = certified(&planted.scene, &answers, Rays::Given(&planted.rays));
+        let found = certified(&picture.scene, &answers, Rays::Given(&picture.rays));
         assert_eq!(found.count(Outcome::Violated), 1, "{wrong}: {found}");
         assert_eq!(found.worst[0].reason, reason, "{found}");
         // The margin is a length of the scene.
@@ -262,13 +262,13 @@ fn wrong_ids_are_found_without_depths() {
 
 #[test]
 fn a_repeated_row_is_found() {
-    let planted = Planted::new();
-    let mut made = planted.made.clone();
+    let picture = TestPicture::new();
+    let mut made = picture.made.clone();
     let width = made.size[0] as usize;
-    let row = planted.inner_hit() / width;
+    let row = picture.inner_hit() / width;
     made.ids.copy_within(row * width..(row + 1) * width, (row + 1) * width);
     made.depths.copy_within(row * width..(row + 1) * width, (row + 1) * width);
-    let found = planted.judged(&made);
+    let found = picture.judged(&made);
     let hits = |row: usize| {
         made.ids[row * width..(row + 1) * width].iter().filter(|id| **id != NO_ID).count()
     };
@@ -285,16 +285,16 @@ fn a_repeated_row_is_found() {
 
 #[test]
 fn depths_that_are_a_little_off_and_the_textbooks_formula_are_found() {
-    let planted = Planted::new();
-    let mut made = planted.made.clone();
+    let picture = TestPicture::new();
+    let mut made = picture.made.clone();
     made.depths.iter_mut().for_each(|depth| *depth *= 1.000_01);
-    let found = planted.judged(&made);
+    let found = picture.judged(&made);
     let violated = found.count(Outcome::Violated);
-    assert!(violated > planted.hits() * 9 / 10, "{violated} of {}", planted.hits());
+    assert!(violated > picture.hits() * 9 / 10, "{violated} of {}", picture.hits());
     assert!(found.worst.iter().all(|finding| finding.reason == Reason::Depth));
-    let made = Made::by_testing_all(&planted.scene, planted.made.size, &planted.rays, textbook);
-    let violated = planted.judged(&made).count(Outcome::Violated);
-    assert!(violated > planted.hits() / 20, "{violated} of {}", planted.hits());
+    let made = Layers::by_testing_all(&picture.scene, picture.made.size, &picture.rays, textbook);
+    let violated = picture.judged(&made).count(Outcome::Violated);
+    assert!(violated > picture.hits() / 20, "{violated} of {}", picture.hits());
 }
 
 #[test]
@@ -302,7 +302,7 @@ fn depth_along_the_axis_is_not_distance() {
     let scene = scene(&spheres::random(100, 6, |_| 0.08));
     for camera in cameras(&scene).iter().take(4) {
         let view = View::new(camera.as_ref(), film());
-        let mut made = Made::by_reference(&scene, &view);
+        let mut made = Layers::by_reference(&scene, &view);
         let vectors = camera.vectors();
         let axis = vectors.forward.normalize_or_zero();
         for (index, depth) in made.depths.iter_mut().enumerate() {
@@ -324,7 +324,7 @@ fn turned_normals_are_found() {
     let scene = scene(&spheres::random(100, 6, |_| 0.08));
     let camera = cameras(&scene).swap_remove(0);
     let view = View::new(camera.as_ref(), film());
-    let made = Made::by_reference(&scene, &view);
+    let made = Layers::by_reference(&scene, &view);
     let hits = made.ids.iter().filter(|id| **id != NO_ID).count();
     let spoilt = |spoil: fn(DVec3) -> DVec3| {
         let normals: Vec<[f64; 3]> =
@@ -343,11 +343,11 @@ fn turned_normals_are_found() {
 
 #[test]
 fn a_smaller_limit_decides_more() {
-    let planted = Planted::new();
-    let checker = Checker::new(&planted.scene).unwrap();
+    let picture = TestPicture::new();
+    let checker = Checker::new(&picture.scene).unwrap();
     let decided = |limit| {
-        let answers = planted.made.answers();
-        let rays = Rays::Given(&planted.rays);
+        let answers = picture.made.answers();
+        let rays = Rays::Given(&picture.rays);
         checker.certify_answers(&answers, rays, Some(limit)).unwrap()
     };
     let (small, large) = (decided(10.0), decided(1e5));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fastrand::Rng;
-use pinhole::load::{self, ColumnValues, FORMATS, Labels, Loaded, Options};
+use pinhole::load::{self, ColumnValues, Dataset, FORMATS, Labels, Options};
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 use pinhole::{LinearRgb, Sphere};
@@ -105,7 +105,7 @@ fn contents(Case { files, arguments }: &Case<'_>) -> String {
     written(&loaded)
 }
 
-fn written(loaded: &Loaded) -> String {
+fn written(loaded: &Dataset) -> String {
     let width = if matches!(loaded.spheres, SphereArray::F32(_)) { 32 } else { 64 };
     let columns = loaded.columns.iter().map(|column| match &column.values {
         ColumnValues::Labels(labels) => format!(" {} {:?}", column.name, labels.names),

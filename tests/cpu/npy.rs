@@ -2,7 +2,7 @@
 
 use pinhole::SphereArray;
 use pinhole::load::npy as reader;
-use pinhole::load::{ColumnValues, LoadError, Loaded, npz, raw};
+use pinhole::load::{ColumnValues, Dataset, LoadError, npz, raw};
 use pinhole::write;
 use pinhole::write::npy::write_spheres;
 
@@ -130,14 +130,14 @@ fn archives() {
     assert!(error(&whole[..whole.len() - 1]).starts_with("this is not a complete .npz file: "));
 }
 
-pub(crate) fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
+pub(crate) fn numbers(loaded: &Dataset, name: &str) -> Vec<f64> {
     match loaded.column(name) {
         Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
         other => panic!("{name}: {other:?}"),
     }
 }
 
-fn colors(loaded: &Loaded) -> Vec<[u8; 3]> {
+fn colors(loaded: &Dataset) -> Vec<[u8; 3]> {
     loaded.colors.as_ref().unwrap().iter().map(|color| color.to_srgb8()).collect()
 }
 

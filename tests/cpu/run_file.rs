@@ -12,7 +12,7 @@ use pinhole::verify::run_file::{
     self, Extras, LitSamples, Provenance, Run, RunFile, RunFileError, ShownPicture, write_with,
 };
 use pinhole::verify::{
-    Checker, LitCertificate, LitRecording, Outcome, Recording, Rendered, RequestedCamera,
+    Checker, LitCertificate, LitRecording, Outcome, PlainRender, Recording, RequestedCamera,
     TracedPixel, TracedRay,
 };
 use pinhole::{
@@ -44,7 +44,7 @@ pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording 
         primary: settings.primary().unwrap(),
         pixels: pixels.collect(),
         image,
-        rendered: Rendered::None,
+        rendered: PlainRender::None,
     }
 }
 

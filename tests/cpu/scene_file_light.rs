@@ -4,7 +4,7 @@ use pinhole::glam::DVec3;
 use pinhole::image::color::LinearRgb;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
-use pinhole::load::{Column, ColumnValues, Labels, Loaded};
+use pinhole::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::{AppliedData, DataSpheres, IntegratorKind, SceneFile};
 use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
@@ -129,8 +129,8 @@ fn materials_by_name_and_opacity_over_them() {
 }
 
 /// Four atoms O, H, C1, O in two chains, one of which is water.
-fn molecule() -> Loaded {
-    let mut loaded = Loaded::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
+fn molecule() -> Dataset {
+    let mut loaded = Dataset::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
     loaded.colors = Some(vec![LinearRgb::WHITE; 4]);
     let column = |name: &str, names: &[&str], indices: [u32; 4]| {
         let names = names.iter().map(|name| (*name).to_owned()).collect();
@@ -180,7 +180,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     }
     let plain = parse("data = 'a.npy'\nleave_out = { chain = ['A'] }\n");
     let refused =
-        plain.data().unwrap().apply(Loaded::new(SphereArray::F32(Vec::new()))).unwrap_err();
+        plain.data().unwrap().apply(Dataset::new(SphereArray::F32(Vec::new()))).unwrap_err();
     assert_eq!(
         refused.to_string(),
         "`leave_out` applies only to data with text, such as the names of atoms, and a.npy has none; remove it"

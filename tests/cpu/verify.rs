@@ -11,7 +11,7 @@ use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::render::PrimarySettings;
 use pinhole::verify::{
-    Certificate, Checker, Outcome, Recording, Rendered, RequestedCamera, UploadedView,
+    Certificate, Checker, Outcome, PlainRender, Recording, RequestedCamera, UploadedView,
 };
 use pinhole::{Film, Image, LayerSet, Scene, View};
 
@@ -70,7 +70,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
         primary: PrimarySettings::default(),
         pixels: Vec::new(),
         image: Image::new(0, 0, LayerSet::DATA).unwrap(),
-        rendered: Rendered::None,
+        rendered: PlainRender::None,
     }
 }
 

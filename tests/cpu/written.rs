@@ -98,7 +98,7 @@ fn settings(shading: Shading, is_transparent: bool) -> RenderSettings {
 }
 
 /// Bytes of the reference's picture, with what they are judged by.
-struct Made {
+struct Picture {
     scene: Scene,
     camera: PinholeCamera,
     settings: RenderSettings,
@@ -107,7 +107,7 @@ struct Made {
     bytes: Vec<u8>,
 }
 
-impl Made {
+impl Picture {
     fn new(settings: RenderSettings, mut encoding: Encoding) -> Self {
         let scene = scene();
         let camera = camera(&scene);
@@ -140,7 +140,7 @@ fn the_references_picture_is_proved_in_every_encoding() {
     for shading in [Shading::Headlight, Shading::Flat] {
         for is_transparent in [false, true] {
             for encoding in encodings() {
-                let made = Made::new(settings(shading, is_transparent), encoding);
+                let made = Picture::new(settings(shading, is_transparent), encoding);
                 let found = made.judge(&made.bytes);
                 let name = format!("{shading:?}, {is_transparent}, {encoding:?}");
                 assert_eq!(
@@ -158,7 +158,7 @@ fn the_references_picture_is_proved_in_every_encoding() {
 /// What a byte may be is narrow: nearly every byte that is two steps away is not legal.
 #[test]
 fn a_byte_two_steps_away_is_found() {
-    let made = Made::plain();
+    let made = Picture::plain();
     let mut brighter = made.bytes.clone();
     brighter.iter_mut().for_each(|byte| *byte = byte.saturating_add(2));
     let found = made.judge(&brighter);
@@ -176,7 +176,7 @@ fn a_byte_two_steps_away_is_found() {
 /// Changes of bytes that a fault may make.
 #[test]
 fn pictures_that_are_changed_are_found() {
-    let made = Made::plain();
+    let made = Picture::plain();
     let moved: Vec<u8> =
         made.bytes.iter().copied().cycle().skip(3).take(made.bytes.len()).collect();
     let upside_down: Vec<u8> = made.bytes.chunks(3 * 78).rev().flatten().copied().collect();
@@ -200,7 +200,7 @@ fn pictures_that_are_changed_are_found() {
 /// Pictures of other scenes, cameras and settings than is said.
 #[test]
 fn pictures_of_something_else_are_found() {
-    let made = Made::plain();
+    let made = Picture::plain();
     let mut larger = spheres_of(&made.scene);
     larger[17].radius *= 1.02;
     let larger = Scene::new(&larger).unwrap();
@@ -211,16 +211,16 @@ fn pictures_of_something_else_are_found() {
     let other = OrthographicCamera::new(pose, [1.3, 1.0]).unwrap();
     assert_eq!(made.judge_by(&made.scene, &other, &made.bytes).outcome(), Outcome::Violated);
 
-    let flat = Made::new(settings(Shading::Flat, false), Encoding::default());
+    let flat = Picture::new(settings(Shading::Flat, false), Encoding::default());
     assert_eq!(flat.judge(&made.bytes).outcome(), Outcome::Violated);
     let exposed =
-        Made { encoding: Encoding::default().with_exposure(0.05).unwrap(), ..Made::plain() };
+        Picture { encoding: Encoding::default().with_exposure(0.05).unwrap(), ..Picture::plain() };
     assert_eq!(exposed.judge(&made.bytes).outcome(), Outcome::Violated);
 }
 
 #[test]
 fn pictures_of_another_size_are_refused() {
-    let made = Made::plain();
+    let made = Picture::plain();
     let checker = Checker::new(&made.scene).unwrap();
     let view = View::new(&made.camera, film());
     let primary = PrimarySettings::default();
@@ -241,7 +241,7 @@ fn pictures_of_another_size_are_refused() {
 
 #[test]
 fn linear_light_is_judged_more_narrowly_than_bytes() {
-    let made = Made::new(settings(Shading::Headlight, false), Encoding::default());
+    let made = Picture::new(settings(Shading::Headlight, false), Encoding::default());
     let view = View::new(&made.camera, film());
     let image = cpu::render(&made.scene, &view, &made.settings, LayerSet::COLOR).unwrap();
     assert_eq!(image.color(), made.image.color());

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use fastrand::Rng;
-use pinhole::load::{self, LoadError, Loaded, Options, Trajectory, xyz};
+use pinhole::load::{self, Dataset, LoadError, Options, Trajectory, xyz};
 use pinhole::{LinearRgb, Sphere};
 use tempfile::TempDir;
 
@@ -13,7 +13,7 @@ use crate::npy::numbers;
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 
 /// A frame, and its atoms one by one.
-fn read(bytes: &[u8], frame: usize) -> Result<(Vec<Sphere>, Loaded), LoadError> {
+fn read(bytes: &[u8], frame: usize) -> Result<(Vec<Sphere>, Dataset), LoadError> {
     let loaded = xyz::read(bytes, frame)?;
     Ok((loaded.colored_spheres(LinearRgb::WHITE).collect(), loaded))
 }
@@ -91,7 +91,7 @@ fn many_unknown_species() {
     assert!(loaded.notes[0].contains("and 49995 more"), "{:?}", loaded.notes);
 }
 
-fn loaded(text: &str) -> load::Loaded {
+fn loaded(text: &str) -> load::Dataset {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
 }
 
@@ -117,7 +117,7 @@ fn columns_are_used_or_noted() {
     let one = |columns: &str, values: &str| {
         loaded(&format!("1\nProperties=species:S:1:pos:R:3:{columns}\nO 0 0 0 {values}\n"))
     };
-    let srgb = |loaded: &Loaded| loaded.colors.as_ref().unwrap()[0].to_srgb8();
+    let srgb = |loaded: &Dataset| loaded.colors.as_ref().unwrap()[0].to_srgb8();
     for (columns, values) in
         [("colour:R:3", "1 0 0.2"), ("rgb:I:3", "255 0 51"), ("color:R:4", "1 0 0.2 0.5")]
     {

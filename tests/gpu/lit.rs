@@ -13,7 +13,7 @@ use pinhole::render::{Integrator, PrimarySettings, Studio};
 use pinhole::scene::material::Material;
 use pinhole::verify::run_file::{Extras, LitSamples, Provenance, RunFile, write_with};
 use pinhole::verify::{
-    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, Recording, Rendered,
+    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PlainRender, Recording,
     TracedPixel,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
@@ -256,7 +256,7 @@ fn nothing(given: &LitInputs) -> Recording {
         primary: PrimarySettings::default(),
         pixels: vec![pixel; given.film.pixel_count() as usize],
         image: Image::new(size[0], size[1], LayerSet::DATA).unwrap(),
-        rendered: Rendered::None,
+        rendered: PlainRender::None,
     }
 }
 

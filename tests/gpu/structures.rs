@@ -39,9 +39,9 @@ static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
     Headless::open(&options).wait().unwrap()
 });
 
-type Named = (&'static str, fn() -> Spheres);
+type NamedSpheres = (&'static str, fn() -> Spheres);
 
-fn all_scenes() -> Vec<Named> {
+fn all_scenes() -> Vec<NamedSpheres> {
     vec![
         ("three", || spheres::random(3, 1, |_| 0.3)),
         ("random", || spheres::random(2_000, 2, |_| 0.02)),

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use fastrand::Rng;
-use pinhole::load::{self, ColumnValues, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{self, ColumnValues, Dataset, Format, LoadError, Options, Trajectory};
 
 /// The longest time that reading a small file may take.
 pub(crate) const SLOW: Duration = Duration::from_secs(2);
@@ -169,7 +169,7 @@ fn timed(read: impl FnOnce() -> Result<(), String>) -> Result<Duration, String> 
 }
 
 /// Checks that what was read fits together, or that the error is one line.
-fn check(read: Result<Loaded, LoadError>) -> Result<(), String> {
+fn check(read: Result<Dataset, LoadError>) -> Result<(), String> {
     let loaded = match read {
         Ok(loaded) => loaded,
         Err(error) => return check_message([error.to_string()]),

@@ -12,7 +12,7 @@ use crate::blit::Blit;
 use crate::worker::QuickScene;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
-use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker, TargetTextures, Wait};
+use pinhole::gpu::{Frame, LitState, LivePicture, PickedPixel, Picker, TargetTextures, Wait};
 use pinhole::render::{Integrator, RenderSettings};
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -189,7 +189,7 @@ impl Quick {
         state.is_due || state.pick.is_some() || state.is_picking
     }
 
-    pub(crate) fn picked(&self) -> Option<Picked> {
+    pub(crate) fn picked(&self) -> Option<PickedPixel> {
         let mut state = self.state();
         match state.picker.as_mut()?.take() {
             Ok(None) => None,

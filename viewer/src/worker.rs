@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use pinhole_cli::viewing::{Facts, RenderFlags, Shown, StillPicture, StillRenderer, ViewError};
+use pinhole_cli::viewing::{Facts, OpenView, RenderFlags, StillPicture, StillRenderer, ViewError};
 
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, View};
@@ -76,14 +76,14 @@ struct Inbox {
 }
 
 #[derive(Default)]
-struct Shared {
+struct WorkerState {
     inbox: Mutex<Inbox>,
     is_changed: Condvar,
     /// Counts requests, so that work for an older one ends.
     newest: AtomicU64,
 }
 
-impl Shared {
+impl WorkerState {
     fn inbox(&self) -> MutexGuard<'_, Inbox> {
         self.inbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -91,14 +91,14 @@ impl Shared {
 
 /// The thread, and the ways to and from it.
 pub(crate) struct Worker {
-    shared: Arc<Shared>,
+    shared: Arc<WorkerState>,
     messages: Receiver<Message>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
     pub(crate) fn start(request: Request) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(WorkerState::default());
         shared.inbox().request = Some(request);
         let (sender, messages) = channel();
         let thread = std::thread::Builder::new().name("pictures".to_owned()).spawn({
@@ -158,9 +158,9 @@ impl Worker {
 }
 
 struct Work {
-    shared: Arc<Shared>,
+    shared: Arc<WorkerState>,
     sender: Sender<Message>,
-    shown: Option<Shown>,
+    shown: Option<OpenView>,
     still: Option<StillRenderer>,
     /// What renders quick pictures, for a kind of camera.
     renderer: Option<(CameraKind, Arc<LitRenderer>)>,
@@ -212,7 +212,7 @@ impl Work {
                 shown.see(flags)?;
                 None
             }
-            before => Some(Shown::open(flags, before.as_ref())?),
+            before => Some(OpenView::open(flags, before.as_ref())?),
         };
         if let Some(shown) = reopened {
             self.buffers = None;
@@ -279,7 +279,7 @@ fn is_live(
     Window { device, queue, .. }: &Window,
     renderer: &LitRenderer,
     scene: &SceneBuffers,
-    shown: &Shown,
+    shown: &OpenView,
 ) -> bool {
     if !matches!(shown.settings().integrator, Integrator::Studio(_)) {
         return false;

@@ -7,7 +7,7 @@ use anyhow::{Context, anyhow};
 
 use super::BrickFile;
 #[cfg(feature = "gpu")]
-use crate::device::{Opened, explained};
+use crate::device::{OpenDevice, explained};
 use crate::failure::Failure;
 use crate::views::Shot;
 #[cfg(feature = "gpu")]
@@ -101,7 +101,7 @@ fn of_scene(scene: &Scene, shot: &Shot<'_>) -> Result<Vec<Nearest>, Failure> {
     let Shot { input, views, layers, opened, .. } = *shot;
     match opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, .. } => {
+        OpenDevice::Device { headless, choice, .. } => {
             views.iter().map(|view| on_gpu(headless, scene, shot, view, *choice)).collect()
         }
         _ => {

@@ -6,12 +6,11 @@ use self::target::Target;
 use super::failure::Failure;
 use super::render_args::RenderArgs;
 use crate::args::Stereo;
-use crate::frames::args::FrameRange;
-use crate::frames::args::FramesArgs;
+use crate::frames::args::{FrameRange, FramesArgs};
 use crate::frames::moving::WantedPath;
 pub(crate) use crate::frames::numbers::Overview;
 pub(super) use crate::frames::run::run;
-pub(crate) use crate::frames::run::{Known, Ready, ready};
+pub(crate) use crate::frames::run::{Ready, ReadyOptions, ready};
 
 pub(super) mod args;
 mod movie;
@@ -34,7 +33,7 @@ enum Pictures {
 
 /// A job of several pictures, checked as far as is possible before the input is read.
 #[derive(Debug)]
-pub(super) struct Wanted {
+pub(super) struct SeriesRequest {
     pictures: Pictures,
     /// The output, for messages.
     picture_name: String,
@@ -43,7 +42,7 @@ pub(super) struct Wanted {
     resume: bool,
 }
 
-impl Wanted {
+impl SeriesRequest {
     /// Returns what the flags ask for; `None` if they ask for one picture.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Self>, Failure> {
         let FramesArgs { frames, turntable, camera_from, fps, resume, raw, .. } = args.frames;

@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use crate::camera::{CameraTable, list};
 use crate::failure::Failure;
 use crate::frames::union::around;
-use crate::input::{Framed, Look, Source, read};
+use crate::input::{FramedScene, Look, Source, read};
 use pinhole::camera::{
     CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
 };
@@ -99,7 +99,7 @@ impl MovingCamera {
     ) -> Result<Self, Failure> {
         // From a distance at which every view fits.
         let whole = around(&stage.framed).with_context(|| source.name())?;
-        let framed = Framed::new(&whole, stage.key.as_ref());
+        let framed = FramedScene::new(&whole, stage.key.as_ref());
         let base = source.look(&stage.file, framed, stage.sky.clone(), None)?.parameters;
         let up = source.up().or_else(|| up_of(&base)).unwrap_or(DVec3::Y);
         let motion = wanted.path.motion(up);
@@ -122,7 +122,7 @@ impl MovingCamera {
     ) -> Result<Look, Failure> {
         let Stage { framed, key, file, sky } = &self.stage;
         let look = |moved: &dyn Fn(&CameraParameters) -> Result<CameraParameters>| {
-            source.look(file, Framed::new(framed, key.as_ref()), sky.clone(), Some(moved))
+            source.look(file, FramedScene::new(framed, key.as_ref()), sky.clone(), Some(moved))
         };
         match &self.course {
             Course::Turn { count, axis } => {

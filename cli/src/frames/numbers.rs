@@ -7,7 +7,7 @@ use crate::frames::args::FrameRange;
 use crate::frames::moving::{WantedPath, in_frame};
 use crate::frames::target::Target;
 use crate::frames::union::{Union, scene_of};
-use crate::frames::{Pictures, Wanted};
+use crate::frames::{Pictures, SeriesRequest};
 use crate::input::contents::Contents;
 use crate::input::{FoundFrames, Source};
 use crate::progress::{self, tell};
@@ -33,7 +33,7 @@ impl Numbers {
 /// The path of the camera: that of a flag, or else that of the scene, unless other flags replace it.
 pub(crate) fn wanted_path(
     source: &Source,
-    wanted: &Wanted,
+    wanted: &SeriesRequest,
     notes: &mut Notes,
 ) -> Result<Option<WantedPath>, Failure> {
     let of_scene = source.camera_path()?;
@@ -61,11 +61,11 @@ fn replaced(scene: &str, by: &str) -> String {
 
 pub(crate) fn numbers(
     source: &mut Source,
-    wanted: &Wanted,
+    wanted: &SeriesRequest,
     path: Option<&WantedPath>,
     notes: &mut Notes,
 ) -> Result<Numbers, Failure> {
-    let &Wanted { pictures: Pictures::Frames { range, camera_from, .. }, .. } = wanted else {
+    let Pictures::Frames { range, camera_from, .. } = wanted.pictures else {
         let Pictures::Turntable { count } = wanted.pictures else { return Ok(Numbers::default()) };
         return Ok(Numbers { framed: None, all: (0..count as usize).collect(), is_still: true });
     };
@@ -98,7 +98,7 @@ pub(crate) fn numbers(
 /// Finds the frames of the file. `None` if it has none, and the camera moves.
 fn open_frames(
     source: &mut Source,
-    wanted: &Wanted,
+    wanted: &SeriesRequest,
     moves: bool,
 ) -> Result<Option<FoundFrames>, Failure> {
     let name = source.name();

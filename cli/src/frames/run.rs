@@ -6,13 +6,13 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::device::Opened;
+use crate::device::OpenDevice;
 use crate::failure::Failure;
 use crate::frames::args::numbered;
 use crate::frames::movie::{Message, STOPPED_BETWEEN, Sink};
 use crate::frames::numbers::{Notes, Overview, numbers, wanted_path};
-use crate::frames::series::{Prepared, Series, frames, still, turntable};
-use crate::frames::{Pictures, Wanted};
+use crate::frames::series::{Series, Start, frames, still, turntable};
+use crate::frames::{Pictures, SeriesRequest};
 use crate::picture::Outputs;
 use crate::progress::{self, tell};
 use crate::render::{Job, render_joined};
@@ -26,7 +26,7 @@ use pinhole::image::{Image, LayerSet};
 /// Several pictures that are ready to be made.
 pub(crate) struct Ready {
     pub(crate) series: Series,
-    pub(crate) opened: Opened,
+    pub(crate) opened: OpenDevice,
     pub(crate) stop_rule: StopRule,
     pub(crate) writing: Writing,
     /// What was found in all frames together, if the pictures are frames.
@@ -47,7 +47,7 @@ pub(crate) struct Writing {
 
 /// What is known before the pictures are made ready.
 #[derive(Default)]
-pub(crate) struct Known<'a> {
+pub(crate) struct ReadyOptions<'a> {
     /// What all frames are together; without it they are read.
     pub(crate) overview: Option<Overview>,
     /// The numbers of the pictures that are made, in order; without it, all.
@@ -57,9 +57,9 @@ pub(crate) struct Known<'a> {
 /// Reads the input of the first picture, and opens the device beside that. `None` if no picture is left.
 pub(crate) fn ready(
     args: &RenderArgs,
-    wanted: &Wanted,
+    wanted: &SeriesRequest,
     mut job: Job,
-    known: Known<'_>,
+    options: ReadyOptions<'_>,
 ) -> Result<Option<Ready>, Failure> {
     let quiet = args.report.quiet;
     if quiet {
@@ -69,9 +69,9 @@ pub(crate) fn ready(
     threads::start()?;
     let path = wanted_path(&job.source, wanted, &mut notes)?;
     let numbers = numbers(&mut job.source, wanted, path.as_ref(), &mut notes)?;
-    let left = left(wanted, &job.outputs, &numbers.all, known.only, &mut notes);
+    let left = left(wanted, &job.outputs, &numbers.all, options.only, &mut notes);
     let Some(&first) = left.first() else { return Ok(None) };
-    let mut overview = known.overview;
+    let mut overview = options.overview;
     let prepare = || match (&wanted.pictures, &path) {
         (Pictures::Turntable { .. }, _) => turntable(&job.source, numbers.all.len(), first),
         (Pictures::Frames { .. }, Some(path)) if numbers.is_still => {
@@ -87,7 +87,7 @@ pub(crate) fn ready(
         }
     };
     let (prepared, opened) = job.device.open_beside(prepare)?;
-    let Prepared { mut input, camera } = prepared;
+    let Start { mut input, camera } = prepared;
     for number in &left {
         job.outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
     }
@@ -114,7 +114,7 @@ pub(crate) fn ready(
 
 /// The numbers of the pictures that are to be made, without those that are there already.
 fn left(
-    wanted: &Wanted,
+    wanted: &SeriesRequest,
     outputs: &Outputs,
     all: &[usize],
     only: Option<&[usize]>,
@@ -136,9 +136,9 @@ fn left(
     left
 }
 
-pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Failure> {
+pub(crate) fn run(args: &RenderArgs, wanted: &SeriesRequest, job: Job) -> Result<(), Failure> {
     let started = Instant::now();
-    let Some(ready) = ready(args, wanted, job, Known::default())? else { return Ok(()) };
+    let Some(ready) = ready(args, wanted, job, ReadyOptions::default())? else { return Ok(()) };
     let Ready { series, opened, stop_rule, writing, .. } = ready;
     let (count, report) = (series.left.len(), series.input.report.clone());
     let done = writing.write(wanted, count, opened.adapter(), |pictures| {
@@ -180,7 +180,7 @@ impl Writing {
     /// Writes the pictures that `make` sends, on a thread of its own, and returns their number.
     pub(crate) fn write(
         &self,
-        wanted: &Wanted,
+        wanted: &SeriesRequest,
         count: usize,
         adapter: Option<&str>,
         make: impl FnOnce(&mut PictureSender<'_>) -> Result<(), Failure>,

@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::frames::moving::{Axis, Course, MovingCamera, Stage, WantedPath, up_of};
 use crate::frames::numbers::{Notes, Numbers, Overview, frame};
 use crate::input::contents::Contents;
-use crate::input::{Framed, Input, Look, Source};
+use crate::input::{FramedScene, Input, Look, Source};
 use pinhole::glam::DVec3;
 
 struct Change {
@@ -19,8 +19,8 @@ struct Change {
     look: Option<Box<Look>>,
 }
 
-/// The input of the first picture, and the camera of all, if it moves.
-pub(crate) struct Prepared {
+/// The start of a series: the input of the first picture, and the camera of all, if it moves.
+pub(crate) struct Start {
     pub(crate) input: Input,
     pub(crate) camera: Option<Box<MovingCamera>>,
 }
@@ -68,7 +68,7 @@ pub(super) fn frames(
     numbers: &Numbers,
     first: usize,
     path: Option<(&WantedPath, u32)>,
-) -> Result<Prepared, Failure> {
+) -> Result<Start, Failure> {
     let missing = overview.colors.missing();
     let kinds = overview.kinds(source)?;
     source.color.joined = overview.colors.clone();
@@ -81,9 +81,9 @@ pub(super) fn frames(
     }
     let sky = source.sky(&contents)?;
     let Some((path, fps)) = path else {
-        let framed = Framed::new(&framed, contents.color_key());
+        let framed = FramedScene::new(&framed, contents.color_key());
         let look = source.look(&contents.file, framed, sky, None)?;
-        return Ok(Prepared { input: source.input_with(contents, look)?, camera: None });
+        return Ok(Start { input: source.input_with(contents, look)?, camera: None });
     };
     let (key, file) = (contents.color_key().cloned(), Arc::clone(&contents.file));
     let camera = MovingCamera::on_path(source, path, fps, Stage { framed, key, file, sky })?;
@@ -97,7 +97,7 @@ pub(super) fn still(
     fps: u32,
     index: usize,
     first: usize,
-) -> Result<Prepared, Failure> {
+) -> Result<Start, Failure> {
     let contents = source.contents()?;
     let sky = source.sky(&contents)?;
     let mut framed = Union::default();
@@ -109,14 +109,14 @@ pub(super) fn still(
 }
 
 /// Reads the scene, and frames the body that it sweeps while it turns.
-pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<Prepared, Failure> {
+pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<Start, Failure> {
     let contents = source.contents()?;
     let sky = source.sky(&contents)?;
     let (key, file) = (contents.color_key().cloned(), Arc::clone(&contents.file));
     let direction = match source.up() {
         Some(up) => up.normalize_or(DVec3::Y),
         None => {
-            let framed = Framed::new(&contents.scene, key.as_ref());
+            let framed = FramedScene::new(&contents.scene, key.as_ref());
             let look = source.look(&file, framed, sky.clone(), None)?;
             up_of(&look.parameters).unwrap_or(DVec3::Y)
         }
@@ -136,10 +136,10 @@ fn prepared(
     camera: MovingCamera,
     first: usize,
     index: usize,
-) -> Result<Prepared, Failure> {
+) -> Result<Start, Failure> {
     let look = camera.view(source, first, index)?;
     let input = source.input_with(contents, look)?;
-    Ok(Prepared { input, camera: Some(Box::new(camera)) })
+    Ok(Start { input, camera: Some(Box::new(camera)) })
 }
 
 /// Reads or makes what follows the first picture, until nobody waits for it.

@@ -16,7 +16,7 @@ use pinhole::added::Additions;
 use pinhole::camera::film::Film;
 use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
-use pinhole::load::{self, Column, Loaded};
+use pinhole::load::{self, Column, Dataset};
 use pinhole::scene::Scene;
 use pinhole::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
 use pinhole::select::{KeptSpheres, Selection};
@@ -151,7 +151,7 @@ impl Source {
     }
 
     /// Copies the columns of the spheres that `select` keeps, if they are asked for.
-    fn columns_of(&self, loaded: &Loaded, select: Option<&Selection>) -> Vec<Column> {
+    fn columns_of(&self, loaded: &Dataset, select: Option<&Selection>) -> Vec<Column> {
         match (self.keeps_columns, select) {
             (false, _) => Vec::new(),
             (true, None) => loaded.columns.clone(),
@@ -235,7 +235,7 @@ impl Source {
         path: &Path,
         format: &'static load::Format,
         options: &DataOptions,
-    ) -> Result<Loaded> {
+    ) -> Result<Dataset> {
         match &self.frames {
             Some(frames) => frames.read(options),
             None => data::read(path, format, options),
@@ -319,7 +319,7 @@ impl Source {
 }
 
 /// The column that colors the spheres of a data file where neither the file nor a flag does; see [`ColorBy::of_kinds`].
-pub(crate) fn by_kind(loaded: &Loaded, options: &DataOptions) -> Option<ColorBy> {
+pub(crate) fn by_kind(loaded: &Dataset, options: &DataOptions) -> Option<ColorBy> {
     ColorBy::of_kinds(loaded).filter(|_| options.color.is_none())
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use super::Input;
 use super::contents::Contents;
-use super::look::Framed;
+use super::look::FramedScene;
 use super::source::{FoundFrames, OpenFrames, Source};
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
@@ -35,7 +35,7 @@ impl Source {
             ));
         }
         let sky = self.sky(&contents)?;
-        let framed = Framed::new(&contents.scene, contents.color_key());
+        let framed = FramedScene::new(&contents.scene, contents.color_key());
         let look = self.look(&contents.file, framed, sky, None)?;
         self.input_with(contents, look)
     }

@@ -34,13 +34,13 @@ pub(crate) struct Look {
 
 /// What a camera frames, and what is drawn beside it.
 #[derive(Clone, Copy)]
-pub(crate) struct Framed<'a> {
+pub(crate) struct FramedScene<'a> {
     scene: &'a Scene,
     /// What the legend shows.
     key: Option<&'a ColorKey>,
 }
 
-impl<'a> Framed<'a> {
+impl<'a> FramedScene<'a> {
     pub(crate) fn new(scene: &'a Scene, key: Option<&'a ColorKey>) -> Self {
         Self { scene, key }
     }
@@ -54,7 +54,7 @@ impl Source {
     pub(crate) fn look(
         &self,
         file: &SceneFile,
-        Framed { scene, key }: Framed<'_>,
+        FramedScene { scene, key }: FramedScene<'_>,
         sky: Option<Environment>,
         turn: Option<Turn<'_>>,
     ) -> Result<Look, Failure> {

@@ -18,7 +18,7 @@ use crate::light::LightFlags;
 use crate::read_file::{Format, data_format, parse_size};
 use pinhole::color_by::ColorBy;
 use pinhole::image::color::LinearRgb;
-use pinhole::load::{self, Loaded, Trajectory};
+use pinhole::load::{self, Dataset, Trajectory};
 use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::style::Style;
 
@@ -246,7 +246,7 @@ pub(crate) struct FoundFrames {
 
 impl OpenFrames {
     /// Reads the frame that the options name, or else the first.
-    pub(crate) fn read(&self, options: &DataOptions) -> Result<Loaded> {
+    pub(crate) fn read(&self, options: &DataOptions) -> Result<Dataset> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         data::read_frame_of(&self.path, &mut file, options)
     }

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::frames::Wanted;
+use crate::frames::SeriesRequest;
 use crate::frames::args::Raw;
 use crate::input::Input;
 use crate::job::manifest::Manifest;
@@ -154,7 +154,7 @@ pub(crate) fn split_args(arguments: &[String]) -> Result<SplitArgs, Failure> {
 pub(crate) struct Recipe {
     pub(crate) args: RenderArgs,
     /// `None` for a single picture.
-    pub(crate) wanted: Option<Wanted>,
+    pub(crate) wanted: Option<SeriesRequest>,
     pub(crate) job: Job,
 }
 
@@ -177,8 +177,8 @@ impl Recipe {
 
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Failure> {
         let output = args.output.as_deref().unwrap_or(Path::new("-"));
-        let wanted = Wanted::new(&args)?;
-        let job = Job::new(&args, wanted.as_ref().map_or(output, Wanted::picture))?;
+        let wanted = SeriesRequest::new(&args)?;
+        let job = Job::new(&args, wanted.as_ref().map_or(output, SeriesRequest::picture))?;
         Ok(Self { wanted, job, args })
     }
 

@@ -10,9 +10,9 @@ use super::files;
 use super::folder::{Folder, PARTS};
 use super::part::described;
 use super::part_file::{self, Header, Pictures, Problem};
-use crate::device::Opened;
+use crate::device::OpenDevice;
 use crate::failure::Failure;
-use crate::frames::{Known, Ready, is_movie, ready};
+use crate::frames::{Ready, ReadyOptions, is_movie, ready};
 use crate::job::args::{MergeArgs, Recipe, SplitArgs, check_same, split_args};
 use crate::job::manifest::{layer_set, ranges};
 use crate::picture::{Outputs, PictureFormat};
@@ -107,8 +107,8 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         outputs.write(&image, &encoding, adapter, None)?;
         return Ok(1);
     };
-    let known = Known { overview: folder.overview()?, only: None };
-    let Some(Ready { series, opened, writing, all, .. }) = ready(&args, &wanted, job, known)?
+    let options = ReadyOptions { overview: folder.overview()?, only: None };
+    let Some(Ready { series, opened, writing, all, .. }) = ready(&args, &wanted, job, options)?
     else {
         return Ok(0);
     };
@@ -131,7 +131,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
 
 impl Devices {
     /// Refuses to remove noise by another device than that of the parts.
-    fn check(&self, opened: &Opened) -> Result<(), Failure> {
+    fn check(&self, opened: &OpenDevice) -> Result<(), Failure> {
         let here = described(opened);
         let needs = self.adapter.is_some() && opened.adapter().is_some();
         if !needs || self.may_differ || self.described.contains(&here) {

@@ -9,9 +9,9 @@ use anyhow::Context;
 use super::folder::{Folder, PARTS};
 use super::part_file::{self, Header, Pictures, payload};
 use crate::bricks::nearest_of;
-use crate::device::Opened;
+use crate::device::OpenDevice;
 use crate::failure::Failure;
-use crate::frames::{Known, Ready, ready};
+use crate::frames::{Ready, ReadyOptions, ready};
 use crate::input::Input;
 use crate::interrupt::{self, Deadline};
 use crate::job::args::{PartArgs, Recipe, check_same};
@@ -85,8 +85,8 @@ impl Work<'_> {
         let mut numbers: Vec<usize> =
             self.units.iter().filter_map(|unit| manifest.number(*unit)).collect();
         numbers.dedup();
-        let known = Known { overview: self.folder.overview()?, only: Some(&numbers) };
-        let Some(Ready { series, opened, all, .. }) = ready(&args, &wanted, job, known)? else {
+        let options = ReadyOptions { overview: self.folder.overview()?, only: Some(&numbers) };
+        let Some(Ready { series, opened, all, .. }) = ready(&args, &wanted, job, options)? else {
             return Ok(());
         };
         check_same(manifest, Some(&all), &series.input)?;
@@ -98,7 +98,7 @@ impl Work<'_> {
         })
     }
 
-    fn render(&self, unit: usize, input: &mut Input, opened: &Opened) -> Result<(), Failure> {
+    fn render(&self, unit: usize, input: &mut Input, opened: &OpenDevice) -> Result<(), Failure> {
         let unit_did_not_end = format!("unit {unit} did not end");
         let _deadline = self.limit.map(|limit| Deadline::new(limit, unit_did_not_end));
         let manifest = &self.folder.manifest;
@@ -141,10 +141,10 @@ fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Fai
 }
 
 /// What rendered, such that equal words mean equal bits: an adapter with its driver, or the CPU.
-pub(super) fn described(opened: &Opened) -> String {
+pub(super) fn described(opened: &OpenDevice) -> String {
     match opened {
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, .. } => {
+        OpenDevice::Device { headless, .. } => {
             let info = headless.adapter_info();
             format!("{} ({} {})", info.name, info.driver, info.driver_info)
         }

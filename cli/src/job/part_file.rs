@@ -111,12 +111,12 @@ pub(super) fn glance(path: &Path, manifest: &Manifest, unit: usize) -> Result<He
 }
 
 /// What is read from a file, with its digest.
-struct Digested {
+struct DigestReader {
     file: files::File,
     digest: Sha256,
 }
 
-impl Read for Digested {
+impl Read for DigestReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
         self.digest.update(&buffer[..count]);
@@ -132,10 +132,10 @@ fn checked(
     contents: impl FnOnce(&mut dyn Read) -> io::Result<()>,
 ) -> Result<Header, Problem> {
     let problem = |error| Problem::of(&error);
-    let mut part = Digested { file: open(path)?, digest: Sha256::new() };
+    let mut part = DigestReader { file: open(path)?, digest: Sha256::new() };
     let (header, _) = read_header(&mut part)?;
     contents(&mut Read::by_ref(&mut part).take(header.bytes)).map_err(problem)?;
-    let Digested { file, digest } = part;
+    let DigestReader { file, digest } = part;
     let mut end = Vec::new();
     // One byte more than there may be.
     file.take(DIGEST as u64 + 1).read_to_end(&mut end).map_err(problem)?;

@@ -8,7 +8,7 @@ use super::files::{self, InputFile};
 use super::folder::{Folder, OVERVIEW, PARTS, packed};
 use crate::args::Stereo;
 use crate::failure::Failure;
-use crate::frames::{Known, Overview, Ready, ready};
+use crate::frames::{Overview, Ready, ReadyOptions, ready};
 use crate::input::Input;
 use crate::job::args::{Recipe, SplitArgs};
 use crate::job::manifest::{
@@ -20,7 +20,7 @@ use crate::{bricks, threads};
 use pinhole::image::{Layer, LayerSet};
 
 /// What is known of the pictures when the first was read.
-struct Found {
+struct JobInput {
     input: Input,
     /// The layers that a PNG or an EXR needs.
     layers: LayerSet,
@@ -47,7 +47,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     })?;
     let recipe = Recipe::of_parts(&arguments, &above, args.render.report.quiet)?.without_device();
     threads::start()?;
-    let Found { input, layers, pictures, overview } = found(recipe)?;
+    let JobInput { input, layers, pictures, overview } = job_input(recipe)?;
     let size = [input.film.width(), input.film.height()];
     let tiles = parse_tiles(&args.tiles, size)?;
     let groups = groups(args.by_depth, &input, pictures.is_some())?;
@@ -151,7 +151,7 @@ fn check_new(job: &Path) -> Result<PathBuf, Failure> {
 }
 
 /// Reads the input of the first picture.
-fn found(recipe: Recipe) -> Result<Found, Failure> {
+fn job_input(recipe: Recipe) -> Result<JobInput, Failure> {
     let Recipe { args, wanted, mut job } = recipe;
     if wanted.is_some() {
         job.source = job.source.without_bricks("a series of pictures")?;
@@ -162,12 +162,12 @@ fn found(recipe: Recipe) -> Result<Found, Failure> {
         input.notes.iter().for_each(|text| note(text));
         let (encoding, _) = job.finish(&mut input, note)?;
         let layers = job.outputs.layers(&encoding);
-        return Ok(Found { input, layers, pictures: None, overview: None });
+        return Ok(JobInput { input, layers, pictures: None, overview: None });
     };
     let none = || anyhow!("no picture is asked for");
     let Ready { series, writing, overview, all, .. } =
-        ready(&args, &wanted, job, Known::default())?.ok_or_else(none)?;
-    Ok(Found { input: series.input, layers: writing.layers, pictures: Some(all), overview })
+        ready(&args, &wanted, job, ReadyOptions::default())?.ok_or_else(none)?;
+    Ok(JobInput { input: series.input, layers: writing.layers, pictures: Some(all), overview })
 }
 
 /// The bricks of each unit; none if units are tiles.

@@ -7,7 +7,7 @@ use anyhow::{Context, anyhow};
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
 use crate::progress::{self, answer};
-use crate::verify::output::Recorded;
+use crate::verify::output::VerifyJob;
 use crate::verify::report::{Report, open_pixels};
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
@@ -23,7 +23,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
         return picture::run(args, picture, scene);
     }
-    let Recorded { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
+    let VerifyJob { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
         (Some(path), _) => output::replay(path, args)?,
         #[cfg(feature = "gpu")]
         (None, Some(path)) => record::recorded(path, args)?,

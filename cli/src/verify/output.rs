@@ -21,7 +21,7 @@ use pinhole::verify::run_file::{self, Extras, LitSamples, Run, RunFile, ShownPic
 use pinhole::verify::{Certificate, Checker, LitCertificate};
 
 /// What is to be checked and written.
-pub(crate) struct Recorded {
+pub(crate) struct VerifyJob {
     pub(crate) run: Run,
     pub(crate) outputs: VerifyOutputs,
     /// The certificate of the light, if it was checked.
@@ -29,12 +29,12 @@ pub(crate) struct Recorded {
     /// The certificate of the denoiser, if the scene asks for it.
     pub(crate) denoiser: Option<DenoiseCertificate>,
     /// What is kept of the light, for a run file and the page.
-    pub(crate) kept: Kept,
+    pub(crate) kept: KeptLight,
 }
 
 /// What is kept of a lit picture.
 #[derive(Default)]
-pub(crate) struct Kept {
+pub(crate) struct KeptLight {
     /// The samples that were recorded, if a run file is written.
     pub(crate) samples: Option<LitSamples>,
     /// The noisy picture and the denoised one.
@@ -44,7 +44,7 @@ pub(crate) struct Kept {
 }
 
 /// Reads a run file and judges the light in it, sample by sample.
-pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
+pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
@@ -63,8 +63,8 @@ pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure
     drop(checker);
     let denoised = file.denoised().with_context(of_file)?;
     let denoiser = denoised.as_ref().map(report::judge).transpose()?;
-    let kept = Kept { shown: file.shown().with_context(of_file)?, ..Kept::default() };
-    Ok(Recorded { run, outputs, light: has_light.then_some(certificate), denoiser, kept })
+    let kept = KeptLight { shown: file.shown().with_context(of_file)?, ..KeptLight::default() };
+    Ok(VerifyJob { run, outputs, light: has_light.then_some(certificate), denoiser, kept })
 }
 
 const PAGE: &str = "report.html";
@@ -111,7 +111,7 @@ impl VerifyOutputs {
         run: &Run,
         certificate: &Certificate,
         report: &Report<'_>,
-        kept: &Kept,
+        kept: &KeptLight,
     ) -> Result<()> {
         let write = || {
             let mut files = Vec::new();

@@ -27,7 +27,7 @@ struct Page<'a> {
     checked_by: &'static str,
     /// The run file that holds the checked recording, if there is one.
     run_file: Option<String>,
-    pictures: Drawn,
+    pictures: PagePictures,
     /// The colours of the verdicts in their picture.
     colors: BTreeMap<&'static str, String>,
     /// The nearest and the farthest depth, if a sphere is hit.
@@ -40,7 +40,7 @@ struct Page<'a> {
 
 /// The pictures as data URIs.
 #[derive(Serialize)]
-struct Drawn {
+struct PagePictures {
     color: String,
     depth: String,
     /// `None` if no pixel was judged.
@@ -73,7 +73,7 @@ pub(crate) fn page(
         verdict: report.verdict(),
         checked_by: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),
-        pictures: Drawn {
+        pictures: PagePictures {
             color: blocks.drawn(|block| mean(block.map(|i| color[i])))?,
             // The smallest depth of each block.
             depth: blocks.drawn(|block| {

@@ -11,7 +11,7 @@ use crate::device::{AdapterReport, WantedAdapter, explained_alone};
 use crate::failure::Failure;
 use crate::input::{Input, Source};
 use crate::progress::{self, tell};
-use crate::verify::output::{Kept, Recorded, VerifyOutputs};
+use crate::verify::output::{KeptLight, VerifyJob, VerifyOutputs};
 use crate::verify::report::{self, command_line};
 use crate::views::views_of;
 use crate::with_scene::{upload, with_structures};
@@ -28,7 +28,7 @@ use pinhole::verify::run_file::{self, LitSamples, Provenance, Run, ShownPicture}
 use pinhole::verify::{Checker, LitCertificate, LitRecording};
 
 /// Renders a scene on an adapter and records it.
-pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
+pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failure> {
     let source = Source::of_view(path, &args.view)?.without_bricks("`verify`")?;
     let outputs = VerifyOutputs::new(args)?;
     let wanted = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
@@ -84,7 +84,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
     // Samples are kept in a temporary file beside the run file.
     let spool = args.save.as_deref().filter(|_| is_lit).map(output::temporary).transpose()?;
     let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
-    let mut kept = Kept { samples, ..Kept::default() };
+    let mut kept = KeptLight { samples, ..KeptLight::default() };
     let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
     let light = is_lit.then(certify).transpose()?;
     if input.settings.is_denoised {
@@ -95,7 +95,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failu
         kept.shown = Some(render_lit(&headless, &input, choice)?);
     }
     let run = Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-    Ok(Recorded { run, outputs, light, denoiser, kept })
+    Ok(VerifyJob { run, outputs, light, denoiser, kept })
 }
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {

@@ -1,14 +1,14 @@
 //! What the viewer shares with `pinhole render`, so that both make the same picture.
 //!
-//! The state of a view is [`RenderFlags`]: a file, and flags of `pinhole render`. [`Shown`] is what they mean: spheres,
-//! camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
+//! The state of a view is [`RenderFlags`]: a file, and flags of `pinhole render`. [`OpenView`] is what they mean:
+//! spheres, camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
 //! `pinhole render` itself.
 
 use std::fmt;
 use std::process::ExitCode;
 
 pub use flags::RenderFlags;
-pub use shown::{Facts, Shown, TimeLine};
+pub use open_view::{Facts, OpenView, TimeLine};
 pub use still::{StillPicture, StillRenderer};
 
 use crate::failure::{FAILED, Failure, USAGE};
@@ -16,7 +16,7 @@ pub use crate::viewing::camera::ViewCamera;
 
 mod camera;
 mod flags;
-mod shown;
+mod open_view;
 mod still;
 
 /// Why something cannot be shown: one line for the user, and the exit code of `pinhole`.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use anyhow::Context;
 
-use super::{RenderFlags, Shown, ViewError};
-use crate::device::{Opened, explained};
+use super::{OpenView, RenderFlags, ViewError};
+use crate::device::{OpenDevice, explained};
 use crate::failure::Failure;
 use crate::render;
 use crate::with_scene::{upload, with_structures};
@@ -20,12 +20,12 @@ use pinhole::write::png;
 
 /// Renders what is shown, on a device of its own.
 pub struct StillRenderer {
-    opened: Opened,
-    uploaded: Option<Uploaded>,
+    opened: OpenDevice,
+    uploaded: Option<DeviceScene>,
 }
 
 /// A scene on the device.
-struct Uploaded {
+struct DeviceScene {
     scene: Arc<Scene>,
     /// What the structures were planned for.
     integrator: std::mem::Discriminant<pinhole::render::Integrator>,
@@ -55,11 +55,11 @@ impl StillRenderer {
     /// What is wrong with the device, if something is.
     pub fn warning(&self) -> Option<&str> {
         match &self.opened {
-            Opened::Device { warning, .. } => warning.as_deref(),
-            Opened::CpuInstead => {
+            OpenDevice::Device { warning, .. } => warning.as_deref(),
+            OpenDevice::CpuInstead => {
                 Some("still pictures are rendered by the CPU reference, which is slower")
             }
-            Opened::Cpu => None,
+            OpenDevice::Cpu => None,
         }
     }
 
@@ -67,7 +67,7 @@ impl StillRenderer {
     /// returns false, when `is_wanted` says that the picture is not wanted any more.
     pub fn render(
         &mut self,
-        shown: &Shown,
+        shown: &OpenView,
         is_wanted: &dyn Fn() -> bool,
         show: &mut dyn FnMut(StillPicture),
     ) -> Result<bool, ViewError> {
@@ -96,14 +96,13 @@ impl StillRenderer {
     /// Renders the view; `None` if it is not wanted any more.
     fn image(
         &mut self,
-        shown: &Shown,
+        shown: &OpenView,
         settings: &RenderSettings,
         layers: LayerSet,
         is_wanted: &dyn Fn() -> bool,
     ) -> Result<Option<Image>, Failure> {
-        let (headless, choice) = match &self.opened {
-            Opened::Device { headless, choice, .. } => (headless, *choice),
-            Opened::Cpu | Opened::CpuInstead => return on_cpu(shown, settings, layers, is_wanted),
+        let OpenDevice::Device { headless, choice, .. } = &self.opened else {
+            return on_cpu(shown, settings, layers, is_wanted);
         };
         let watch = || if is_wanted() { Decision::GoOn } else { Decision::Stop };
         let render = |buffers: &SceneBuffers| {
@@ -113,7 +112,7 @@ impl StillRenderer {
         let (scene, integrator) =
             (&shown.input.scene, std::mem::discriminant(&settings.integrator));
         let is_of_scene =
-            |up: &Uploaded| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
+            |up: &DeviceScene| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
         let uploaded = self.uploaded.as_ref().filter(|uploaded| is_of_scene(uploaded));
         let rendered = uploaded.map(|uploaded| render(&uploaded.buffers));
         let rendered = match rendered {
@@ -121,10 +120,10 @@ impl StillRenderer {
             // The structure may not suit this view, so that others are tried.
             Some(Err(_)) | None => {
                 self.uploaded = None;
-                let first = first_render(headless, shown, layers, choice, &render)?;
+                let first = first_render(headless, shown, layers, *choice, &render)?;
                 first.map(|(buffers, picture)| {
                     let scene = Arc::clone(scene);
-                    self.uploaded = Some(Uploaded { scene, integrator, buffers });
+                    self.uploaded = Some(DeviceScene { scene, integrator, buffers });
                     picture
                 })
             }
@@ -140,7 +139,7 @@ impl StillRenderer {
 /// Copies the scene to the device and renders, with another structure if the first one does not suit.
 fn first_render(
     headless: &Headless,
-    shown: &Shown,
+    shown: &OpenView,
     layers: LayerSet,
     choice: AccelChoice,
     render: &dyn Fn(&SceneBuffers) -> Result<Picture, GpuError>,
@@ -159,7 +158,7 @@ fn first_render(
 }
 
 fn on_cpu(
-    shown: &Shown,
+    shown: &OpenView,
     settings: &RenderSettings,
     layers: LayerSet,
     is_wanted: &dyn Fn() -> bool,

@@ -2,7 +2,7 @@
 
 use pinhole::camera::{Camera, OrthographicCamera, Pose};
 use pinhole::verify::run_file::{self, Provenance, Run};
-use pinhole::verify::{Recording, Rendered, RequestedCamera, TracedPixel, UploadedView};
+use pinhole::verify::{PlainRender, Recording, RequestedCamera, TracedPixel, UploadedView};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 use crate::support::{Folder, SCENE};
@@ -36,7 +36,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
             (width * height) as usize
         ],
         image: cpu::render(&scene, &View::new(&camera, film), &settings, LayerSet::DATA).unwrap(),
-        rendered: Rendered::None,
+        rendered: PlainRender::None,
     };
     let text = str::to_owned;
     let provenance = Provenance {

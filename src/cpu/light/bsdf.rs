@@ -101,7 +101,7 @@ impl Bsdf {
     }
 
     /// A random scattered direction; `None` if the light is lost.
-    pub(super) fn scatter(&self, u: [u32; 2], choice: f64) -> Option<Scattered> {
+    pub(super) fn scatter(&self, u: [u32; 2], choice: f64) -> Option<BsdfSample> {
         match &self.kind {
             Kind::Lambert(lambert) => lambert.scatter(self.out, u, choice),
             Kind::Conductor(conductor) => conductor.scatter(self.out, u),
@@ -120,7 +120,7 @@ pub(super) struct Response {
 
 /// A direction chosen at random by a BSDF.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scattered {
+pub(super) struct BsdfSample {
     /// On the other side of the surface if its z is negative.
     pub(super) direction: DVec3,
     pub(super) weight: DVec3,
@@ -152,7 +152,7 @@ impl Lambert {
         Response { value, density }
     }
 
-    fn scatter(&self, out: DVec3, u: [u32; 2], choice: f64) -> Option<Scattered> {
+    fn scatter(&self, out: DVec3, u: [u32; 2], choice: f64) -> Option<BsdfSample> {
         let direction = match self.lobe {
             Some((ggx, share, _)) if choice < share => mirrored(out, ggx.visible_normal(out, u)),
             _ => maps::cosine(u),
@@ -163,7 +163,7 @@ impl Lambert {
         let Response { value, density } = self.response(out, direction);
         // Without a lobe, the weight is exactly the colour.
         let weight = if self.lobe.is_some() { value * direction.z / density } else { self.color };
-        Some(Scattered { direction, weight, density: Some(density) })
+        Some(BsdfSample { direction, weight, density: Some(density) })
     }
 }
 
@@ -195,14 +195,14 @@ impl Conductor {
         }
     }
 
-    fn scatter(&self, out: DVec3, u: [u32; 2]) -> Option<Scattered> {
+    fn scatter(&self, out: DVec3, u: [u32; 2]) -> Option<BsdfSample> {
         let h = self.ggx.visible_normal(out, u);
         let direction = mirrored(out, h);
         if direction.z <= 0.0 {
             return None;
         }
         let shadowing = self.ggx.g2(out.z, direction.z) / self.ggx.g1(out.z);
-        Some(Scattered {
+        Some(BsdfSample {
             direction,
             weight: self.reflected(h.dot(out)) * self.compensation() * shadowing,
             density: Some(self.ggx.reflection_density(out, direction)),
@@ -219,7 +219,7 @@ struct Dielectric {
 }
 
 impl Dielectric {
-    fn scatter(&self, out: DVec3, u: [u32; 2], choice: f64) -> Option<Scattered> {
+    fn scatter(&self, out: DVec3, u: [u32; 2], choice: f64) -> Option<BsdfSample> {
         let h = self.rough.map_or(DVec3::Z, |(ggx, _)| ggx.visible_normal(out, u));
         let cosine = out.dot(h);
         let (reflected, inside) = fresnel(cosine, self.eta);
@@ -234,7 +234,7 @@ impl Dielectric {
             return None;
         }
         let weight = self.rough.map_or(1.0, |(ggx, energy)| ggx.g1(direction.z.abs()) / energy);
-        Some(Scattered { direction, weight: DVec3::splat(weight), density: None })
+        Some(BsdfSample { direction, weight: DVec3::splat(weight), density: None })
     }
 }
 

@@ -8,7 +8,7 @@ use super::bsdf::Bsdf;
 use super::context::{LightSample, LightingContext, SampledLight, Surface};
 use super::maps::{TangentFrame, rgb};
 use super::sample::{Address, Sample};
-use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
+use super::surface_ray::{Interaction, Occluders, SurfaceRay, is_occluded, nearest};
 use crate::camera::sampling::unit;
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
@@ -208,7 +208,7 @@ impl Path<'_> {
         let ray = Ray { origin: interaction.point, direction };
         let surface_ray = SurfaceRay { ray, start: interaction.this_side() };
         if light != DVec3::ZERO
-            && !is_occluded(self.context, &surface_ray, distance, Hiding::All, sphere)
+            && !is_occluded(self.context, &surface_ray, distance, Occluders::All, sphere)
         {
             self.found.color += light;
         }

@@ -9,7 +9,7 @@ use super::context::{LightingContext, Plane, Surface};
 use super::maps::{self, TangentFrame, luminance, rgb};
 use super::sample::{Address, Sample};
 use super::sources::{Arrival, arrival, arrival_of_middle};
-use super::surface_ray::{Hiding, Interaction, SurfaceRay, is_occluded, nearest};
+use super::surface_ray::{Interaction, Occluders, SurfaceRay, is_occluded, nearest};
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
 use crate::render::Studio;
@@ -134,7 +134,7 @@ impl SeenSurface<'_> {
     pub(super) fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {
         let ray = Ray { origin: self.interaction.point, direction };
         let surface_ray = SurfaceRay { ray, start: self.interaction.this_side() };
-        is_occluded(self.context, &surface_ray, t_max, Hiding::Opaque, None)
+        is_occluded(self.context, &surface_ray, t_max, Occluders::Opaque, None)
     }
 
     /// The fraction of light that is missing on the ground because of shadows; each light is weighted by the light of

@@ -64,7 +64,7 @@ impl Interaction {
 
 /// Which spheres occlude light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Hiding {
+pub(super) enum Occluders {
     /// All spheres.
     All,
     /// Spheres whose opacity is 1.
@@ -109,14 +109,14 @@ pub(super) fn is_occluded(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
     t_max: f64,
-    hiding: Hiding,
+    occluders: Occluders,
     exempt: Option<u32>,
 ) -> bool {
     let ray = &surface_ray.ray;
     let start = StartSphere::of(context, surface_ray.start);
-    let hides = |id: u32| match hiding {
-        Hiding::All => true,
-        Hiding::Opaque => context.scene.surface(id).opacity >= 1.0,
+    let hides = |id: u32| match occluders {
+        Occluders::All => true,
+        Occluders::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
     // If several spheres equal the one on which the ray starts, only that one counts.
     let is_there = |id: u32, sphere| match surface_ray.start {
@@ -302,7 +302,8 @@ mod tests {
                 let start = if is_outward { Start::Outside(1) } else { Start::Inside(1) };
                 let ray = Ray { origin: center + radius * outward, direction: along };
                 let surface_ray = SurfaceRay { ray, start };
-                let hides = |exempt| is_occluded(context, &surface_ray, 9.0, Hiding::All, exempt);
+                let hides =
+                    |exempt| is_occluded(context, &surface_ray, 9.0, Occluders::All, exempt);
                 if is_outward {
                     assert!(nearest(context, &surface_ray).is_none() && !hides(None));
                 } else {
@@ -323,21 +324,21 @@ mod tests {
         with_spheres(&[at(0.0, 1.0), at(2.0, 0.9), at(4.0, 1.0)], |context| {
             let up = Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Z };
             let from = |start| SurfaceRay { ray: up, start };
-            let hidden = |start, t_max, hiding, exempt| {
-                is_occluded(context, &from(start), t_max, hiding, exempt)
+            let hidden = |start, t_max, occluders, exempt| {
+                is_occluded(context, &from(start), t_max, occluders, exempt)
             };
             let outside = Start::Outside(0);
-            assert!(hidden(outside, 9.0, Hiding::All, None));
-            assert!(!hidden(outside, 1.0, Hiding::All, None), "the near hit of the next");
-            assert!(hidden(outside, 1.1, Hiding::All, None));
-            assert!(!hidden(outside, 1.1, Hiding::Opaque, None));
-            assert!(!hidden(outside, 3.0, Hiding::Opaque, None));
-            assert!(hidden(outside, 3.1, Hiding::Opaque, None));
-            assert!(!hidden(outside, 9.0, Hiding::Opaque, Some(2)));
+            assert!(hidden(outside, 9.0, Occluders::All, None));
+            assert!(!hidden(outside, 1.0, Occluders::All, None), "the near hit of the next");
+            assert!(hidden(outside, 1.1, Occluders::All, None));
+            assert!(!hidden(outside, 1.1, Occluders::Opaque, None));
+            assert!(!hidden(outside, 3.0, Occluders::Opaque, None));
+            assert!(hidden(outside, 3.1, Occluders::Opaque, None));
+            assert!(!hidden(outside, 9.0, Occluders::Opaque, Some(2)));
             let down = Ray { direction: -DVec3::Z, ..up };
             let inside = SurfaceRay { ray: down, start: Start::Inside(0) };
-            assert!(is_occluded(context, &inside, 1.1, Hiding::Opaque, None), "its own far hit");
-            assert!(!is_occluded(context, &inside, 1.0, Hiding::Opaque, None));
+            assert!(is_occluded(context, &inside, 1.1, Occluders::Opaque, None), "its own far hit");
+            assert!(!is_occluded(context, &inside, 1.0, Occluders::Opaque, None));
         });
     }
 }

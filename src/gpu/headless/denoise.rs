@@ -14,7 +14,7 @@ use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::{Kernel, pipeline};
 use crate::image::Image;
-use crate::image::denoise::{Guided, PASSES, REACH};
+use crate::image::denoise::{Guides, PASSES, REACH};
 
 /// Uniform record of one pass of the denoiser.
 #[repr(C)]
@@ -38,28 +38,28 @@ impl Headless {
     /// # Errors
     /// If the picture lacks one of the layers in [`crate::image::denoise::GUIDES`], or if the device fails.
     pub async fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
-        let guided = Guided::of(image)?;
+        let guides = Guides::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);
         let max_pixels = MAX_STRIP_PIXELS.min(binding_limit(&self.device().limits()) / 16);
         let reach = REACH as usize;
         let rows = (max_pixels as usize / width).saturating_sub(2 * reach).max(1);
         let mut lights = Vec::new();
-        lights.reserve_exact(guided.lights.len());
+        lights.reserve_exact(guides.lights.len());
         for start in (0..height).step_by(rows) {
             let end = (start + rows).min(height);
             let (first, last) = (start.saturating_sub(reach), (end + reach).min(height));
-            let strip = self.denoised_strip(&guided, width, first..last).await?;
+            let strip = self.denoised_strip(&guides, width, first..last).await?;
             lights.extend_from_slice(&strip[(start - first) * width..(end - first) * width]);
         }
         let mut denoised = image.clone();
-        denoised.color_mut().copy_from_slice(&guided.colors(lights.into_iter()));
+        denoised.color_mut().copy_from_slice(&guides.colors(lights.into_iter()));
         Ok(denoised)
     }
 
     /// The light of some rows, filtered with the pixels of these rows only.
     async fn denoised_strip(
         &self,
-        guided: &Guided,
+        guides: &Guides,
         width: usize,
         rows: std::ops::Range<usize>,
     ) -> Result<Vec<[f32; 4]>, GpuError> {
@@ -82,7 +82,7 @@ impl Headless {
             let [front, back, shapes, albedos] =
                 [(); 4].map(|()| created(bytes, BufferUsages::STORAGE));
             for (target, contents) in
-                [(&front, &guided.lights), (&shapes, &guided.shapes), (&albedos, &guided.albedos)]
+                [(&front, &guides.lights), (&shapes, &guides.shapes), (&albedos, &guides.albedos)]
             {
                 queue.write_buffer(target, 0, bytemuck::cast_slice(&contents[pixels.clone()]));
             }

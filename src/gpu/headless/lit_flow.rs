@@ -60,14 +60,14 @@ pub(crate) struct Flow<'a> {
     /// Tiles that the encoder accumulates samples of, each with its number of samples after that.
     accumulated: Vec<(usize, u32)>,
     /// The submission that the device is executing.
-    submitted: Option<Submitted>,
+    submitted: Option<Submission>,
     /// The time at which the previous submission had finished.
     last_done: Instant,
     /// Number of samples that each tile has accumulated, counting all submitted work.
     pub(crate) samples: Vec<u32>,
 }
 
-struct Submitted {
+struct Submission {
     index: SubmissionIndex,
     at: Instant,
     groups: u64,
@@ -189,7 +189,7 @@ impl<'a> Flow<'a> {
             self.samples[tile] = samples;
         }
         let groups = std::mem::take(&mut self.gathered);
-        let before = self.submitted.replace(Submitted { index, at, groups, noted });
+        let before = self.submitted.replace(Submission { index, at, groups, noted });
         self.wait_for(before).await?;
         after()
     }
@@ -198,7 +198,7 @@ impl<'a> Flow<'a> {
     pub(crate) async fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
         self.hand_over(&mut || Ok(())).await?;
         let last = self.submitted.take();
-        if let Some(Submitted { index, .. }) = &last {
+        if let Some(Submission { index, .. }) = &last {
             self.headless.wait(mapped, index.clone()).await?;
         }
         self.wait_for(last).await
@@ -222,8 +222,8 @@ impl<'a> Flow<'a> {
         frame.read_spent()
     }
 
-    async fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
-        let Some(Submitted { index, at, groups, noted }) = submitted else {
+    async fn wait_for(&mut self, submitted: Option<Submission>) -> Result<(), GpuError> {
+        let Some(Submission { index, at, groups, noted }) = submitted else {
             return Ok(());
         };
         self.headless.wait(&[], index).await?;

@@ -12,7 +12,7 @@ use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{
     Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
 };
-use crate::gpu::headless::readback::{Derived, ReadableBuffer, TileTextures};
+use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::uploading::OptionsOf;
 use crate::gpu::passes::bands::{rows_per_band, tile_size};
@@ -198,7 +198,7 @@ impl Headless {
             let mapped = textures.record_read_back(&mut encoder, &frame, size);
             self.run(encoder, &mapped).await?;
             let mut image = Image::new(film.width(), film.height(), layers)?;
-            let derived = Derived { view: *view, appearance: scene.appearance() };
+            let derived = DerivedLayers { view: *view, appearance: scene.appearance() };
             textures.read_into(&mut image, tile, &derived)?;
             // Where nothing is traced, the picture is complete only now.
             done.add(Groups::NONE, watch)?;

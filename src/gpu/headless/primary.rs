@@ -8,7 +8,7 @@ use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
-use crate::gpu::headless::readback::{Derived, ReadableTrace, TileTextures};
+use crate::gpu::headless::readback::{DerivedLayers, ReadableTrace, TileTextures};
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
@@ -98,7 +98,7 @@ impl Headless {
             scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
         let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
         let traced = scoped(device, || ReadableTrace::new(device, &frame)).await?;
-        let derived = Derived { view: *view, appearance: scene.appearance() };
+        let derived = DerivedLayers { view: *view, appearance: scene.appearance() };
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, primary);

@@ -127,12 +127,12 @@ fn padded_row(width: u32, bytes_per_pixel: u32) -> u32 {
 }
 
 /// The data, besides the pixels of a tile, that derived layers are computed from.
-pub(crate) struct Derived<'a> {
+pub(crate) struct DerivedLayers<'a> {
     pub(crate) view: View<'a>,
     pub(crate) appearance: &'a SceneAppearance,
 }
 
-impl Derived<'_> {
+impl DerivedLayers<'_> {
     /// The point in world space at a distance along the ray of a pixel.
     fn point(&self, [i, j]: [usize; 2], t: f32) -> [f32; 3] {
         let location = self.view.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
@@ -230,7 +230,7 @@ impl TileTextures {
         &self,
         image: &mut Image,
         tile: Tile,
-        derived: &Derived<'_>,
+        derived: &DerivedLayers<'_>,
     ) -> Result<(), GpuError> {
         self.check_steps()?;
         let [x, y] = tile.origin.map(|start| start as usize);

@@ -20,7 +20,8 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
-    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
+    Certificate, Checker, NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel,
+    UploadedView,
 };
 
 /// Returns a camera together with the numbers that are uploaded for it and for the scene's box.
@@ -61,7 +62,7 @@ fn new_recording(
         primary,
         pixels: vec![untraced; image.color().len()],
         image,
-        rendered: Rendered::None,
+        rendered: PlainRender::None,
     })
 }
 

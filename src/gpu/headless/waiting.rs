@@ -124,20 +124,20 @@ pub(crate) async fn until_done(
 
 /// Returns a future, and the place where a callback gives its result.
 pub(crate) fn answer<T>() -> (Answer<T>, ToAnswer<T>) {
-    let shared = Arc::new(Mutex::new(Shared { given: None, waker: None }));
+    let shared = Arc::new(Mutex::new(AnswerState { given: None, waker: None }));
     (Answer(Arc::clone(&shared)), ToAnswer(shared))
 }
 
 /// A result that a callback will give.
 #[derive(Debug)]
-pub(crate) struct Answer<T>(Arc<Mutex<Shared<T>>>);
+pub(crate) struct Answer<T>(Arc<Mutex<AnswerState<T>>>);
 
 /// The place where a callback gives a result.
 #[derive(Debug)]
-pub(crate) struct ToAnswer<T>(Arc<Mutex<Shared<T>>>);
+pub(crate) struct ToAnswer<T>(Arc<Mutex<AnswerState<T>>>);
 
 #[derive(Debug)]
-struct Shared<T> {
+struct AnswerState<T> {
     given: Option<T>,
     waker: Option<Waker>,
 }

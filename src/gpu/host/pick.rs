@@ -25,7 +25,7 @@ pub struct Picker {
 
 /// What is at a pixel of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picked {
+pub struct PickedPixel {
     /// Column and row of the pixel.
     pub pixel: [u32; 2],
     /// The sphere whose surface is nearest at the centre of the pixel; `None` for a miss.
@@ -174,7 +174,7 @@ impl Picker {
     ///
     /// # Errors
     /// [`PickError::Lost`], once for each pick whose commands were not executed.
-    pub fn take(&mut self) -> Result<Option<Picked>, PickError> {
+    pub fn take(&mut self) -> Result<Option<PickedPixel>, PickError> {
         let capacity = self.slots.len();
         let slot = &mut self.slots[self.oldest];
         let Some((pixel, ray)) = slot.asked else { return Ok(None) };
@@ -194,6 +194,6 @@ impl Picker {
             distance,
             place: ray.at(f64::from(distance)),
         });
-        Ok(Some(Picked { pixel, hit }))
+        Ok(Some(PickedPixel { pixel, hit }))
     }
 }

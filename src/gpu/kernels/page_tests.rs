@@ -20,14 +20,14 @@ const WIDTH: usize = 120;
 
 /// The names and entry points of a part, found from the kernels that use it.
 #[derive(Default)]
-struct Known {
+struct PartNames {
     provides: Names,
     needs: Names,
     entry_points: Names,
 }
 
-fn known_parts() -> BTreeMap<String, Known> {
-    let mut known: BTreeMap<String, Known> = BTreeMap::new();
+fn known_parts() -> BTreeMap<String, PartNames> {
+    let mut known: BTreeMap<String, PartNames> = BTreeMap::new();
     for kernel in all_sources() {
         let parts: Vec<_> =
             kernel.parts.iter().map(|part| (part.name, Declarations::of(&part.source))).collect();
@@ -80,7 +80,7 @@ fn without_lists(source: &str) -> String {
 }
 
 /// A source with the lists of provided and needed names after its first comment.
-fn with_lists(source: &str, known: &Known) -> String {
+fn with_lists(source: &str, known: &PartNames) -> String {
     let source = without_lists(source);
     let comment: usize =
         source.split_inclusive('\n').take_while(|line| line.starts_with("//")).map(str::len).sum();
@@ -90,7 +90,7 @@ fn with_lists(source: &str, known: &Known) -> String {
     format!("{comment}{lists}{blank}{rest}")
 }
 
-fn expected_file(file: &str, text: &str, known: &BTreeMap<String, Known>) -> String {
+fn expected_file(file: &str, text: &str, known: &BTreeMap<String, PartNames>) -> String {
     let variants: Vec<_> = variants(text).collect();
     if variants.is_empty() {
         return with_lists(text, &known[file]);
@@ -120,7 +120,7 @@ fn after<'a>(text: &'a str, start: &str) -> &'a str {
     text.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_default().trim_end_matches('.')
 }
 
-fn kernel_table(known: &BTreeMap<String, Known>, files: &BTreeMap<String, String>) -> String {
+fn kernel_table(known: &BTreeMap<String, PartNames>, files: &BTreeMap<String, String>) -> String {
     let mut table =
         "| entry point | file | what it finds or does | dispatched |\n|---|---|---|---|\n"
             .to_owned();
@@ -136,7 +136,7 @@ fn kernel_table(known: &BTreeMap<String, Known>, files: &BTreeMap<String, String
     table
 }
 
-fn part_table(known: &BTreeMap<String, Known>, files: &BTreeMap<String, String>) -> String {
+fn part_table(known: &BTreeMap<String, PartNames>, files: &BTreeMap<String, String>) -> String {
     let mut table =
         "| part | what it is | provides | needs | in |\n|---|---|---|---|---|\n".to_owned();
     for (name, part) in known {
@@ -224,7 +224,7 @@ fn parts_say_what_they_provide_and_need_and_the_readme_lists_them() {
 
 #[test]
 fn lists_are_replaced() {
-    let known = Known {
+    let known = PartNames {
         provides: ["a".to_owned()].into(),
         needs: (0..40).map(|i| format!("name_{i:02}")).collect(),
         entry_points: Names::new(),

@@ -1,6 +1,6 @@
 //! Judging whether loops run to their end.
 
-use crate::gpu::self_test::records::{Looped, SelfTest};
+use crate::gpu::self_test::records::{Loop, SelfTest};
 use crate::gpu::self_test::report::{PropertyOutcome, Tally, TestedProperty};
 
 /// Number of invocations of the single workgroup.
@@ -25,7 +25,7 @@ pub(super) fn runs(limit: u32) -> [SelfTest; 3] {
 }
 
 /// Judges the results of [`runs`].
-pub(super) fn judge(limit: u32, answers: &[Vec<Looped>]) -> TestedProperty {
+pub(super) fn judge(limit: u32, answers: &[Vec<Loop>]) -> TestedProperty {
     let mut tally = Tally::default();
     let runs = runs(limit);
     let [single, nested, _] = runs;
@@ -72,7 +72,7 @@ pub(super) fn judge(limit: u32, answers: &[Vec<Looped>]) -> TestedProperty {
 }
 
 /// Number of iterations of the longest loop, if all invocations agree on it.
-fn longest(answers: &[Looped]) -> Option<u32> {
+fn longest(answers: &[Loop]) -> Option<u32> {
     let is_true = (0..).zip(answers).all(|(index, got)| *got == after(index, got.count));
     let shortest = answers.iter().map(|got| got.count).min();
     shortest.filter(|_| is_true && answers.len() == INVOCATIONS as usize)
@@ -80,7 +80,7 @@ fn longest(answers: &[Looped]) -> Option<u32> {
 
 /// The state of an invocation after `count` iterations of `step` in `shaders/self_test/loops.wgsl`, computed by
 /// repeated squaring of the linear function.
-fn after(index: u32, count: u32) -> Looped {
+fn after(index: u32, count: u32) -> Loop {
     let (mut factor, mut summand) = (1_664_525_u32, 1_013_904_223_u32);
     let (mut state, mut left) = (index, count);
     while left > 0 {
@@ -91,7 +91,7 @@ fn after(index: u32, count: u32) -> Looped {
         factor = factor.wrapping_mul(factor);
         left >>= 1;
     }
-    Looped { count, state }
+    Loop { count, state }
 }
 
 #[cfg(test)]
@@ -102,12 +102,12 @@ mod tests {
     fn powers_of_the_step() {
         let mut state = 5_u32;
         for count in 0..100 {
-            assert_eq!(after(5, count), Looped { count, state });
+            assert_eq!(after(5, count), Loop { count, state });
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         }
     }
 
-    fn answers(limit: u32) -> Vec<Vec<Looped>> {
+    fn answers(limit: u32) -> Vec<Vec<Loop>> {
         let run =
             |run: SelfTest| (0..INVOCATIONS).map(|i| after(i, run.single + run.inner)).collect();
         runs(limit).map(run).to_vec()

@@ -100,7 +100,7 @@ pub(crate) struct Exact {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct Looped {
+pub(crate) struct Loop {
     pub(crate) count: u32,
     pub(crate) state: u32,
 }

@@ -8,7 +8,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::resources::{buffer, numbered_group};
-use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
+use crate::gpu::self_test::records::{Arithmetic, Exact, Loop, Operands, SelfTest, Values};
 use crate::gpu::self_test::report::{SelfTestExtent, SelfTestReport};
 use crate::gpu::self_test::{loops, records, rounding};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
@@ -43,7 +43,7 @@ impl SelfTestRun {
             // Only the number of inputs matters, because the kernel does not read them.
             let inputs = [0_u32; loops::INVOCATIONS as usize];
             let runs = loops::runs(limit);
-            let loops = dispatches::<_, Looped>(device, &checks, "loops", &runs, &inputs);
+            let loops = dispatches::<_, Loop>(device, &checks, "loops", &runs, &inputs);
             all.extend(exact.into_iter().chain(loops));
         }
         checks.passed().await?;

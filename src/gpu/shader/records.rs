@@ -203,7 +203,7 @@ mod tests {
     use crate::gpu::kernels;
     use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::scene::recolor::RecolorRange;
-    use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
+    use crate::gpu::self_test::records::{Arithmetic, Exact, Loop, Operands, SelfTest, Values};
 
     /// The name, offset and size of every field, and the size of the struct.
     type Layout = (Vec<(String, usize, usize)>, usize);
@@ -320,7 +320,7 @@ mod tests {
                 tiny_product,
                 tiny_sum
             }),
-            layout!(Looped { count, state }),
+            layout!(Loop { count, state }),
             layout!(Denoise { size, step, zero }),
             layout!(HostView {
                 column,

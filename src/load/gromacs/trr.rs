@@ -2,9 +2,9 @@
 //! kJ/(mol Å).
 
 use super::{ANGSTROMS, cell_of, find_frames};
+use crate::load::dataset::{Column, ColumnValues};
 use crate::load::error::LoadError;
 use crate::load::format::{FrameIndex, Frames};
-use crate::load::loaded::{Column, ColumnValues};
 use crate::load::numbers::{Order, Reader, component_names, numbers, wrong_position, wrong_start};
 use crate::load::source::Bytes;
 use crate::load::topology::{Positions, Topology};

@@ -44,7 +44,7 @@ struct Header {
     atoms: usize,
     cell: [f64; 9],
     /// How positions are compressed, unless they are few.
-    packed: Option<Packed>,
+    packed: Option<Packing>,
     /// Bytes of the positions, which follow, with those that pad them.
     bytes: u64,
 }
@@ -84,7 +84,7 @@ impl Header {
         if atoms <= FEW {
             return Ok(Self { atoms, cell, packed: None, bytes: 12 * atoms as u64 });
         }
-        let packed = Packed::read(reader, &what).and_then(|packed| {
+        let packed = Packing::read(reader, &what).and_then(|packed| {
             packed.check().map_err(|message| wrong(start + HEADER_BYTES, message)).map(|()| packed)
         })?;
         let offset = reader.offset;
@@ -146,7 +146,7 @@ const LARGEST_MIXED: u64 = 0xff_ffff;
 
 /// How the positions of a frame are compressed.
 #[derive(Clone, Copy, Debug)]
-struct Packed {
+struct Packing {
     /// What a nm is as a whole number.
     precision: f32,
     lowest: [i32; 3],
@@ -155,7 +155,7 @@ struct Packed {
     size: u32,
 }
 
-impl Packed {
+impl Packing {
     fn read(reader: &mut Reader<'_>, what: &str) -> Result<Self, LoadError> {
         let precision = reader.number(what)?;
         let (mut lowest, mut highest) = ([0; 3], [0; 3]);
@@ -191,8 +191,8 @@ struct UnpackError {
 }
 
 /// Decompresses positions, in nm.
-fn positions(bytes: &[u8], packed: &Packed, atoms: usize) -> Result<Vec<[f64; 3]>, UnpackError> {
-    let Packed { lowest, highest, .. } = *packed;
+fn positions(bytes: &[u8], packed: &Packing, atoms: usize) -> Result<Vec<[f64; 3]>, UnpackError> {
+    let Packing { lowest, highest, .. } = *packed;
     let mut bits = Bits { bytes, position: 0 };
     let ranges =
         [0, 1, 2].map(|axis| (i64::from(highest[axis]) - i64::from(lowest[axis])) as u64 + 1);

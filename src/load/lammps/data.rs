@@ -6,11 +6,11 @@ use std::collections::HashMap;
 use mendeleev::Element;
 
 use super::{Cell, by_id, too_few_atoms, wrong_text};
+use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::elements::appearance;
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::labels::LabelsBuilder;
-use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::numbers::number;
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values};
 use crate::load::table::{Table, TableColumn};
@@ -24,7 +24,7 @@ pub(crate) fn starts(bytes: &[u8]) -> bool {
         .any(|line| count_of(line, b"atoms").is_some_and(|count| count.is_ok()))
 }
 
-pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let mut file = File { lines: Lines::new(without_byte_order_mark(bytes)), line: 0 };
     // The first line is a comment, whatever it is.
     file.next();

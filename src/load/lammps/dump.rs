@@ -3,10 +3,10 @@
 use std::io;
 
 use super::{Cell, Shape, by_id, too_few_atoms, wrong_text};
+use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
-use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::numbers::number;
 use crate::load::rows::{Field, Kind, Lines, Rows, Values};
 use crate::load::source::LineReader;
@@ -100,7 +100,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
     Ok(found)
 }
 
-fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
+fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> {
     let mut lines = Lines::new(without_byte_order_mark(frame.text));
     let mut line = frame.lines_before;
     let mut cell = None;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::load::loaded::Labels;
+use crate::load::dataset::Labels;
 use crate::load::numbers::{Number, Order, Scalar};
 use crate::load::table::TableColumn;
 use crate::text::{one_line, shortened};

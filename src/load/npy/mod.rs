@@ -6,9 +6,9 @@ pub mod pixels;
 
 use std::collections::TryReserveError;
 
+use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind};
 use super::format::Options;
-use super::loaded::Loaded;
 use super::numbers::component_names;
 use super::raw::{Layout, rows};
 use super::table::{Table, TableColumn};
@@ -36,7 +36,7 @@ const MOST_COMPONENTS: u64 = 64;
 ///
 /// # Errors
 /// If the file is not such an array, or has fewer or more bytes than its header says.
-pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, LoadError> {
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     let array = Array::open(bytes)?;
     let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
     Ok(match array.spheres(radius)? {

@@ -33,7 +33,7 @@ impl CameraModel {
                     let [one, other] = inverses.map(|inverse| away * inverse);
                     Interval::between(one, other, PAD * error + FLUSH / least + FLUSH)
                 };
-                Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis]))
+                SlabCrossing::between(plane(self.scene_min[axis]), plane(self.scene_max[axis]))
             };
             // A small component may have either sign, which is the same for both planes.
             let sign = if d < 0.0 { -1.0 } else { 1.0 };
@@ -54,12 +54,12 @@ pub(crate) struct BoxCrossing {
 
 /// Where a ray crosses the nearer and the farther of two parallel planes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Crossed {
+pub(crate) struct SlabCrossing {
     pub(crate) near: Interval,
     pub(crate) far: Interval,
 }
 
-impl Crossed {
+impl SlabCrossing {
     /// Of the crossings of two planes.
     pub(crate) fn between(a: Interval, b: Interval) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl BoxCrossing {
     };
 
     /// Intersects the crossing with the slab between two parallel planes.
-    pub(crate) fn cut(&mut self, Crossed { near, far }: Crossed) {
+    pub(crate) fn cut(&mut self, SlabCrossing { near, far }: SlabCrossing) {
         self.enter.low = self.enter.low.max(near.low);
         self.enter.high = self.enter.high.max(near.high);
         self.leave.low = self.leave.low.min(far.low);

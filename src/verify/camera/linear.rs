@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, DVec3};
 
-use super::{CameraModel, CameraRay, Computed, Location, Unit};
+use super::{CameraModel, CameraRay, DeviceVector, Location, Unit};
 use crate::geometry::math::concentric_disk;
 use crate::verify::camera::round::EIGHTH_ERROR;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, gamma};
@@ -31,7 +31,7 @@ impl CameraModel {
 
     pub(super) fn pinhole(&self, location: Location) -> CameraRay {
         let Aside { exact: aside, terms, location_error } = self.aside(location);
-        let unit = Unit::of(Computed {
+        let unit = Unit::of(DeviceVector {
             exact: aside + self.forward,
             error: location_error
                 + gamma(3) * (terms + location_error + self.forward.abs())
@@ -74,7 +74,7 @@ impl CameraModel {
     pub(super) fn thin_lens(&self, location: Location, lens: DVec2) -> CameraRay {
         let Aside { exact, terms, location_error } = self.aside(location);
         let error = location_error + gamma(3) * (terms + location_error) + 4.0 * FLUSH;
-        let aside = Computed { exact, error };
+        let aside = DeviceVector { exact, error };
 
         let (disk, disk_error) = disk(lens);
         let [first, second, _] = self.numbers;
@@ -84,9 +84,9 @@ impl CameraModel {
         let off = radii.abs() * disk_error + DVec2::splat(FLUSH);
         let off = off.x * self.right.abs() + off.y * self.up.abs();
         let terms = (on_lens.x * self.right).abs() + (on_lens.y * self.up).abs() + off;
-        let offset = Computed { exact, error: off + gamma(3) * terms + 4.0 * FLUSH };
+        let offset = DeviceVector { exact, error: off + gamma(3) * terms + 4.0 * FLUSH };
 
-        let unit = Unit::of(Computed {
+        let unit = Unit::of(DeviceVector {
             exact: aside.exact + self.forward - offset.exact,
             error: aside.error
                 + offset.error

@@ -14,7 +14,7 @@ use crate::camera::CameraKind;
 use crate::camera::film::Film;
 use crate::geometry::math::wide;
 
-pub(super) use entered::{AnyRay, BoxCrossing, Crossed, EnteredRay, SMALLEST_COMPONENT};
+pub(super) use entered::{AnyRay, BoxCrossing, EnteredRay, SMALLEST_COMPONENT, SlabCrossing};
 
 /// The centre of the lens; all rays of a recording go through it.
 const LENS_CENTER: DVec2 = DVec2::splat(0.5);
@@ -143,12 +143,12 @@ impl CameraModel {
 
 /// The exact value of a vector that a device computed, and the bound of the device's error.
 #[derive(Clone, Copy, Debug)]
-struct Computed {
+struct DeviceVector {
     exact: DVec3,
     error: DVec3,
 }
 
-impl Computed {
+impl DeviceVector {
     /// The largest magnitude of each component on a device.
     fn size(&self) -> DVec3 {
         self.exact.abs() + self.error
@@ -165,8 +165,8 @@ struct Unit {
 }
 
 impl Unit {
-    fn of(toward: Computed) -> Self {
-        let Computed { exact, error } = toward;
+    fn of(toward: DeviceVector) -> Self {
+        let DeviceVector { exact, error } = toward;
         let length = exact.length();
         // The length changes by at most the error of the vector; its own computation adds an error.
         let length_error = PAD * error.length() + error_of_length(length);

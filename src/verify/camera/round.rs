@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::{DVec2, DVec3};
 
-use crate::verify::camera::{CameraModel, CameraRay, Computed, Location, Unit};
+use crate::verify::camera::{CameraModel, CameraRay, DeviceVector, Location, Unit};
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, error_of_length, gamma};
 use crate::verify::sphere::Line;
 
@@ -46,22 +46,22 @@ const SMALLEST_SPOT: f64 = 1.0 / (1_u64 << 40) as f64;
 /// The sum a p + b q on a device, where each factor has an error bound.
 fn sum_of_products(
     [(a, a_error), (b, b_error)]: [(f64, f64); 2],
-    p: Computed,
-    q: Computed,
-) -> Computed {
-    let product = |factor: f64, error: f64, v: Computed| {
+    p: DeviceVector,
+    q: DeviceVector,
+) -> DeviceVector {
+    let product = |factor: f64, error: f64, v: DeviceVector| {
         let size = (factor.abs() + error) * v.size();
         (factor.abs() * v.error + error * v.size(), size)
     };
     let ((p_error, p_size), (q_error, q_size)) = (product(a, a_error, p), product(b, b_error, q));
-    Computed {
+    DeviceVector {
         exact: a * p.exact + b * q.exact,
         error: PAD * (p_error + q_error + gamma(2) * (p_size + q_size)) + 4.0 * FLUSH,
     }
 }
 
-fn given(exact: DVec3) -> Computed {
-    Computed { exact, error: DVec3::ZERO }
+fn given(exact: DVec3) -> DeviceVector {
+    DeviceVector { exact, error: DVec3::ZERO }
 }
 
 impl CameraModel {
@@ -113,8 +113,8 @@ impl CameraModel {
 
 /// A ray that starts at the camera, and may be rotated by an additional angle.
 fn ray(
-    start: Computed,
-    toward: Computed,
+    start: DeviceVector,
+    toward: DeviceVector,
     turned: f64,
     [may_be_seen, may_be_unseen]: [bool; 2],
 ) -> CameraRay {

@@ -30,9 +30,9 @@
 //! Each sphere is moved by itself because a renderer tests each sphere by itself, with roundings of its own. Each of
 //! these conditions holds for all larger k if it holds for one, so that there is a *least k*. All spheres that are
 //! moved by at most a fill the ball of radius r + a, and share the ball of radius r − a; so the least move for each
-//! condition is the distance of a point from a circle, in closed form (`seen.rs`). The least k of a pixel is the
-//! largest of them. (Without a depth, how near the claimed sphere may be depends on k as well, and the least k is found
-//! by doubling and bisection.) Everything is computed in f64, whose errors are 2⁻²⁹ of one k.
+//! condition is the distance of a point from a circle, in closed form (`relative_sphere.rs`). The least k of a pixel is
+//! the largest of them. (Without a depth, how near the claimed sphere may be depends on k as well, and the least k is
+//! found by doubling and bisection.) Everything is computed in f64, whose errors are 2⁻²⁹ of one k.
 //!
 //! A sphere that contains the start of its ray shows its far side. Spheres that are equal to the bit count as one.
 //!
@@ -107,7 +107,7 @@
 
 mod answers;
 mod pixel;
-mod seen;
+mod relative_sphere;
 
 pub use answers::{
     Answers, Conformance, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, Field,

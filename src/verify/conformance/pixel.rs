@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::answers::{Answers, DepthKind, EPSILON, OF_COORDINATES, Rays};
-use super::seen::Seen;
+use super::relative_sphere::RelativeSphere;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::certificate::Outcome;
@@ -38,7 +38,7 @@ struct ExactRay {
 /// A sphere beside the one that the renderer found.
 pub(super) struct Other {
     id: u32,
-    seen: Seen,
+    seen: RelativeSphere,
     /// The distance at which it may be hit.
     earliest: f64,
 }
@@ -46,7 +46,7 @@ pub(super) struct Other {
 /// What a renderer says of a pixel that it calls a hit.
 struct Claim {
     sphere: [f32; 4],
-    seen: Seen,
+    seen: RelativeSphere,
     /// The move that is k = 1.
     unit: f64,
     distance: Option<f64>,
@@ -56,12 +56,12 @@ struct Claim {
 }
 
 impl ExactRay {
-    fn seen(&self, sphere: [f32; 4]) -> Seen {
-        Seen::new(self.line.origin, self.line.direction, sphere)
+    fn seen(&self, sphere: [f32; 4]) -> RelativeSphere {
+        RelativeSphere::new(self.line.origin, self.line.direction, sphere)
     }
 
     /// The move of a sphere that is k = 1.
-    fn unit(&self, seen: &Seen) -> f64 {
+    fn unit(&self, seen: &RelativeSphere) -> f64 {
         EPSILON * (seen.size() + self.start)
     }
 }

@@ -4,7 +4,7 @@ use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::Address;
-use crate::verify::lit::judge::Expected;
+use crate::verify::lit::judge::Judge;
 use crate::verify::lit::kernel::{Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState};
 
@@ -32,7 +32,7 @@ impl LitCheck<'_> {
             before: state,
             hit: Hit::new([0; 4]),
             after: state,
-            expected: Expected::default(),
+            judge: Judge::default(),
             choices,
         }
     }

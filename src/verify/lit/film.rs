@@ -9,7 +9,7 @@ use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
 use crate::verify::camera::{CameraModel, Location};
 use crate::verify::lit::certificate::{Address, LitStage};
-use crate::verify::lit::judge::{Expected, Judged, Mismatch, Name, along_choices};
+use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, along_choices};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, RecordedFilm, flag, slot};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
@@ -26,9 +26,9 @@ pub(crate) fn judge_start(
     model: &CameraModel,
     Address { pixel, sample, .. }: Address,
     found: &PathState,
-) -> Result<Judged, Mismatch> {
+) -> Result<StageResult, Mismatch> {
     along_choices(|choices| {
-        let mut expected = Expected::default();
+        let mut judge = Judge::default();
         let lighting = &inputs.lighting;
         let seed = pixel_seed(pixel, lighting.seed);
         let location = location(&inputs.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
@@ -38,18 +38,18 @@ pub(crate) fn judge_start(
             (is_seen, _) => Some(is_seen),
         });
         let alive = if is_seen { flag::ALIVE } else { 0 };
-        expected.bits(FLAGS, found.flags(), alive | flag::FULL)?;
+        judge.bits(FLAGS, found.flags(), alive | flag::FULL)?;
         let around = |exact: DVec3, error: DVec3| {
             Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])))
         };
         let size =
             inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
         let origin = around(ray.line.origin, ray.origin_error);
-        expected.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
+        judge.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
         let direction = around(ray.line.direction, ray.direction_error);
-        expected.vector(DIRECTION, found.vector(slot::DIRECTION), direction)?;
+        judge.vector(DIRECTION, found.vector(slot::DIRECTION), direction)?;
         let distance = Number::around(ray.distance, ray.distance_error);
-        expected.number(DISTANCE, found.number(slot::FIRST), distance)?;
+        judge.number(DISTANCE, found.number(slot::FIRST), distance)?;
 
         let is_shown = !is_seen && lighting.flags & flag::TRANSPARENT == 0;
         let radiance = if is_shown { lighting.background } else { [0.0; 3] };
@@ -67,8 +67,8 @@ pub(crate) fn judge_start(
         let legal = PathState { slots };
         // A studio writes the other slots only once there is a surface.
         let written = if inputs.is_studio() { slot::NORMAL } else { PathState::SLOTS };
-        (0..written).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))?;
-        Ok(expected)
+        (0..written).try_for_each(|which| judge.same(NOTHING, [&legal, found], which))?;
+        Ok(judge)
     })
 }
 
@@ -110,31 +110,31 @@ pub(crate) fn check_sums(
     state: &PathState,
     film: &RecordedFilm,
     index: usize,
-) -> Result<Judged, Mismatch> {
+) -> Result<StageResult, Mismatch> {
     let [before, after] = [&film.before, &film.after].map(|sums| Sums::new(sums[index]));
-    let mut expected = Expected::default();
+    let mut judge = Judge::default();
     let light = color.dot(Vector(LUMINANCE.map(Number::constant)));
     let Vector([r, g, b]) = color;
     for (channel, more) in [r, g, b, light.squared()].into_iter().enumerate() {
         let name = if channel < 3 { COLOR } else { SQUARE };
         let (sum, found) = (Number::recorded(before.value[channel]), after.value[channel]);
         let size = sum.interval().size() + more.interval().size();
-        expected.number_of(name, found, sum + more, size)?;
+        judge.number_of(name, found, sum + more, size)?;
         // The sum is fenced and stored, so it is now known exactly, and with it how the kernel finds what was rounded.
         let value = Number::recorded(found);
         let part = (value - sum).fence();
         let lost = (sum - (value - part).fence()).fence() + (more - part).fence();
         let rest = Number::recorded(before.rest[channel]) + lost.fence();
-        expected.number_of(REST, after.rest[channel], rest, size)?;
+        judge.number_of(REST, after.rest[channel], rest, size)?;
     }
     let alpha = Number::recorded(before.alpha) + Number::recorded(state.number(slot::RADIANCE));
-    expected.number(ALPHA, after.alpha, alpha)?;
+    judge.number(ALPHA, after.alpha, alpha)?;
     // Surfaces have few colours, so that chance does not spread the roundings of their sums.
-    let measured = expected.deviations.len();
+    let measured = judge.deviations.len();
     let albedo = Vector::recorded(before.albedo) + Vector::recorded(state.vector(slot::FIRST));
-    expected.vector(ALBEDO, after.albedo, albedo)?;
-    expected.deviations.truncate(measured);
-    Ok(expected.into())
+    judge.vector(ALBEDO, after.albedo, albedo)?;
+    judge.deviations.truncate(measured);
+    Ok(judge.into())
 }
 
 struct Sums {

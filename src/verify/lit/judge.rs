@@ -31,7 +31,7 @@ pub(crate) type Name = (LitStage, &'static str);
 
 /// Compares results with legal ones, and records whether a bound is too wide to say anything.
 #[derive(Debug, Default)]
-pub(crate) struct Expected {
+pub(crate) struct Judge {
     passed: u32,
     /// Whether some bound was too wide to say anything.
     pub(crate) is_wide: bool,
@@ -39,7 +39,7 @@ pub(crate) struct Expected {
     pub(crate) deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
-impl Expected {
+impl Judge {
     pub(crate) fn bits(
         &mut self,
         (stage, what): Name,
@@ -152,7 +152,7 @@ pub(crate) enum StageOutcome {
 }
 
 /// A stage without an illegal result.
-pub(crate) struct Judged {
+pub(crate) struct StageResult {
     verdict: StageOutcome,
     /// The legal answers of an open search, in words.
     alternatives: Vec<String>,
@@ -160,19 +160,19 @@ pub(crate) struct Judged {
     deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
-impl From<StageOutcome> for Judged {
+impl From<StageOutcome> for StageResult {
     fn from(verdict: StageOutcome) -> Self {
         Self { verdict, alternatives: Vec::new(), deviations: Vec::new() }
     }
 }
 
-impl From<Expected> for Judged {
+impl From<Judge> for StageResult {
     /// A stage without open decisions.
-    fn from(expected: Expected) -> Self {
-        if expected.is_wide {
+    fn from(judge: Judge) -> Self {
+        if judge.is_wide {
             return StageOutcome::Undecided.into();
         }
-        Self { deviations: expected.deviations, ..StageOutcome::Decided.into() }
+        Self { deviations: judge.deviations, ..StageOutcome::Decided.into() }
     }
 }
 
@@ -208,10 +208,10 @@ impl LitCertificate {
         &mut self,
         stage: LitStage,
         Address { pixel, sample, surface }: Address,
-        result: Result<Judged, Mismatch>,
+        result: Result<StageResult, Mismatch>,
     ) {
         match result {
-            Ok(Judged { verdict, alternatives, deviations }) => {
+            Ok(StageResult { verdict, alternatives, deviations }) => {
                 let counts = &mut self.counts[stage as usize];
                 counts.checked += 1;
                 match verdict {
@@ -239,15 +239,15 @@ impl LitCertificate {
 
 /// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
 pub(crate) fn along_choices(
-    mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
-) -> Result<Judged, Mismatch> {
+    mut follow: impl FnMut(&mut Choices) -> Result<Judge, Mismatch>,
+) -> Result<StageResult, Mismatch> {
     let mut choices = Choices::default();
     let mut nearest: Option<Mismatch> = None;
     loop {
         match follow(&mut choices) {
-            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided.into()),
+            Ok(judge) if judge.is_wide => return Ok(StageOutcome::Undecided.into()),
             Ok(_) if choices.were_open() => return Ok(StageOutcome::Open.into()),
-            Ok(expected) => return Ok(expected.into()),
+            Ok(judge) => return Ok(judge.into()),
             Err(mismatch) => {
                 if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
                     nearest = Some(mismatch);
@@ -286,9 +286,9 @@ pub(crate) fn judge_pixels(
 }
 
 /// A search; `alternatives` names the legal answers if there are several.
-pub(crate) fn searched(is_open: bool, alternatives: impl FnOnce() -> Vec<String>) -> Judged {
+pub(crate) fn searched(is_open: bool, alternatives: impl FnOnce() -> Vec<String>) -> StageResult {
     match is_open {
-        true => Judged { alternatives: alternatives(), ..StageOutcome::Open.into() },
+        true => StageResult { alternatives: alternatives(), ..StageOutcome::Open.into() },
         false => StageOutcome::Decided.into(),
     }
 }

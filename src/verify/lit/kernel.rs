@@ -9,7 +9,7 @@ use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::{Address, LitStage};
-use crate::verify::lit::judge::{Expected, Mismatch, Name};
+use crate::verify::lit::judge::{Judge, Mismatch, Name};
 use crate::verify::lit::recording::{LitInputs, PathState, UploadedLighting, flag, slot};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
@@ -41,7 +41,7 @@ pub(crate) struct Kernel<'a> {
     pub(crate) before: &'a PathState,
     pub(crate) hit: Hit,
     pub(crate) after: &'a PathState,
-    pub(crate) expected: Expected,
+    pub(crate) judge: Judge,
     pub(crate) choices: &'a mut Choices,
 }
 
@@ -165,7 +165,7 @@ impl Kernel<'_> {
     /// Compares the recorded point, and returns it as an exact value.
     fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         let found = self.after.vector(slot::ORIGIN);
-        self.expected.vector_of(POSITION, found, position, size)?;
+        self.judge.vector_of(POSITION, found, position, size)?;
         Ok(Vector::recorded(found))
     }
 
@@ -198,7 +198,7 @@ impl Kernel<'_> {
         let (before, hit) = (self.before, self.hit);
         let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
         else {
-            return Err(self.expected.fail(HIT, format!("there is no sphere {}", hit.id)));
+            return Err(self.judge.fail(HIT, format!("there is no sphere {}", hit.id)));
         };
         let appearance = self.scene.checked_appearance();
         let material_index = appearance.material_row(hit.id) + 1;
@@ -209,7 +209,7 @@ impl Kernel<'_> {
         let (line, origin, slack) =
             entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Some(test) = SphereTest::new(&line, sphere, slack) else {
-            return Err(self.expected.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
+            return Err(self.judge.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
         };
         let center = Vector::recorded([x, y, z]);
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
@@ -261,7 +261,7 @@ impl Kernel<'_> {
         let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
         if !legal.contains(away.length()) {
             let words = format!("{:e} from the sphere's centre; legal is {legal}", away.length());
-            return Err(self.expected.fail(POSITION, words));
+            return Err(self.judge.fail(POSITION, words));
         }
         let by_point = [0, 1, 2].map(|axis| {
             let (away, error) = (away[axis], error[axis]);

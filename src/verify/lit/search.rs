@@ -10,7 +10,7 @@ use crate::verify::checker::Checker;
 use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::check::LitCheck;
-use crate::verify::lit::judge::{Expected, Judged, Mismatch, Name, searched};
+use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, searched};
 use crate::verify::lit::kernel::Hit;
 use crate::verify::lit::recording::{NO_EMITTER, PathState, flag, slot};
 use crate::verify::number::Number;
@@ -62,10 +62,10 @@ impl Entry {
         candidates: &Candidates,
         distance: Number,
         is_exempt: impl Fn(&Candidate) -> bool,
-    ) -> Hidden {
+    ) -> Obstacle {
         let Self { line, slack, enter, may_hit_box, may_miss_box } = self;
         let rest = (distance - Number::between(enter.low, enter.high)).interval();
-        let mut found = Hidden::NEVER;
+        let mut found = Obstacle::NEVER;
         if !may_hit_box || rest.high <= 0.0 {
             return found;
         }
@@ -90,16 +90,16 @@ impl Entry {
     }
 }
 
-/// Whether light may be hidden, and whether it must be.
+/// What hides light: whether there may be something, and whether there must be.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Hidden {
+pub(crate) struct Obstacle {
     pub(crate) may: bool,
     pub(crate) must: bool,
     /// The spheres that may hide it and need not.
     pub(crate) doubts: Doubts,
 }
 
-impl Hidden {
+impl Obstacle {
     pub(crate) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
     pub(crate) const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
 
@@ -126,8 +126,8 @@ pub(crate) fn check_hit(
     last: Option<Hit>,
     found: Hit,
     legal: &mut LegalHits,
-) -> Result<Judged, Mismatch> {
-    let mut expected = Expected::default();
+) -> Result<StageResult, Mismatch> {
+    let mut judge = Judge::default();
     let Hit { t, id, distance, .. } = found;
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
@@ -153,7 +153,7 @@ pub(crate) fn check_hit(
         legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
     }
     let is_open = legal.count() > 1;
-    let fail = |what, words: String| Err(expected.fail((STAGE, what), words));
+    let fail = |what, words: String| Err(judge.fail((STAGE, what), words));
     if id == NO_ID {
         if !legal.miss {
             return fail("a miss", format!("legal is {legal}"));
@@ -170,12 +170,12 @@ pub(crate) fn check_hit(
     let Interval { low, high } = entry.enter;
     let enter = match own {
         Some((last, _)) if last.id == id => {
-            expected.bits((STAGE, "the hit's shape index"), found.shape_index, last.shape_index)?;
+            judge.bits((STAGE, "the hit's shape index"), found.shape_index, last.shape_index)?;
             Number::ZERO
         }
         _ => Number::between(low, high),
     };
-    expected.number((STAGE, "where the ray enters the scene's box"), distance, enter)?;
+    judge.number((STAGE, "where the ray enters the scene's box"), distance, enter)?;
     Ok(searched(is_open, || legal.alternatives()))
 }
 
@@ -186,8 +186,8 @@ pub(crate) fn check_open(
     LitCheck { checker: Checker { scene, candidates }, model, inputs, .. }: &LitCheck<'_>,
     state: &PathState,
     open: f32,
-) -> Result<Judged, Mismatch> {
-    let mut expected = Expected::default();
+) -> Result<StageResult, Mismatch> {
+    let mut judge = Judge::default();
     let before = state.number(slot::PENDING);
     let [x, y, z, distance] = state.slots[slot::SHADOW].map(f32::from_bits);
     let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
@@ -208,10 +208,10 @@ pub(crate) fn check_open(
         } else {
             "visible, but a surface is in between"
         };
-        return Err(expected.fail(OPEN, words));
+        return Err(judge.fail(OPEN, words));
     }
     if !is_hidden {
-        expected.bits(OPEN, open.to_bits(), before.to_bits())?;
+        judge.bits(OPEN, open.to_bits(), before.to_bits())?;
     }
     Ok(searched(hidden.may && !hidden.must, || hidden.doubts.alternatives()))
 }

@@ -17,7 +17,7 @@ pub(crate) struct Reflection {
 }
 
 /// A scattered direction in the tangent frame, its weight, and its density.
-pub(crate) struct Scattered {
+pub(crate) struct BsdfSample {
     pub(crate) direction: Vector,
     pub(crate) weight: Vector,
     pub(crate) density: Number,
@@ -80,7 +80,7 @@ impl Kernel<'_> {
         Reflection { value: color * matt + lobe * (share * mirrors), density }
     }
 
-    pub(crate) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
+    pub(crate) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> BsdfSample {
         let color = Vector::recorded(at.vertex.color);
         let Surface { material, out, .. } = at;
         if material.kind == DIELECTRIC {
@@ -89,7 +89,7 @@ impl Kernel<'_> {
         if self.is_matt {
             let direction = cosine_direction(u);
             let density = direction.0[2] / pi();
-            return Scattered { direction, weight: color, density };
+            return BsdfSample { direction, weight: color, density };
         }
         let is_metal = material.kind == CONDUCTOR;
         if !is_metal && lobe.is_less(material.parameter) != Some(true) {
@@ -114,17 +114,17 @@ impl Kernel<'_> {
             return self.above(direction, weight, r.density);
         }
         let divisor = as_divisor(r.density);
-        Scattered { direction, weight: r.value.map(|value| value / divisor), density: r.density }
+        BsdfSample { direction, weight: r.value.map(|value| value / divisor), density: r.density }
     }
 
     /// Light that is scattered below the surface has no weight.
-    fn above(&mut self, direction: Vector, weight: Vector, density: Number) -> Scattered {
+    fn above(&mut self, direction: Vector, weight: Vector, density: Number) -> BsdfSample {
         let is_above = self.choices.decide(direction.0[2].is_above_zero());
         let weight = if is_above { weight } else { Vector::ZERO };
-        Scattered { direction, weight, density }
+        BsdfSample { direction, weight, density }
     }
 
-    fn scatter_dielectric(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
+    fn scatter_dielectric(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> BsdfSample {
         let Surface { material, out, .. } = at;
         let is_entering = !at.vertex.is_back;
         let relative =
@@ -146,7 +146,7 @@ impl Kernel<'_> {
         };
         let is_up = self.choices.decide(toward.0[2].is_above_zero());
         if is_up != is_reflected {
-            return Scattered { direction: toward, weight: Vector::ZERO, density: Number::ZERO };
+            return BsdfSample { direction: toward, weight: Vector::ZERO, density: Number::ZERO };
         }
         let weight = if is_rough {
             let first = material.energies + if is_entering { 0 } else { ENERGIES / 4 };
@@ -156,7 +156,7 @@ impl Kernel<'_> {
         } else {
             Number::ONE
         };
-        Scattered { direction: toward, weight: Vector([weight; 3]), density: Number::ZERO }
+        BsdfSample { direction: toward, weight: Vector([weight; 3]), density: Number::ZERO }
     }
 
     /// The fraction of unpolarised light that is reflected.

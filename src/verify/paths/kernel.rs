@@ -67,10 +67,10 @@ impl Kernel<'_> {
         let is_seen = !before.has(flag::SCATTERED);
         if is_seen && before.number(slot::FIRST) >= 0.0 {
             let first = Vector::recorded(vertex.color).map(|c| c.min(Number::ONE));
-            self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
-            self.expected.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
+            self.judge.vector(FIRST, after.vector(slot::FIRST), first)?;
+            self.judge.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
         } else {
-            self.expected.same(FIRST, [before, after], slot::FIRST)?;
+            self.judge.same(FIRST, [before, after], slot::FIRST)?;
         }
         let material = self.material_of(&vertex);
         if material.kind == EMISSIVE {
@@ -109,39 +109,39 @@ impl Kernel<'_> {
         let (after, departure) = (self.after, self.after.departure());
         let (id, shape_index) =
             if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
-        self.expected.bits(DEPARTURE, departure.id, id)?;
-        self.expected.bits(DEPARTURE, departure.shape_index, shape_index)?;
+        self.judge.bits(DEPARTURE, departure.id, id)?;
+        self.judge.bits(DEPARTURE, departure.shape_index, shape_index)?;
         let exit_distance = if after.has(flag::INSIDE) {
             at.exit_distance(Vector::recorded(after.vector(slot::DIRECTION)))
         } else {
             Number::ZERO
         };
-        self.expected.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
+        self.judge.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
     }
 
     pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
         let states = [self.before, self.after];
-        slots.iter().try_for_each(|slot| self.expected.same(KEPT, states, *slot))
+        slots.iter().try_for_each(|slot| self.judge.same(KEPT, states, *slot))
     }
 
     fn compare_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
         let after = self.after;
-        self.expected.vector(RADIANCE, after.vector(slot::RADIANCE), radiance)?;
-        self.expected.number(ALPHA, after.number(slot::RADIANCE), alpha)
+        self.judge.vector(RADIANCE, after.vector(slot::RADIANCE), radiance)?;
+        self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
     }
 
     /// Compares the pending light, and whether it must be tested for occlusion: 1 or 0.
     pub(crate) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
         let after = self.after;
-        self.expected.vector(PENDING, after.vector(slot::PENDING), light)?;
-        self.expected.number(LIGHT, after.number(slot::PENDING), open)
+        self.judge.vector(PENDING, after.vector(slot::PENDING), light)?;
+        self.judge.number(LIGHT, after.number(slot::PENDING), open)
     }
 
     /// Compares the state if no light was sampled; the direction of the light does not matter then.
     fn compare_no_light(&mut self) -> Result<(), Mismatch> {
         let after = self.after;
-        self.expected.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
+        self.judge.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
         self.compare_light(Vector::ZERO, Number::ZERO)
     }
 
@@ -149,8 +149,8 @@ impl Kernel<'_> {
     fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
         let after = self.after;
         self.compare_radiance(radiance, Number::recorded(alpha))?;
-        self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
-        self.expected.bits(FLAGS, after.flags(), 0)?;
+        self.judge.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
+        self.judge.bits(FLAGS, after.flags(), 0)?;
         self.compare_no_light()?;
         self.same(&[slot::DIRECTION, slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST])?;
         self.same(&[slot::MEDIUM])
@@ -158,7 +158,7 @@ impl Kernel<'_> {
 
     /// The path ends on a surface. The next ray does not matter then.
     fn stop(&mut self) -> Result<(), Mismatch> {
-        self.expected.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
+        self.judge.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
         self.compare_no_light()
     }
 
@@ -174,15 +174,15 @@ impl Kernel<'_> {
         self.same(&[slot::FIRST])?;
         // Glass ends at its far side, even if the path passes through that side.
         if at.is_back && self.material_of(at).kind == DIELECTRIC {
-            self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), Vector::ZERO)?;
+            self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), Vector::ZERO)?;
         } else {
             self.same(&[slot::MEDIUM])?;
         }
         self.compare_no_light()?;
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
-        self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
-        self.expected.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
-        self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
+        self.judge.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
+        self.judge.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
+        self.judge.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
         let alive = if self.is_last() { 0 } else { flag::ALIVE };
         let scattered = before.flags() & flag::SCATTERED;
         self.compare_flags(at, true, flag::FULL | scattered | alive)
@@ -193,7 +193,7 @@ impl Kernel<'_> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
         let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
-        self.expected.bits(FLAGS, self.after.flags(), side | ground | flags)
+        self.judge.bits(FLAGS, self.after.flags(), side | ground | flags)
     }
 
     /// A surface scatters the path.
@@ -203,8 +203,8 @@ impl Kernel<'_> {
         let next = self.scatter_light(at, lobe, self.pair(2));
         let is_behind = self.choices.decide(next.direction.0[2].is_less(Number::ZERO));
         let direction = at.axes.to_world(next.direction);
-        self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
-        self.expected.number(DENSITY, after.number(slot::DIRECTION), next.density)?;
+        self.judge.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
+        self.judge.number(DENSITY, after.number(slot::DIRECTION), next.density)?;
 
         let carried = through.times(next.weight).fence();
         let most = carried.largest();
@@ -215,7 +215,7 @@ impl Kernel<'_> {
         };
         let divisor = survival.max(Number::constant(1e-30));
         let carried = carried.map(|c| c / divisor);
-        self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
+        self.judge.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
 
         let is_glass = at.material.kind == DIELECTRIC;
         let medium = if is_glass && is_behind {
@@ -223,7 +223,7 @@ impl Kernel<'_> {
         } else {
             Vector::recorded(self.before.vector(slot::MEDIUM))
         };
-        self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
+        self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
 
         let draw = unit(self.pair(6)[0]);
         let is_dead = !self.choices.decide(most.is_above_zero())

@@ -61,7 +61,7 @@ impl Kernel<'_> {
     pub(crate) fn sample_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (lighting, after) = (self.lighting(), self.after);
         if lighting.source_count == 0 {
-            self.expected.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
+            self.judge.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
             return self.same(&[slot::SHADOW, slot::PENDING]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
@@ -77,8 +77,8 @@ impl Kernel<'_> {
         } else {
             self.sample_sky_light(u)
         };
-        self.expected.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
-        self.expected.bits(EMITTER, after.departure().emitter, found.emitter)?;
+        self.judge.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
+        self.judge.bits(EMITTER, after.departure().emitter, found.emitter)?;
 
         let color = Vector::recorded(at.vertex.color);
         let toward = at.axes.to_local(found.direction);
@@ -95,7 +95,7 @@ impl Kernel<'_> {
         } else {
             (Vector::ZERO, Number::ZERO, Number::ZERO)
         };
-        self.expected.number(DISTANCE, after.number(slot::SHADOW), distance)?;
+        self.judge.number(DISTANCE, after.number(slot::SHADOW), distance)?;
         self.compare_light(light, open)
     }
 

@@ -40,7 +40,7 @@ const REQUESTED: [&str; 9] = [
 
 /// What was requested, as JSON. The image of a sky is in arrays.
 #[derive(Serialize, Deserialize)]
-struct Requested {
+struct LitRequest {
     settings: RenderSettings,
     sky_image: Option<SkyImage>,
 }
@@ -54,7 +54,7 @@ struct SkyImage {
 
 /// What the device was given, as JSON.
 #[derive(Serialize, Deserialize)]
-struct Given {
+struct DeviceInputs {
     max_surfaces: u32,
     lighting: UploadedLighting,
 }
@@ -66,12 +66,12 @@ pub(super) fn add<'a>(
     texts: &mut BTreeMap<String, String>,
 ) -> io::Result<()> {
     let LitInputs { settings, occluders, lighting, tables, emitters, .. } = given;
-    let mut requested = Requested { settings: settings.clone(), sky_image: None };
+    let mut requested = LitRequest { settings: settings.clone(), sky_image: None };
     if let SkyLight::Image { strength, rotation, .. } = settings.sky.light {
         requested.settings.sky.light = SkyLight::Constant(LinearRgb::BLACK);
         requested.sky_image = Some(SkyImage { strength, rotation });
     }
-    let on_device = Given { max_surfaces: given.max_surfaces, lighting: lighting.clone() };
+    let on_device = DeviceInputs { max_surfaces: given.max_surfaces, lighting: lighting.clone() };
     texts.insert(SETTINGS.to_owned(), serde_json::to_string(&requested)?);
     texts.insert(GIVEN.to_owned(), serde_json::to_string(&on_device)?);
     arrays.extend(view_arrays(&given.uploaded, ["lit_view", "lit_advance"]));
@@ -164,11 +164,11 @@ pub(super) fn read(
             "the light is not that of this scene and these settings: `request_sha256` is not their digest",
         ));
     }
-    let Requested { mut settings, sky_image } = json(file, SETTINGS)?;
+    let LitRequest { mut settings, sky_image } = json(file, SETTINGS)?;
     if let Some(SkyImage { strength, rotation }) = sky_image {
         settings.sky.light = SkyLight::Image { environment: sky(file)?, strength, rotation };
     }
-    let Given { max_surfaces, lighting } = json(file, GIVEN)?;
+    let DeviceInputs { max_surfaces, lighting } = json(file, GIVEN)?;
     let uploaded_sky = match &settings.sky.light {
         SkyLight::Image { environment, .. } => Some(if file.has("sky_uploaded") {
             UploadedSky {

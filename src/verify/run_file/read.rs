@@ -19,7 +19,9 @@ use crate::verify::run_file::write::ShownPicture;
 use crate::verify::run_file::{
     LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256,
 };
-use crate::verify::{LitRecording, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay};
+use crate::verify::{
+    LitRecording, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay,
+};
 
 /// A run file that is open: complete and unaltered, but perhaps with contents that are not valid.
 ///
@@ -185,15 +187,15 @@ fn image(
     .ok_or_else(|| contradiction("the layers have different sizes"))
 }
 
-fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError> {
+fn rendered(file: &Container<'_>, film: &Film) -> Result<PlainRender, RunFileError> {
     const LAYERS: [&str; 4] =
         ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
     if !file.has_text("rendered") {
-        return Ok(Rendered::None);
+        return Ok(PlainRender::None);
     }
     match file.text("rendered")? {
-        "same" => Ok(Rendered::Same),
-        "other" => image(file, film, LAYERS).map(Box::new).map(Rendered::Other),
+        "same" => Ok(PlainRender::Same),
+        "other" => image(file, film, LAYERS).map(Box::new).map(PlainRender::Other),
         other => Err(contradiction(format!(
             "`rendered` is `{}`; it must be `same` or `other`",
             shortened(other)

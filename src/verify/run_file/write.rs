@@ -11,7 +11,7 @@ use crate::scene::{Colors, Scene};
 use crate::verify::run_file::container::{Array, Flag};
 use crate::verify::run_file::lit_samples::{LitSamples, SAMPLES};
 use crate::verify::run_file::{LIMIT, Provenance, container, lit_inputs, scene_sha256};
-use crate::verify::{Recording, Rendered, TracedPixel};
+use crate::verify::{PlainRender, Recording, TracedPixel};
 
 /// What a run file may hold besides the picture by one ray for each pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -83,9 +83,9 @@ pub fn write_with(
         texts.insert(key.to_owned(), text.to_owned());
     }
     let is_rendered = match rendered {
-        Rendered::None => None,
-        Rendered::Same => Some("same"),
-        Rendered::Other(_) => Some("other"),
+        PlainRender::None => None,
+        PlainRender::Same => Some("same"),
+        PlainRender::Other(_) => Some("other"),
     };
     texts.extend(is_rendered.map(|text| ("rendered".to_owned(), text.to_owned())));
     texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
@@ -113,7 +113,7 @@ pub fn write_with(
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
     ]);
     arrays.extend(layers);
-    if let Rendered::Other(image) = rendered {
+    if let PlainRender::Other(image) = rendered {
         let names = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
         arrays.extend(layers_of(image, shape, "rendered picture", names)?);
     }

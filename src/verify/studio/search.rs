@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
-use crate::verify::camera::{BoxCrossing, Crossed, SMALLEST_COMPONENT};
+use crate::verify::camera::{BoxCrossing, SMALLEST_COMPONENT, SlabCrossing};
 use crate::verify::hit::Candidates;
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::{Lamp, axes_around, cosine_direction};
-use crate::verify::lit::search::{Entry, Hidden, is_same};
+use crate::verify::lit::search::{Entry, Obstacle, is_same};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
@@ -34,17 +34,17 @@ impl Kernel<'_> {
     }
 
     /// Whether a light is hidden from the surface; a light behind it is not searched for.
-    pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Hidden {
+    pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Obstacle {
         let Lamp { direction, distance, .. } = self.lamp_of_surface(light);
         let normal = Vector::recorded(self.before.vector(slot::NORMAL));
         if !self.choices.decide(normal.dot(direction).is_above_zero()) {
-            return Hidden::NEVER;
+            return Obstacle::NEVER;
         }
         self.is_hidden(candidates, direction, distance)
     }
 
     /// Whether something is near in a direction of ambient light.
-    pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Hidden {
+    pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Obstacle {
         let lighting = self.lighting();
         let sample =
             self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
@@ -60,32 +60,32 @@ impl Kernel<'_> {
         candidates: &Candidates,
         direction: Vector,
         distance: Number,
-    ) -> Hidden {
+    ) -> Obstacle {
         let state = self.before;
         if state.has(flag::BACK) {
             let radius = Number::recorded(f32::from_bits(state.departure().emitter));
             let to_center = Vector::recorded(state.vector(slot::NORMAL)) * radius;
             let to_far_side = (Number::TWO * to_center.dot(direction)).max(Number::ZERO);
             if self.choices.decide(to_far_side.is_less(distance)) {
-                return Hidden::ALWAYS;
+                return Obstacle::ALWAYS;
             }
         }
         if !state.has(flag::ON_GROUND) {
             let origin = Vector::recorded(state.vector(slot::ORIGIN));
             let ground = self.ground_distance(origin, direction, Number::ZERO);
             if ground.is_some_and(|t| self.choices.decide(t.is_less(distance))) {
-                return Hidden::ALWAYS;
+                return Obstacle::ALWAYS;
             }
         }
         self.is_occluded(candidates, direction, distance)
     }
 
     /// Whether an opaque sphere other than that of the surface is nearer than a distance.
-    fn is_occluded(&self, candidates: &Candidates, direction: Vector, distance: Number) -> Hidden {
+    fn is_occluded(&self, candidates: &Candidates, toward: Vector, distance: Number) -> Obstacle {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
-        let Some(ray) = Entry::aimed(corners, wide(state.vector(slot::ORIGIN)), direction) else {
-            return Hidden { must: false, ..Hidden::ALWAYS };
+        let Some(ray) = Entry::aimed(corners, wide(state.vector(slot::ORIGIN)), toward) else {
+            return Obstacle { must: false, ..Obstacle::ALWAYS };
         };
         let departed = scene.spheres().get(state.departure().id as usize);
         let are_opaque = scene.is_opaque();
@@ -145,7 +145,7 @@ impl Entry {
 }
 
 /// The distances at which a ray meets the planes that bound a box along an axis: the nearer and the farther one.
-fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> Crossed {
+fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> SlabCrossing {
     let sizes =
         [direction.low.abs(), direction.high.abs()].map(|size| size.max(SMALLEST_COMPONENT));
     let is_positive = direction.low >= 0.0;
@@ -156,12 +156,12 @@ fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> Crossed {
         let everything = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
         return if is_between {
             let behind = Interval { low: f64::NEG_INFINITY, high: 0.0 };
-            Crossed {
+            SlabCrossing {
                 near: behind,
                 far: Interval { low: nearest * (1.0 - 8.0 * U), high: f64::INFINITY },
             }
         } else {
-            Crossed { near: everything, far: everything }
+            SlabCrossing { near: everything, far: everything }
         };
     }
     let [least, most] = [sizes[0].min(sizes[1]), sizes[0].max(sizes[1])];
@@ -174,5 +174,5 @@ fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> Crossed {
         let error = |end: f64| PAD * (DIVIDE + 5.0 * U) * end.abs() + 2.0 * FLUSH / least + FLUSH;
         Interval { low: a - error(a), high: b + error(b) }
     };
-    Crossed::between(plane(low), plane(high))
+    SlabCrossing::between(plane(low), plane(high))
 }

@@ -27,7 +27,7 @@ const LOBE: Name = (LitStage::Surface, "the specular lobe");
 const KEPT: Name = (LitStage::Surface, "an unchanged part of the ray's state");
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Met {
+pub(crate) enum HitKind {
     Nothing,
     /// A surface that shines and is not lit.
     Emitter,
@@ -36,7 +36,7 @@ pub(crate) enum Met {
 }
 
 impl Kernel<'_> {
-    pub(crate) fn follow_surface(&mut self, is_last: bool) -> Result<Met, Mismatch> {
+    pub(crate) fn follow_surface(&mut self, is_last: bool) -> Result<HitKind, Mismatch> {
         let (before, after, lighting) = (self.before, self.after, self.lighting());
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
         let shown = Vector::recorded(if is_transparent { [0.0; 3] } else { lighting.background });
@@ -44,12 +44,12 @@ impl Kernel<'_> {
         self.unchanged(slot::DIRECTION)?;
         let Some(vertex) = self.vertex()? else {
             self.added(shown * left_over, Number::ZERO)?;
-            self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
-            self.expected.bits(FLAGS, after.flags(), 0)?;
+            self.judge.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
+            self.judge.bits(FLAGS, after.flags(), 0)?;
             let others = [slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST];
             let of_surface = [slot::NORMAL, slot::ALBEDO, slot::LOBE];
             others.into_iter().chain(of_surface).try_for_each(|slot| self.unchanged(slot))?;
-            return Ok(Met::Nothing);
+            return Ok(HitKind::Nothing);
         };
         let material = self.material_of(&vertex);
         let is_caught = !vertex.is_sphere() && lighting.flags & flag::CATCHER != 0;
@@ -89,22 +89,22 @@ impl Kernel<'_> {
         } else {
             Vector::recorded(before.vector(slot::FIRST))
         };
-        self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
-        self.expected.number(LENGTH, after.number(slot::FIRST), far)?;
+        self.judge.vector(FIRST, after.vector(slot::FIRST), first)?;
+        self.judge.number(LENGTH, after.number(slot::FIRST), far)?;
         self.compare_passed(&vertex)?;
         let [found_rest, found_lit, zero, one_more] =
             after.slots[slot::THROUGHPUT].map(f32::from_bits);
         let size = left_over.interval().high;
-        self.expected.number_of(REST, found_rest, rest, size)?;
-        self.expected.number_of(WEIGHT, found_lit, lit, size)?;
+        self.judge.number_of(REST, found_rest, rest, size)?;
+        self.judge.number_of(WEIGHT, found_lit, lit, size)?;
         for nothing in [zero, one_more] {
-            self.expected.number(WEIGHT, nothing, Number::ZERO)?;
+            self.judge.number(WEIGHT, nothing, Number::ZERO)?;
         }
-        self.expected.vector(NORMAL, after.vector(slot::NORMAL), vertex.normal)?;
-        self.expected.bits(NORMAL, after.bits(slot::NORMAL), 0)?;
-        self.expected.vector_of(ALBEDO, after.vector(slot::ALBEDO), color * lit, size)?;
+        self.judge.vector(NORMAL, after.vector(slot::NORMAL), vertex.normal)?;
+        self.judge.bits(NORMAL, after.bits(slot::NORMAL), 0)?;
+        self.judge.vector_of(ALBEDO, after.vector(slot::ALBEDO), color * lit, size)?;
         let caught = if is_caught { left_over } else { Number::ZERO };
-        self.expected.number(ALBEDO, after.number(slot::ALBEDO), caught)?;
+        self.judge.number(ALBEDO, after.number(slot::ALBEDO), caught)?;
         self.compare_lobe(&material)?;
 
         let ends = is_last || is_caught || !self.choices.decide(rest.is_more(Number::ZERO));
@@ -116,8 +116,8 @@ impl Kernel<'_> {
             (!vertex.is_sphere(), flag::ON_GROUND),
         ];
         let flags = flags.into_iter().filter(|(is_set, _)| *is_set).map(|(_, flag)| flag).sum();
-        self.expected.bits(FLAGS, after.flags(), flags)?;
-        Ok(if is_emitter { Met::Emitter } else { Met::Surface })
+        self.judge.bits(FLAGS, after.flags(), flags)?;
+        Ok(if is_emitter { HitKind::Emitter } else { HitKind::Surface })
     }
 
     /// The fraction of the colour that depth cueing replaces at a distance: `shaders/studio/faded.wgsl`.
@@ -128,16 +128,16 @@ impl Kernel<'_> {
     }
 
     fn unchanged(&mut self, slot: usize) -> Result<(), Mismatch> {
-        self.expected.same(KEPT, [self.before, self.after], slot)
+        self.judge.same(KEPT, [self.before, self.after], slot)
     }
 
     /// Compares radiance and opacity with those before and what is added to them.
     fn added(&mut self, radiance: Vector, opacity: Number) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
         let sum = Vector::recorded(before.vector(slot::RADIANCE)) + radiance;
-        self.expected.vector(RADIANCE, after.vector(slot::RADIANCE), sum)?;
+        self.judge.vector(RADIANCE, after.vector(slot::RADIANCE), sum)?;
         let alpha = Number::recorded(before.number(slot::RADIANCE)) + opacity;
-        self.expected.number(ALPHA, after.number(slot::RADIANCE), alpha)
+        self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
     }
 
     /// Compares the sphere that the ray passes, its radius, and how far its far side is.
@@ -145,23 +145,23 @@ impl Kernel<'_> {
         let departure = self.after.departure();
         let is_sphere = vertex.is_sphere();
         let (id, index) = if is_sphere { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
-        self.expected.bits(DEPARTURE, departure.id, id)?;
-        self.expected.bits(DEPARTURE, departure.shape_index, index)?;
+        self.judge.bits(DEPARTURE, departure.id, id)?;
+        self.judge.bits(DEPARTURE, departure.shape_index, index)?;
         let radius = Number::recorded(vertex.sphere[3]);
-        self.expected.number(DEPARTURE, f32::from_bits(departure.emitter), radius)?;
+        self.judge.number(DEPARTURE, f32::from_bits(departure.emitter), radius)?;
         let direction = Vector::recorded(self.before.vector(slot::DIRECTION));
         let exit = vertex.exit_distance(direction);
         let size = f64::from(vertex.sphere[3]);
-        self.expected.number_of(EXIT_DISTANCE, departure.exit_distance, exit, size)
+        self.judge.number_of(EXIT_DISTANCE, departure.exit_distance, exit, size)
     }
 
     /// Compares the share of the lobe, the square of its roughness, and the index of its energies.
     fn compare_lobe(&mut self, material: &Material) -> Result<(), Mismatch> {
         let [share, alpha, energies, nothing] = self.after.slots[slot::LOBE];
         let expected = if material.kind == LAMBERT { material.parameter } else { Number::ZERO };
-        self.expected.number(LOBE, f32::from_bits(share), expected)?;
-        self.expected.number(LOBE, f32::from_bits(alpha), material.alpha)?;
-        self.expected.bits(LOBE, energies, material.energies)?;
-        self.expected.bits(LOBE, nothing, 0)
+        self.judge.number(LOBE, f32::from_bits(share), expected)?;
+        self.judge.number(LOBE, f32::from_bits(alpha), material.alpha)?;
+        self.judge.bits(LOBE, energies, material.energies)?;
+        self.judge.bits(LOBE, nothing, 0)
     }
 }

@@ -34,7 +34,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 /// How the composite is drawn.
 #[derive(Clone, Copy)]
-struct Drawn {
+struct Draw {
     camera: HostCamera,
     first_pixel: [u32; 2],
     /// The depth before.
@@ -63,7 +63,7 @@ impl Wrong {
 
 const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;
 
-fn judge(stage: &Stage, drawn: Drawn) -> Wrong {
+fn judge(stage: &Stage, drawn: Draw) -> Wrong {
     let formats = [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float];
     let [_, depth] = stage.composited(formats, &drawn.camera, drawn.first_pixel, drawn.cleared);
     let found: Vec<f32> = stage.host.read(&depth);
@@ -124,8 +124,8 @@ fn is_parallel(stage: &Stage) -> bool {
     stage.convention.is_orthographic()
 }
 
-fn plainly(stage: &Stage) -> Drawn {
-    Drawn { camera: stage.camera, first_pixel: FIRST, cleared: stage.far() }
+fn plainly(stage: &Stage) -> Draw {
+    Draw { camera: stage.camera, first_pixel: FIRST, cleared: stage.far() }
 }
 
 fn right(_: &'static Headless) {
@@ -150,11 +150,11 @@ fn faults(_: &'static Headless) {
         let mut planted = vec![
             (
                 "a near plane that is a ten-thousandth nearer",
-                Drawn { camera: made(convention, [RANGE[0] * 0.9999, RANGE[1]]), ..plain },
+                Draw { camera: made(convention, [RANGE[0] * 0.9999, RANGE[1]]), ..plain },
             ),
-            ("a column too far", Drawn { first_pixel: [FIRST[0] + 1, FIRST[1]], ..plain }),
-            ("a row too high", Drawn { first_pixel: [FIRST[0], FIRST[1] - 1], ..plain }),
-            ("depth that is not cleared", Drawn { cleared: 1.0 - stage.far(), ..plain }),
+            ("a column too far", Draw { first_pixel: [FIRST[0] + 1, FIRST[1]], ..plain }),
+            ("a row too high", Draw { first_pixel: [FIRST[0], FIRST[1] - 1], ..plain }),
+            ("depth that is not cleared", Draw { cleared: 1.0 - stage.far(), ..plain }),
         ];
         let other = match convention {
             Convention::Perspective => Convention::Infinite,
@@ -164,7 +164,7 @@ fn faults(_: &'static Headless) {
             Convention::Orthographic => Convention::OrthographicReversed,
             Convention::OrthographicReversed => Convention::Orthographic,
         };
-        planted.push(("another convention", Drawn { camera: made(other, RANGE), ..plain }));
+        planted.push(("another convention", Draw { camera: made(other, RANGE), ..plain }));
         for (name, drawn) in planted {
             let wrong = judge(&stage, drawn);
             assert!(!wrong.is_right(), "{convention:?}: {name} is not found: {wrong:?}");

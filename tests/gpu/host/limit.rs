@@ -11,7 +11,7 @@ use pinhole::internals::ShaderEdit;
 use pinhole::{LinearRgb, Scene};
 use wgpu::TextureFormat;
 
-use super::stage::{FIRST, SIZE, Shared, Stage, settings};
+use super::stage::{FIRST, Pipelines, SIZE, Stage, settings};
 use crate::host_program::{Host, view_of};
 use crate::planted::planted;
 use crate::support::hosts::Convention;
@@ -27,7 +27,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 /// A renderer whose rays end at the host's depth, or do not.
-fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Arc<Shared> {
+fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Arc<Pipelines> {
     let options = RendererOptions {
         data_layers: true,
         cameras: vec![stage.camera.kind()],
@@ -35,7 +35,7 @@ fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Arc<Shared
         edits: edits.to_vec(),
         ..RendererOptions::default()
     };
-    if edits.is_empty() { Shared::with(&options) } else { Arc::new(Shared::new(&options)) }
+    if edits.is_empty() { Pipelines::with(&options) } else { Arc::new(Pipelines::new(&options)) }
 }
 
 /// The host's depth, at the first pixel of a picture.
@@ -73,7 +73,7 @@ fn own_depth(stage: &Stage) -> HostPicture {
 /// The bytes of all layers of a picture with the host's depth.
 fn picture(
     stage: &Stage,
-    Shared { renderer, test }: &Shared,
+    Pipelines { renderer, test }: &Pipelines,
     scene: &SceneBuffers,
     depth: &HostPicture,
 ) -> [Vec<u8>; 4] {

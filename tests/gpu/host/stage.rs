@@ -29,7 +29,7 @@ pub(super) struct Stage {
     /// From world space to clip space.
     pub(super) to_clip: DMat4,
     pub(super) spheres: Vec<Sphere>,
-    shared: Arc<Shared>,
+    shared: Arc<Pipelines>,
     scene: SceneBuffers,
     pub(super) frame: Frame,
     pub(super) layers: Layers,
@@ -39,12 +39,12 @@ pub(super) struct Stage {
 static HOST: LazyLock<Host> = LazyLock::new(Host::new);
 
 /// A renderer and its test of the host's depth, which stages with the same options share.
-pub(super) struct Shared {
+pub(super) struct Pipelines {
     pub(super) renderer: Renderer,
     pub(super) test: DepthTest,
 }
 
-impl Shared {
+impl Pipelines {
     pub(super) fn new(options: &RendererOptions) -> Self {
         let renderer = Renderer::new(&HOST.device, options).wait().unwrap();
         let test = DepthTest::new(&renderer, &HOST.device).wait().unwrap();
@@ -53,7 +53,7 @@ impl Shared {
 
     /// With options that some stage may have had before.
     pub(super) fn with(options: &RendererOptions) -> Arc<Self> {
-        static ALL: Mutex<Vec<(RendererOptions, Arc<Shared>)>> = Mutex::new(Vec::new());
+        static ALL: Mutex<Vec<(RendererOptions, Arc<Pipelines>)>> = Mutex::new(Vec::new());
         let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, known)) = all.iter().find(|(of, _)| of == options) {
             return Arc::clone(known);
@@ -119,7 +119,7 @@ impl Stage {
         let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
         let spheres = random_spheres();
         let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
-        let shared = Shared::with(&options);
+        let shared = Pipelines::with(&options);
         let (renderer, Host { device, queue }) = (&shared.renderer, &host);
         let of_spheres = Scene::new(&spheres).unwrap();
         let scene = SceneBuffers::new(renderer, device, queue, &of_spheres).wait().unwrap();
@@ -215,7 +215,7 @@ impl Stage {
         first_pixel: [u32; 2],
     ) {
         let Host { device, queue } = &self.host;
-        let Shared { renderer, test } = &*self.shared;
+        let Pipelines { renderer, test } = &*self.shared;
         let mut depth = HostDepth::new(test, device, depth).wait().unwrap();
         let missing = renderer.record_with_depth(encoder, &self.scene, &self.frame, test, &depth);
         assert_eq!(missing, Err(pinhole::gpu::GpuError::NoView));

@@ -12,7 +12,7 @@ mod spheres;
 
 use eframe::egui;
 use eframe::egui_wgpu;
-use pinhole::gpu::{LitProgress, LitState, Picked};
+use pinhole::gpu::{LitProgress, LitState, PickedPixel};
 use pinhole::render::Studio;
 use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, View};
 use pinhole_host_common::{
@@ -58,7 +58,7 @@ struct Panels {
     progress: Option<LitProgress>,
     /// Whether a pick has no result yet.
     is_picking: bool,
-    picked: Option<Picked>,
+    picked: Option<PickedPixel>,
     message: Option<String>,
 }
 
@@ -114,8 +114,8 @@ impl Panels {
         ui.heading("Picked");
         match self.picked {
             None => ui.label("Click a sphere."),
-            Some(Picked { hit: None, .. }) => ui.label("No sphere."),
-            Some(Picked { hit: Some(hit), .. }) => {
+            Some(PickedPixel { hit: None, .. }) => ui.label("No sphere."),
+            Some(PickedPixel { hit: Some(hit), .. }) => {
                 let [r, g, b] = self.scene.color(hit.id).to_srgb8();
                 let color = egui::Color32::from_rgb(r, g, b);
                 ui.colored_label(color, format!("Sphere {}", hit.id));

@@ -7,7 +7,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
     Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState,
-    Picked, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
+    PickedPixel, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
@@ -70,7 +70,7 @@ impl Spheres {
     }
 
     /// What was picked, if the device has told.
-    pub(crate) fn take_pick(&mut self) -> Outcome<Option<Picked>> {
+    pub(crate) fn take_pick(&mut self) -> Outcome<Option<PickedPixel>> {
         Ok(self.picker.take()?)
     }
 

@@ -38,7 +38,7 @@ fn glass(out: DVec3, ior: f32, roughness: f32, is_leaving: bool) -> Bsdf {
 }
 
 /// The mean over evenly distributed directions and choices.
-fn mean(bsdf: &Bsdf, of: impl Fn(&Scattered) -> f64) -> f64 {
+fn mean(bsdf: &Bsdf, of: impl Fn(&BsdfSample) -> f64) -> f64 {
     const COUNT: u32 = 1 << 18;
     let of_sample = |i: u32| {
         let (u, choice) = (pair(77, i, 0), unit(pair(77, i, 1)[0]));

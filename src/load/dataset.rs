@@ -9,7 +9,7 @@ use crate::scene::{Appearance, Colors, Scene, SceneError};
 /// The spheres of one frame of a file, with their colours and other named values.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Loaded {
+pub struct Dataset {
     /// Centres and radii, in the order of the file. They are not checked;
     /// [`Scene::from_parts`](crate::Scene::from_parts) does that.
     pub spheres: SphereArray,
@@ -90,8 +90,8 @@ pub(super) fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
     values.retain(|_| is_kept.next().copied().unwrap_or(true));
 }
 
-impl Loaded {
-    /// Makes a `Loaded` that has spheres and nothing else.
+impl Dataset {
+    /// Makes a `Dataset` that has spheres and nothing else.
     #[must_use]
     pub fn new(spheres: SphereArray) -> Self {
         Self {

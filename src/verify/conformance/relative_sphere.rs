@@ -12,7 +12,7 @@ use crate::geometry::math::wide;
 
 /// A sphere relative to a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct RelativeSphere {
     /// Distance of the foot point of the centre along the ray; negative behind the start.
     b: f64,
     /// Distance of the centre from the line of the ray.
@@ -24,7 +24,7 @@ pub(super) struct Seen {
     foot: DVec3,
 }
 
-impl Seen {
+impl RelativeSphere {
     /// The sphere as the ray sees it; the direction must have unit length.
     pub(super) fn new(origin: DVec3, direction: DVec3, [x, y, z, radius]: [f32; 4]) -> Self {
         let to_center = wide([x, y, z]) - origin;
@@ -146,7 +146,7 @@ mod tests {
         let (mut hits, mut certain) = (0, 0);
         for _ in 0..400 {
             let center = DVec3::new(3.0 * random.f64() - 0.7, 1.4 * random.f64(), 0.0);
-            let seen = Seen::new(-center, DVec3::X, [0.0, 0.0, 0.0, 1.0]);
+            let seen = RelativeSphere::new(-center, DVec3::X, [0.0, 0.0, 0.0, 1.0]);
             let a = 0.4 * random.f64();
             let moved: Vec<_> = (0..4000)
                 .map(|i| {
@@ -197,7 +197,7 @@ mod tests {
             let moved = center + 0.2 * any(&mut random);
             let Some(t) = first(moved) else { continue };
             let normal = t * DVec3::X - moved;
-            let seen = Seen::new(-center, DVec3::X, [0.0, 0.0, 0.0, 1.0]);
+            let seen = RelativeSphere::new(-center, DVec3::X, [0.0, 0.0, 0.0, 1.0]);
             let least = seen.move_to_normal(DVec3::X, normal.normalize_or_zero());
             assert!(least <= (moved - center).length() + 1e-12);
             let back = seen.move_to_normal(DVec3::X, -normal.normalize_or_zero());

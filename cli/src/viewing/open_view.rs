@@ -14,11 +14,11 @@ use pinhole::scene::Scene;
 
 use super::{RenderFlags, ViewError};
 use crate::failure::Failure;
-use crate::input::{Framed, Input, OpenFrames, Source};
+use crate::input::{FramedScene, Input, OpenFrames, Source};
 use crate::read_file::Format;
 
 /// What [`RenderFlags`] mean: the spheres of a file, seen by a camera with a film, and the settings of the picture.
-pub struct Shown {
+pub struct OpenView {
     flags: RenderFlags,
     pub(super) input: Input,
     /// The text of a scene file; `None` for a data file.
@@ -72,7 +72,7 @@ struct FileFrames {
     note: Option<String>,
 }
 
-impl Shown {
+impl OpenView {
     /// Reads the file. Frames that were found before in the same file, for `before`, are not searched again.
     pub fn open(flags: &RenderFlags, before: Option<&Self>) -> Result<Self, ViewError> {
         let job = flags.job()?;
@@ -90,7 +90,7 @@ impl Shown {
         };
         let columns = Arc::new(std::mem::take(&mut contents.details.columns));
         let sky = source.sky(&contents).map_err(Failure::from)?;
-        let framed = Framed::new(&contents.scene, contents.color_key());
+        let framed = FramedScene::new(&contents.scene, contents.color_key());
         let look = source.look(&contents.file, framed, sky.clone(), None)?;
         let mut input = source.input_with(contents, look)?;
         let mut notes = std::mem::take(&mut input.notes);
@@ -115,7 +115,7 @@ impl Shown {
         };
         let (file, size_from) = source.with_film(file.map_err(Failure::from)?)?;
         let sky = self.sky.as_ref().map(|(_, sky)| sky.clone());
-        let framed = Framed::new(&self.input.scene, self.input.color_key.as_ref());
+        let framed = FramedScene::new(&self.input.scene, self.input.color_key.as_ref());
         let look = source.look(&file, framed, sky, None)?;
         let input = &mut self.input;
         (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
