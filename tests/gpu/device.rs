@@ -145,8 +145,8 @@ fn no_memory(headless: &'static Headless) {
 }
 
 /// A device that is treated as one of this type.
-fn treated_as(device_type: DeviceType) -> Headless {
-    let options = HeadlessOptions { device_type: Some(device_type), ..HeadlessOptions::default() };
+fn treated_as(device_type: DeviceType, options: HeadlessOptions) -> Headless {
+    let options = HeadlessOptions { device_type: Some(device_type), ..options };
     let headless = Headless::open(&options).wait().unwrap();
     assert_eq!(headless.adapter_info().device_type, device_type);
     headless
@@ -156,11 +156,10 @@ fn treated_as(device_type: DeviceType) -> Headless {
 fn opened_otherwise(headless: &'static Headless) {
     let mut types = vec![DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::DiscreteGpu];
     types.retain(|kind| *kind != headless.adapter_info().device_type);
-    let treated = types.into_iter().map(|kind| (format!("{kind:?}"), treated_as(kind)));
-    let mut others: Vec<_> = treated.collect();
     let direct = HeadlessOptions { indirect: false, ..HeadlessOptions::default() };
-    others.push(("no indirect dispatch".to_owned(), Headless::open(&direct).wait().unwrap()));
-    others.push(("a profile".to_owned(), profiled().0));
+    let profile = HeadlessOptions { profile: Some(Profile::default()), ..Default::default() };
+    let others = types.into_iter().zip([direct, profile]);
+    let others: Vec<_> = others.map(|(kind, how)| (kind, treated_as(kind, how))).collect();
     let lit = lit_scenes::all().map(|(name, mut view)| {
         view.settings.sampling.samples = 6;
         (name, view)
@@ -169,7 +168,7 @@ fn opened_otherwise(headless: &'static Headless) {
     for (name, view) in primary.chain(lit) {
         let expected = view.picture(headless, LayerSet::ALL);
         for (how, other) in &others {
-            assert_eq!(view.picture(other, LayerSet::ALL), expected, "{name}, {how}");
+            assert_eq!(view.picture(other, LayerSet::ALL), expected, "{name}, {how:?}");
         }
     }
 }
@@ -178,7 +177,7 @@ fn opened_otherwise(headless: &'static Headless) {
 fn tiles(mut view: View, size: [u32; 2], layers: LayerSet) -> [u64; 2] {
     view.film = Film::new(size[0], size[1]).unwrap();
     let pictures = [DeviceType::Cpu, DeviceType::DiscreteGpu].map(|device_type| {
-        let device = treated_as(device_type);
+        let device = treated_as(device_type, HeadlessOptions::default());
         let (scene, settings) = (&view.scene, &view.settings);
         let plan = device.plan(scene, &view.seen(), settings, layers, AccelChoice::Auto, 0);
         (plan.tile_count, view.picture(&device, layers))

@@ -109,10 +109,8 @@ impl Judge {
     ) -> Result<(), Mismatch> {
         let legal = legal.intervals();
         let scale = legal.iter().map(|axis| axis.size()).fold(size, f64::max);
-        found
-            .into_iter()
-            .zip(legal)
-            .try_for_each(|(found, legal)| self.within(name, found, legal, scale))
+        let mut pairs = found.iter().zip(&legal);
+        pairs.try_for_each(|(found, legal)| self.within(name, *found, *legal, scale))
     }
 
     /// Checks that a state has not changed.
@@ -131,8 +129,8 @@ impl Judge {
         [before, after]: [&PathState; 2],
         slot: usize,
     ) -> Result<(), Mismatch> {
-        let pairs = after.slots[slot].into_iter().zip(before.slots[slot]);
-        pairs.into_iter().try_for_each(|(found, legal)| self.bits(name, found, legal))
+        let mut pairs = after.slots[slot].iter().zip(&before.slots[slot]);
+        pairs.try_for_each(|(found, legal)| self.bits(name, *found, *legal))
     }
 
     pub(crate) fn fail(&self, (stage, what): Name, words: impl Display) -> Mismatch {

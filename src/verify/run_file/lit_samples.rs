@@ -77,13 +77,13 @@ impl LitSamples {
             if bytes_in_memory(sizes) > MAX_SAMPLE_BYTES {
                 return Err(io::Error::other("a sample of the light is too large for a run file"));
             }
-            self.keep("place", &[5], [*sample, x, y, width, height].into_iter())?;
+            self.keep("place", &[5], [&[*sample, x, y, width, height][..]].into_iter())?;
             self.keep("start", &[pixels, PathState::SLOTS, 4], words_of(start))?;
             for (name, sums) in [("before", &film.before), ("after", &film.after)] {
-                self.keep(name, &[pixels, 3, 4], sums.iter().flatten().flatten().copied())?;
+                self.keep(name, &[pixels, 3, 4], [sums.as_flattened().as_flattened()].into_iter())?;
             }
-            let hits = surfaces.iter().flat_map(|surface| surface.hits.as_flattened());
-            self.keep("hits", &[count, pixels, 4], hits.copied())?;
+            let hits = surfaces.iter().map(|surface| surface.hits.as_flattened());
+            self.keep("hits", &[count, pixels, 4], hits)?;
             let states = surfaces.iter().flat_map(|surface| words_of(&surface.states));
             self.keep("states", &[count, pixels, PathState::SLOTS, 4], states)?;
             if given.is_studio() {
@@ -94,13 +94,13 @@ impl LitSamples {
                 };
                 let batches = if count > 0 { batches } else { 0 };
                 let shape = [count, batches, pixels];
-                self.keep("hidden", &shape, lights().flat_map(|light| &light.hidden).copied())?;
-                let radiance = lights().flat_map(|light| light.radiance.as_flattened());
-                self.keep("radiance", &[count, batches, pixels, 4], radiance.copied())?;
-                self.keep("left", &shape, lights().flat_map(|light| &light.left).copied())?;
+                self.keep("hidden", &shape, lights().map(|light| &light.hidden[..]))?;
+                let radiance = lights().map(|light| light.radiance.as_flattened());
+                self.keep("radiance", &[count, batches, pixels, 4], radiance)?;
+                self.keep("left", &shape, lights().map(|light| &light.left[..]))?;
             } else {
-                let open = surfaces.iter().flat_map(|surface| &surface.open);
-                self.keep("open", &[count, pixels], open.copied())?;
+                let open = surfaces.iter().map(|surface| &surface.open[..]);
+                self.keep("open", &[count, pixels], open)?;
             }
             self.count += 1;
         }
@@ -108,20 +108,20 @@ impl LitSamples {
     }
 
     /// Writes an array to the end of the spool.
-    fn keep(
+    fn keep<'a>(
         &mut self,
         name: &str,
         shape: &[usize],
-        words: impl Iterator<Item = u32>,
+        words: impl Iterator<Item = &'a [u32]>,
     ) -> io::Result<()> {
         let name = name_of(self.count, name);
         let spool = self.spool.get_mut();
         spool.seek(SeekFrom::Start(self.end))?;
         let mut out = BufWriter::new(spool);
         let mut end = self.end;
-        for word in words {
-            out.write_all(&word.to_le_bytes())?;
-            end += size_of::<u32>() as u64;
+        for words in words {
+            out.write_all(bytemuck::cast_slice(words))?;
+            end += size_of_val(words) as u64;
         }
         out.flush()?;
         self.arrays.push((name, shape.to_vec(), self.end));
@@ -158,8 +158,8 @@ impl std::fmt::Debug for LitSamples {
     }
 }
 
-fn words_of(states: &[PathState]) -> impl Iterator<Item = u32> {
-    states.iter().flat_map(|state| state.slots).flatten()
+fn words_of(states: &[PathState]) -> impl Iterator<Item = &[u32]> {
+    states.iter().map(|state| state.slots.as_flattened())
 }
 
 /// The name of an array of a sample, the samples being counted from 0.
