@@ -27,7 +27,9 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, LitPart, Structures, Wait};
+use pinhole::gpu::{
+    Decision, Headless, HeadlessOptions, PictureRequest, SampleRequest, Structures, Wait,
+};
 use pinhole::internals::ShaderEdit;
 use pinhole::verify::{
     Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict,
@@ -106,7 +108,8 @@ fn grey(spheres: Vec<[f32; 4]>) -> Scene {
 
 fn record(headless: &Headless, scene: &Scene, camera: &dyn Camera, film: &Film) -> Recording {
     let (view, settings) = (View::new(camera, *film), RenderSettings::default());
-    let plan = headless.plan(scene, &view, &settings, LayerSet::DATA, AccelChoice::Auto, 0);
+    let request = PictureRequest::new(scene, &view, &settings, LayerSet::DATA);
+    let plan = headless.plan(&request, AccelChoice::Auto);
     let buffers = headless.upload(scene, &plan.build(scene)).wait().unwrap();
     let go_on = |_: &_| Decision::GoOn;
     headless.record(&buffers, &view, &settings, &mut { go_on }).wait().unwrap()
@@ -397,14 +400,14 @@ fn lit_campaign(headless: &Headless, seeds: Range<u64>, view: ViewOf) {
         let RandomView { scene, camera, film, settings, name } = view(seed);
         let go_on = &mut |_: &_| Decision::GoOn;
         let view = View::new(camera.as_ref(), film);
-        let layers = LayerSet::COLOR;
-        let plan = headless.plan(&scene, &view, &settings, layers, AccelChoice::Auto, 0);
+        let request = PictureRequest::new(&scene, &view, &settings, LayerSet::COLOR);
+        let plan = headless.plan(&request, AccelChoice::Auto);
         let buffers = headless.upload(&scene, &plan.build(&scene)).wait().unwrap();
         let checker = Checker::new(&scene).unwrap();
         let mut certificate = LitCertificate::default();
         let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
         headless
-            .record_lit(&buffers, &view, &settings, (LitPart::Middle, &[0, 1]), (each, go_on))
+            .record_lit(&buffers, &view, &settings, SampleRequest::middle(&[0, 1]), each, go_on)
             .wait()
             .unwrap();
         assert_ne!(certificate.outcome(), Outcome::Violated, "seed {seed}: {name}: {certificate}");

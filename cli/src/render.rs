@@ -32,11 +32,9 @@ use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch, Wait};
+use pinhole::gpu::{GpuError, Headless, PictureRequest, RenderPlan, Wait};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
-#[cfg(feature = "gpu")]
-use pinhole::render::Watch;
 use pinhole::render::{Picture, RenderSettings};
 
 /// A render job, checked as far as is possible before the input is read.
@@ -273,12 +271,11 @@ fn on_gpu(
             if let (false, [view]) = (is_lit, views) {
                 let watching = Watching::new(stop_rule, 1, pixels, false);
                 let name = plan.accel.structure.name();
-                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) =
-                    (&mut |progress| watch_upload(name, progress), &mut |progress| {
-                        watching.decide(progress)
-                    });
+                let upload_watch = &mut |progress: &_| watch_upload(name, progress);
+                let watch = &mut |progress: &_| watching.decide(progress);
+                let request = PictureRequest::new(scene, view, settings, layers);
                 let picture =
-                    headless.render_planned(scene, plan, view, settings, layers, watches).wait()?;
+                    headless.render_planned(&request, plan, upload_watch, watch).wait()?;
                 return Ok(vec![(picture, watching)]);
             }
             let buffers = upload(headless, scene, plan)?;
@@ -314,8 +311,8 @@ pub(super) fn plan(
     layers: LayerSet,
     choice: AccelChoice,
 ) -> RenderPlan {
-    let Input { scene, settings, .. } = input;
-    let extra = extra_bytes_per_pixel(views, layers);
+    let host_bytes_per_pixel = extra_bytes_per_pixel(views, layers);
     let view = View::new(input.camera.as_ref(), views[0].film);
-    headless.plan(scene, &view, settings, layers, choice, extra)
+    let request = PictureRequest::new(&input.scene, &view, &input.settings, layers);
+    headless.plan(&PictureRequest { host_bytes_per_pixel, ..request }, choice)
 }

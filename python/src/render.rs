@@ -10,7 +10,9 @@ use crate::look::Look;
 use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
-use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries};
+use pinhole::gpu::{
+    GpuError, PictureRequest, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries,
+};
 use pinhole::render::{Integrator, Picture, Watch};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene, View};
@@ -112,9 +114,10 @@ impl OnDevice {
         };
         let mut kept = slot.take().filter(fits);
         let views = look.views();
-        let extra = device::ENCODING_BYTES_PER_PIXEL;
-        let plan =
-            |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, extra);
+        let request = PictureRequest::new(scene, &look.view(), &look.settings, layers);
+        let host_bytes_per_pixel = device::ENCODING_BYTES_PER_PIXEL;
+        let request = PictureRequest { host_bytes_per_pixel, ..request };
+        let plan = |choice| headless.plan(&request, choice);
         let work = |buffers: &SceneBuffers| {
             each(&views, stop, |view, watch| {
                 headless.render_uploaded(buffers, view, &look.settings, layers, watch).wait()

@@ -32,7 +32,7 @@ mod shader;
 pub use device_shape::DeviceLimits;
 pub use error::GpuError;
 pub use headless::Headless;
-pub use headless::lit_recording::{EachSample, LitPart};
+pub use headless::lit_recording::{EachSample, LitPart, SampleRequest};
 pub use headless::measure::TraceTime;
 pub use headless::plan::{PictureRequest, RenderPlan, StructurePlans};
 pub use headless::progress::{

@@ -154,9 +154,9 @@ fn dropped(headless: &Headless, view: &View, plan: &RenderPlan) -> (Image, usize
         parts.push(progress.part);
         Decision::GoOn
     };
-    let (scene, settings, seen) = (&view.scene, &view.settings, view.seen());
-    let picture =
-        headless.render_planned(scene, plan, &seen, settings, LayerSet::ALL, (count, watch)).wait();
+    let seen = view.seen();
+    let request = PictureRequest::new(&view.scene, &seen, &view.settings, LayerSet::ALL);
+    let picture = headless.render_planned(&request, plan, count, watch).wait();
     let picture = picture.unwrap();
     assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
     (picture.image, built)

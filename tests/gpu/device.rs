@@ -10,8 +10,8 @@ use pinhole::camera::PinholeCamera;
 use pinhole::generate::Kind;
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{
-    Decision, GpuError, Headless, HeadlessOptions, Picture, Profile, ProfileTrack, Progress,
-    SelfTestExtent, TestedProperty, Wait, wgpu,
+    Decision, GpuError, Headless, HeadlessOptions, Picture, PictureRequest, Profile, ProfileTrack,
+    Progress, SelfTestExtent, TestedProperty, Wait, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
@@ -178,8 +178,9 @@ fn tiles(mut view: View, size: [u32; 2], layers: LayerSet) -> [u64; 2] {
     view.film = Film::new(size[0], size[1]).unwrap();
     let pictures = [DeviceType::Cpu, DeviceType::DiscreteGpu].map(|device_type| {
         let device = treated_as(device_type, HeadlessOptions::default());
-        let (scene, settings) = (&view.scene, &view.settings);
-        let plan = device.plan(scene, &view.seen(), settings, layers, AccelChoice::Auto, 0);
+        let seen = view.seen();
+        let request = PictureRequest::new(&view.scene, &seen, &view.settings, layers);
+        let plan = device.plan(&request, AccelChoice::Auto);
         (plan.tile_count, view.picture(&device, layers))
     });
     let [(software, expected), (gpu, picture)] = pictures;
@@ -240,7 +241,8 @@ fn bounds(headless: &'static Headless) {
         let view = pinhole::View::new(&camera, film);
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
             let settings = RenderSettings::default();
-            let plan = headless.plan(&scene, &view, &settings, LayerSet::DATA, choice, 0);
+            let request = PictureRequest::new(&scene, &view, &settings, LayerSet::DATA);
+            let plan = headless.plan(&request, choice);
             let structures = plan.build(&scene);
             let buffers = headless.upload(&scene, &structures).wait().unwrap();
             // The plan does not count the record of a brick, and the single appearance word.

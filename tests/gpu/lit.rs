@@ -6,7 +6,7 @@ use std::io::Cursor;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{Decision, GpuError, Headless, LitPart, Structures, Wait};
+use pinhole::gpu::{Decision, GpuError, Headless, SampleRequest, Structures, Wait};
 use pinhole::image::NO_ID;
 use pinhole::light::{Ground, LightKind};
 use pinhole::render::{Integrator, PrimarySettings, Studio};
@@ -100,8 +100,9 @@ fn record(
             &buffers,
             &view.seen(),
             &view.settings,
-            (LitPart::Middle, samples),
-            (each, go_on),
+            SampleRequest::middle(samples),
+            each,
+            go_on,
         )
         .wait()?;
     Ok(all.unwrap())
@@ -240,7 +241,7 @@ fn stops_when_told(headless: &'static Headless) {
     let stop = &mut |_: &_| Decision::Stop;
     let each = &mut |_: &LitRecording| {};
     let stopped = headless
-        .record_lit(&buffers, &view.seen(), &view.settings, (LitPart::Middle, &[0]), (each, stop))
+        .record_lit(&buffers, &view.seen(), &view.settings, SampleRequest::middle(&[0]), each, stop)
         .wait();
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }

@@ -5,7 +5,9 @@ use glam::DVec3;
 use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{self, Decision, GpuError, Headless, Progress, SceneBuffers, Structures, Wait};
+use pinhole::gpu::{
+    self, Decision, GpuError, Headless, PictureRequest, Progress, SceneBuffers, Structures, Wait,
+};
 use pinhole::image::{Layer, NO_ID};
 use pinhole::render::{Integrator, Outline, Sampling};
 use pinhole::verify::Recording;
@@ -102,8 +104,9 @@ impl View {
 
     /// The structures that a device plans, with one for occluders if that is needed.
     pub(crate) fn planned(&self, device: &Headless, choice: AccelChoice) -> Structures {
-        let (scene, settings, layers) = (&self.scene, &self.settings, LayerSet::COLOR);
-        device.plan(scene, &self.seen(), settings, layers, choice, 0).build(scene)
+        let (scene, seen) = (&self.scene, self.seen());
+        let request = PictureRequest::new(scene, &seen, &self.settings, LayerSet::COLOR);
+        device.plan(&request, choice).build(scene)
     }
 
     pub(crate) fn watched(

@@ -5,7 +5,8 @@ use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::gpu::{
-    ColorTarget, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
+    ColorTarget, GpuError, Headless, PictureRequest, Recolor, Renderer, RendererOptions,
+    SceneBuffers, Wait,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View};
@@ -46,8 +47,8 @@ fn uploaded(headless: &Headless, scene: &Scene) -> Result<SceneBuffers, GpuError
     let camera = camera();
     let view = View::new(&camera, Film::new(40, 40).unwrap());
     let settings = RenderSettings::studio();
-    let plan = headless.plan(scene, &view, &settings, LayerSet::ALL, AccelChoice::Auto, 0);
-    headless.upload(scene, &plan.build(scene)).wait()
+    let request = PictureRequest::new(scene, &view, &settings, LayerSet::ALL);
+    headless.upload(scene, &headless.plan(&request, AccelChoice::Auto).build(scene)).wait()
 }
 
 fn updated(mut scene: Scene) -> Result<(), Failed> {

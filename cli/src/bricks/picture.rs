@@ -17,10 +17,10 @@ use pinhole::camera::View;
 use pinhole::cpu::{self, SearchPlan};
 use pinhole::glam::DVec2;
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, UploadWatch, Wait};
+use pinhole::gpu::{Headless, PictureRequest, Wait};
 use pinhole::image::Image;
 #[cfg(feature = "gpu")]
-use pinhole::render::{Decision, Watch};
+use pinhole::render::Decision;
 use pinhole::render::{Nearest, RenderSettings};
 use pinhole::scene::Scene;
 
@@ -128,16 +128,19 @@ fn on_gpu(
     choice: pinhole::accel::AccelChoice,
 ) -> Result<Nearest, Failure> {
     let (settings, layers) = (&shot.input.settings, shot.layers);
-    let extra = memory::ENCODING_BYTES_PER_PIXEL + Nearest::BYTES_PER_PIXEL;
-    let plan = |choice| headless.plan(scene, view, settings, layers, choice, extra);
+    let host_bytes_per_pixel = memory::ENCODING_BYTES_PER_PIXEL + Nearest::BYTES_PER_PIXEL;
+    let request = PictureRequest::new(scene, view, settings, layers);
+    let request = PictureRequest { host_bytes_per_pixel, ..request };
+    let plan = |choice| headless.plan(&request, choice);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let name = plan.accel.structure.name();
         let (done, is_stopped) = interrupt::keeping(|| {
-            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) =
-                (&mut |progress| watch_upload(name, progress), &mut |_| {
-                    if interrupt::is_requested() { Decision::Stop } else { Decision::GoOn }
-                });
-            headless.render_nearest(scene, plan, view, settings, layers, watches).wait()
+            let upload_watch = &mut |progress: &_| watch_upload(name, progress);
+            let watch = &mut |_: &_| match interrupt::is_requested() {
+                true => Decision::Stop,
+                false => Decision::GoOn,
+            };
+            headless.render_nearest(&request, plan, upload_watch, watch).wait()
         });
         if is_stopped { Err(Failure::Stopped) } else { Ok(done) }
     })?;

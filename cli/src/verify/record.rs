@@ -19,7 +19,7 @@ use crate::{interrupt, memory, output, render, self_test, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::camera::film::{Film, FilmError};
-use pinhole::gpu::{Decision, EachSample, Headless, LitPart, Progress, Wait, Watch};
+use pinhole::gpu::{Decision, Headless, LitPart, PictureRequest, Progress, SampleRequest, Wait};
 use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
@@ -165,9 +165,8 @@ pub(crate) fn certify_light(
                 Some(_) => Decision::Stop,
             };
             [LitPart::Middle, LitPart::Random(tile_seed)].into_iter().try_for_each(|part| {
-                let samples = (part, &samples[..]);
-                let callbacks = (&mut *each as &mut EachSample<'_>, &mut *watch as &mut Watch<'_>);
-                headless.record_lit(&buffers, &view, settings, samples, callbacks).wait()
+                let request = SampleRequest { part, samples: &samples };
+                headless.record_lit(&buffers, &view, settings, request, each, watch).wait()
             })
         })?;
         if let Some(error) = failed.take() {
@@ -226,7 +225,8 @@ pub(crate) fn render_denoised(
     let film = shrunk(&input.film, DENOISED_SIDE)
         .context("the picture is too narrow for its denoiser to be checked")?;
     let view = View::new(input.camera.as_ref(), film);
-    let plan = |choice| headless.plan(&input.scene, &view, &settings, GUIDES, choice, 0);
+    let request = PictureRequest::new(&input.scene, &view, &settings, GUIDES);
+    let plan = |choice| headless.plan(&request, choice);
     let done = with_structures(headless, choice, plan, |plan| {
         interrupt::on_device(|| {
             let buffers = upload(headless, &input.scene, plan)?;

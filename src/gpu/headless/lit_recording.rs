@@ -38,8 +38,9 @@ impl Headless {
         scene: &SceneBuffers,
         view: &View<'_>,
         settings: &RenderSettings,
-        (part, samples): (LitPart, &[u32]),
-        (each, watch): (&mut EachSample<'_>, &mut Watch<'_>),
+        SampleRequest { part, samples }: SampleRequest<'_>,
+        each: &mut EachSample<'_>,
+        watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
         if settings.integrator.is_primary() {
             return Err(GpuError::NotLit);
@@ -116,6 +117,23 @@ impl LitWork<'_> {
             each(keeper.recording());
         }
         Ok(())
+    }
+}
+
+/// What [`Headless::record_lit`] records.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleRequest<'a> {
+    /// The part of the picture.
+    pub part: LitPart,
+    /// The numbers of the samples, which are counted from 0.
+    pub samples: &'a [u32],
+}
+
+impl<'a> SampleRequest<'a> {
+    /// Samples of a rectangle in the middle.
+    #[must_use]
+    pub fn middle(samples: &'a [u32]) -> Self {
+        Self { part: LitPart::Middle, samples }
     }
 }
 

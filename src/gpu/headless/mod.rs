@@ -33,8 +33,8 @@ use crate::gpu::checks::Faults;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::plan::RenderPlan;
-use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
+use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
+use crate::gpu::headless::progress::{Picture, Watch, go_on};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
@@ -208,10 +208,10 @@ impl Headless {
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
-        let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
+        let request = PictureRequest::new(scene, view, settings, layers);
+        let plan = |choice| self.plan(&request, choice);
         let picture = retried(plan, async |plan: &RenderPlan| {
-            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
-            self.render_planned(scene, plan, view, settings, layers, watches).await
+            self.render_planned(&request, plan, &mut go_on, &mut go_on).await
         });
         Ok(picture.await?.image)
     }

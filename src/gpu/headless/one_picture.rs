@@ -7,7 +7,7 @@ use crate::geometry::bounds::Bounds;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{
     Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
@@ -28,7 +28,6 @@ use crate::gpu::shader::records::{Hit, SceneSpace};
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 use crate::render::{Nearest, RenderSettings};
-use crate::scene::Scene;
 
 /// Is told the hit of each pixel that was traced, by its index in the picture.
 pub(crate) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
@@ -44,16 +43,14 @@ impl Headless {
     /// The same as for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
     pub async fn render_planned(
         &self,
-        scene: &Scene,
+        request: &PictureRequest<'_>,
         plan: &RenderPlan,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+        upload_watch: &mut UploadWatch<'_>,
+        watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
-        if self.drops_bricks(plan, view, settings) {
-            let watches = (upload_watch, watch);
-            let image = self.render_by_brick(scene, plan, view, settings, layers, watches, None);
+        let PictureRequest { scene, view, settings, layers, .. } = *request;
+        if self.drops_bricks(plan, &view, settings) {
+            let image = self.render_by_brick(request, plan, upload_watch, watch, None);
             return Ok(Picture { image: image.await?, samples: 1, noise: None, hits: None });
         }
         let options_of = |kind: BrickKind, several_bricks: bool| {
@@ -64,7 +61,7 @@ impl Headless {
             if settings.integrator.is_primary() { Some(&options_of) } else { None };
         let plans = plan.structures();
         let buffers = self.upload_ahead_of(scene, &plans, upload_watch, options_of).await?;
-        self.render_uploaded(&buffers, view, settings, layers, watch).await
+        self.render_uploaded(&buffers, &view, settings, layers, watch).await
     }
 
     /// Whether the hits of the whole picture are in one buffer, so that no brick is needed twice, and there is a choice
@@ -80,20 +77,16 @@ impl Headless {
 
     /// Renders a picture whose hits are in one buffer. Copies the hits of the pixels that were traced to `traced`, by
     /// their indices in the picture.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a picture has a scene, a plan, a view and settings"
-    )]
     pub(crate) async fn render_by_brick(
         &self,
-        scene: &Scene,
+        request: &PictureRequest<'_>,
         plan: &RenderPlan,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+        upload_watch: &mut UploadWatch<'_>,
+        watch: &mut Watch<'_>,
         mut traced: Option<&mut KeepHit<'_>>,
     ) -> Result<Image, GpuError> {
+        let PictureRequest { scene, view, settings, layers, .. } = request;
+        let layers = *layers;
         let data_layers = layers != LayerSet::COLOR;
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
         let size = [film.width(), film.height()];
@@ -217,13 +210,12 @@ impl Headless {
     /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
     pub async fn render_nearest(
         &self,
-        scene: &Scene,
+        request: &PictureRequest<'_>,
         plan: &RenderPlan,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+        upload_watch: &mut UploadWatch<'_>,
+        watch: &mut Watch<'_>,
     ) -> Result<Nearest, GpuError> {
+        let PictureRequest { view, settings, layers, .. } = *request;
         let film = &view.film;
         let mut whole = Nearest::misses([film.width(), film.height()], layers)?;
         let limits = self.device().limits();
@@ -242,8 +234,8 @@ impl Headless {
                 }
             };
             let (view, traced) = (View::new(view.camera, part), Some(&mut keep as _));
-            let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (upload_watch, watch);
-            let image = self.render_by_brick(scene, plan, &view, settings, layers, watches, traced);
+            let tile_request = PictureRequest { view, ..*request };
+            let image = self.render_by_brick(&tile_request, plan, upload_watch, watch, traced);
             let image = image.await?;
             let integrator = settings.integrator.name();
             let part = Nearest::new(image, t, ids, distances);

@@ -66,6 +66,19 @@ pub struct PictureRequest<'a> {
     pub host_bytes_per_pixel: u64,
 }
 
+impl<'a> PictureRequest<'a> {
+    /// A picture for which the caller needs no host memory but that of the image.
+    #[must_use]
+    pub fn new(
+        scene: &'a Scene,
+        view: &View<'a>,
+        settings: &'a RenderSettings,
+        layers: LayerSet,
+    ) -> Self {
+        Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0 }
+    }
+}
+
 /// Plans of the structures that will be built for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructurePlans {

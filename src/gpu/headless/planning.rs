@@ -30,25 +30,17 @@ impl RenderPlan {
 impl Headless {
     /// Plans the structures, buffers, tiles and host memory of a picture on this device. `choice` determines all
     /// structures, including the separate one for shadows that a studio needs if some spheres are not opaque.
-    /// `host_bytes_per_pixel` is explained in [`PictureRequest`].
     #[must_use]
-    pub fn plan(
-        &self,
-        scene: &Scene,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        layers: LayerSet,
-        choice: AccelChoice,
-        host_bytes_per_pixel: u64,
-    ) -> RenderPlan {
-        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
+    pub fn plan(&self, request: &PictureRequest<'_>, choice: AccelChoice) -> RenderPlan {
+        let PictureRequest { scene, settings, .. } = *request;
         let accel = self.plan_accel(scene, choice);
         let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
-        RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
+        RenderPlan::new(request, StructurePlans { accel, occluders }, &self.device_limits())
     }
 
     /// Plans [`Headless::record`] and the check of its recording, in the same way as [`Headless::plan`].
+    /// `host_bytes_per_pixel` is explained in [`PictureRequest`].
     #[must_use]
     pub fn plan_record(
         &self,

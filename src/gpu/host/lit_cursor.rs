@@ -5,7 +5,7 @@ use std::ops::Range;
 use wgpu::CommandEncoder;
 
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::{LitFrame, MAX_DISPATCHES, Moment, Recorder, Round, Step};
+use crate::gpu::passes::lit::{MAX_DISPATCHES, Moment, Recorder, Round, Step};
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 
 /// Number of rays of a workgroup if each of its invocations traces one.
@@ -57,12 +57,13 @@ impl Cursor {
     pub(super) fn record<'a>(
         &mut self,
         encoder: &mut CommandEncoder,
-        (frame, round): (&'a LitFrame, &Round<'a>),
+        round: &Round<'a>,
         recorder: &mut Recorder<'a>,
         budget: &mut Budget,
         total: u32,
         mut completed: impl FnMut(&mut CommandEncoder, &mut Recorder<'a>, u32),
     ) -> Result<(), GpuError> {
+        let frame = recorder.frame;
         while self.samples < total {
             if self.batch.is_empty() {
                 // The first samples one by one, so that there is a picture soon.
@@ -72,7 +73,7 @@ impl Cursor {
             let steps = round.steps(self.batch.clone())?;
             recorder.tile = self.tile;
             while let Some(step) = steps.get(self.step) {
-                if !self.record_step(encoder, frame, recorder, budget, step)? {
+                if !self.record_step(encoder, recorder, budget, step)? {
                     return Ok(());
                 }
                 if step.moment == Some(Moment::Accumulated) {
@@ -94,7 +95,6 @@ impl Cursor {
     fn record_step<'a>(
         &mut self,
         encoder: &mut CommandEncoder,
-        frame: &LitFrame,
         recorder: &mut Recorder<'a>,
         budget: &mut Budget,
         step: &Step<'a>,
@@ -103,7 +103,7 @@ impl Cursor {
         let rays = step.rays_in_layers();
         if self.step == 0 && self.left.is_none() {
             // The first step of a round finds empty lists.
-            frame.record_clear_lists(encoder);
+            recorder.frame.record_clear_lists(encoder);
         }
         let mut left = self.left.take().unwrap_or_else(|| vec![whole]);
         // A slice of a list takes two dispatches, and the caller may add one to those of a step.

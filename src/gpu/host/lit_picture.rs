@@ -305,8 +305,7 @@ impl LitPicture {
         let show = |encoder: &mut CommandEncoder, recorder: &mut Recorder<'_>, samples: u32| {
             recorder.record_resolve(encoder, resolve, data.target_group(), samples);
         };
-        let recorded =
-            cursor.record(encoder, (frame, &round), &mut recorder, budget, self.total, show);
+        let recorded = cursor.record(encoder, &round, &mut recorder, budget, self.total, show);
         frame.queue_parameters(queue, place, &recorder.take_parameters());
         recorded
     }

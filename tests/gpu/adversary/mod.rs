@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Headless, HeadlessOptions, LitPart, Wait};
+use pinhole::gpu::{Headless, HeadlessOptions, SampleRequest, Wait};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome,
 };
@@ -156,7 +156,7 @@ pub(crate) fn certify_lit_on(
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
     headless
-        .record_lit(&buffers, &seen, settings, (LitPart::Middle, samples), (each, &mut go_on))
+        .record_lit(&buffers, &seen, settings, SampleRequest::middle(samples), each, &mut go_on)
         .wait()?;
     Ok(certificate)
 }

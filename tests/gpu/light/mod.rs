@@ -7,7 +7,7 @@ use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::cpu::SearchStructure;
 use pinhole::glam::DVec3;
-use pinhole::gpu::{Decision, EachSample, GpuError, Headless, LitPart, Progress, Wait, Watch};
+use pinhole::gpu::{Decision, GpuError, Headless, PictureRequest, Progress, SampleRequest, Wait};
 use pinhole::image::denoise::GUIDES;
 use pinhole::light::{Ground, Sky, SkyLight};
 use pinhole::scene::material::SurfaceProperties;
@@ -138,7 +138,8 @@ fn occluders(device: &'static Headless) {
     studio.sampling.samples = 2;
     let view = translucent(32, studio);
     let plan_for = |scene: &Scene, settings: &RenderSettings, choice| {
-        device.plan(scene, &view.seen(), settings, LayerSet::COLOR, choice, 0)
+        let seen = view.seen();
+        device.plan(&PictureRequest::new(scene, &seen, settings, LayerSet::COLOR), choice)
     };
     let scene = &view.scene;
     let mut images = Vec::new();
@@ -193,11 +194,9 @@ fn not_recorded(device: &'static Headless) {
     assert_eq!(recording.err(), refused("path"));
     let certificate = device.verify(&path.scene, &view, &RenderSettings::studio()).wait();
     assert_eq!(certificate.err(), refused("studio"));
-    let each: &mut EachSample<'_> = &mut |_| {};
-    let callbacks = (each, &mut go_on as &mut Watch<'_>);
-    let light = device
-        .record_lit(&buffers, &view, &RenderSettings::default(), (LitPart::Middle, &[0]), callbacks)
-        .wait();
+    let (settings, request) = (RenderSettings::default(), SampleRequest::middle(&[0]));
+    let light =
+        device.record_lit(&buffers, &view, &settings, request, &mut |_| {}, &mut go_on).wait();
     assert_eq!(light.err(), Some(GpuError::NotLit));
 }
 

@@ -2,9 +2,7 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{
-    Decision, EachSample, GpuError, Headless, HeadlessOptions, LitPart, Progress, Wait, Watch,
-};
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Progress, SampleRequest, Wait};
 use pinhole::image::Layer;
 use pinhole::internals::RecordedFilm;
 use pinhole::render::{Integrator, Occlusion};
@@ -140,9 +138,9 @@ fn sums(headless: &'static Headless) {
             assert!(film.after.is_empty() || film.after == one.before, "{name}");
             film = one.clone();
         };
-        let callbacks = (&mut each as &mut EachSample<'_>, &mut go_on as &mut Watch<'_>);
+        let request = SampleRequest::middle(&samples);
         headless
-            .record_lit(&buffers, &view.seen(), settings, (LitPart::Middle, &samples), callbacks)
+            .record_lit(&buffers, &view.seen(), settings, request, &mut each, &mut go_on)
             .wait()
             .unwrap();
         let wanted: Vec<[f32; 3]> = film

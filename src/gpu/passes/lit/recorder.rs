@@ -16,7 +16,7 @@ const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 /// encoder is submitted.
 #[derive(Debug)]
 pub(crate) struct Recorder<'a> {
-    frame: &'a LitFrame,
+    pub(crate) frame: &'a LitFrame,
     /// Index of the tile for which dispatches are recorded.
     pub(crate) tile: usize,
     /// The number of the recording among those under way.
