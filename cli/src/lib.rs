@@ -11,79 +11,27 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use commands::{Arguments, Command};
+use command_line::{Arguments, Command};
 
-use crate::explain::explain;
-use crate::progress::tell;
+use crate::terminal::explain::explain;
+use crate::terminal::progress::tell;
 
-/// Without devices, no phase is measured.
-#[cfg(not(feature = "gpu"))]
-mod profile {
-    pub(crate) struct NoPhase;
-
-    impl Drop for NoPhase {
-        /// Ends the phase, like that of a profile.
-        fn drop(&mut self) {}
-    }
-
-    pub(crate) fn phase(_: &'static str) -> NoPhase {
-        NoPhase
-    }
-}
-
-mod annotation;
-mod args;
 #[cfg(feature = "gpu")]
 mod bench;
-#[cfg(feature = "gpu")]
-mod bench_report;
 mod bricks;
-mod camera;
-mod certified;
-mod certify;
+mod command_line;
 mod commands;
-mod data;
-mod data_flags;
-mod device;
-mod explain;
-mod failure;
-mod file_info;
+mod flags;
 mod frames;
-mod generate;
-mod info;
 mod input;
-mod interrupt;
-mod job;
-mod light;
-mod memory;
+mod jobs;
 mod output;
-mod picture;
-#[cfg(feature = "gpu")]
-mod plan;
-#[cfg(feature = "gpu")]
-mod profile;
-mod progress;
-#[cfg(feature = "gpu")]
-mod quick_test;
-mod read_file;
+mod proof;
 mod render;
-mod render_args;
-mod render_certified;
-mod render_command;
-mod report;
-#[cfg(feature = "gpu")]
-mod self_test;
-mod stop_rule;
-mod text;
-mod threads;
-mod verify;
-mod view;
+mod terminal;
 #[cfg(feature = "gpu")]
 #[allow(clippy::missing_errors_doc, clippy::must_use_candidate, reason = "for the viewer alone")]
 pub mod viewing;
-mod views;
-#[cfg(feature = "gpu")]
-mod with_scene;
 
 /// Runs the program with the arguments of the process. This must be the first thing that the process does.
 ///
@@ -133,22 +81,22 @@ fn run() -> ExitCode {
             return explain(&error, &words);
         }
     };
-    let result = interrupt::install().and_then(|()| match arguments.command {
-        Command::Render(args) => render_command::run(&args),
-        Command::Verify(args) => verify::run(&args),
-        Command::Certify(args) => certify::run(&args),
+    let result = terminal::interrupt::install().and_then(|()| match arguments.command {
+        Command::Render(args) => commands::render::run(&args),
+        Command::Verify(args) => proof::verify::run(&args),
+        Command::Certify(args) => proof::certify::run(&args),
         #[cfg(feature = "gpu")]
-        Command::Plan(args) => plan::run(&args),
+        Command::Plan(args) => commands::plan::run(&args),
         #[cfg(feature = "gpu")]
         Command::Bench(args) => bench::run(&args),
-        Command::Job(args) => job::run(&args),
+        Command::Job(args) => jobs::run(&args),
         Command::Sort(args) => bricks::run(&args),
-        Command::Demo(args) => generate::run_demo(&args),
-        Command::Generate(args) => generate::run(&args),
-        Command::Info(args) => info::run(&args),
-        Command::View(args) => view::run(&args),
+        Command::Demo(args) => commands::generate::run_demo(&args),
+        Command::Generate(args) => commands::generate::run(&args),
+        Command::Info(args) => commands::info::run(&args),
+        Command::View(args) => commands::view::run(&args),
     });
-    progress::clear();
+    terminal::progress::clear();
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -74,10 +74,10 @@ fn readers_and_writers_touch_no_files() {
         "bricks/read.rs",
         "bricks/writer.rs",
         "read_file.rs",
-        "output.rs",
+        "output/files.rs",
         "generate.rs",
         "interrupt.rs",
-        "job/files.rs",
+        "jobs/files.rs",
         "memory.rs",
     ];
     assert_absent("cli/src", &["std::fs"], &program);

@@ -7,12 +7,12 @@ use anyhow::{Context, anyhow};
 
 use super::BrickFile;
 #[cfg(feature = "gpu")]
-use crate::device::{OpenDevice, explained};
-use crate::failure::Failure;
-use crate::views::Shot;
+use crate::render::device::{OpenDevice, explained};
+use crate::render::views::Shot;
 #[cfg(feature = "gpu")]
-use crate::with_scene::{watch_upload, with_structures};
-use crate::{interrupt, memory, progress};
+use crate::render::with_scene::{watch_upload, with_structures};
+use crate::terminal::failure::Failure;
+use crate::terminal::{interrupt, memory, progress};
 use pinhole::camera::View;
 use pinhole::cpu::{self, SearchPlan};
 use pinhole::glam::DVec2;

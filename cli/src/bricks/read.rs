@@ -14,8 +14,8 @@ use crate::bricks::file::{
     BEFORE, DIGEST, Header, LONGEST_HEADER, NAME, PLACE, START, Section, StoredColors, corner,
     extent,
 };
-use crate::memory::readable;
-use crate::text;
+use crate::terminal::memory::readable;
+use crate::terminal::text;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::scene::{Appearance, Colors, Scene, Whole};

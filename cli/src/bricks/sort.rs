@@ -8,17 +8,17 @@ use std::time::Instant;
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 
-use crate::args::ViewArgs;
 use crate::bricks::EXTENSION;
 use crate::bricks::file::{COLOR, Header, ID, SPHERE, StoredColors, WholeBits};
 use crate::bricks::outer::{Cells, Outer};
 use crate::bricks::writer::{self, Array, Stream, Writer};
-use crate::data::format_parser;
-use crate::failure::Failure;
+use crate::flags::common::ViewArgs;
+use crate::input::data::format_parser;
 use crate::input::{Source, default_color, extension};
-use crate::output::{check_not_inputs, check_writable, name_all, unnamed_with};
-use crate::progress::{self, tell};
-use crate::{memory, threads};
+use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed_with};
+use crate::terminal::failure::Failure;
+use crate::terminal::progress::{self, tell};
+use crate::terminal::{memory, threads};
 use pinhole::load::Format as DataFormat;
 use pinhole::scene::{Colors, Scene, Whole};
 

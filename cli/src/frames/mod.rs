@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use self::target::Target;
-use super::failure::Failure;
-use super::render_args::RenderArgs;
-use crate::args::Stereo;
+use crate::flags::common::Stereo;
+use crate::flags::render::RenderArgs;
 use crate::frames::args::{FrameRange, FramesArgs};
 use crate::frames::moving::WantedPath;
 pub(crate) use crate::frames::numbers::Overview;
 pub(super) use crate::frames::run::run;
 pub(crate) use crate::frames::run::{Ready, ReadyOptions, ready};
+use crate::terminal::failure::Failure;
 
 pub(super) mod args;
 mod movie;

@@ -12,9 +12,9 @@ use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
 
 use crate::frames::args::numbered;
 use crate::frames::target::{Movie, Target};
-use crate::interrupt;
-use crate::output::{name_all, unnamed_with};
-use crate::picture::Outputs;
+use crate::output::files::{name_all, unnamed_with};
+use crate::output::picture::Outputs;
+use crate::terminal::interrupt;
 use pinhole::image::Image;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::write::png::samples_annotated;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 
-use crate::camera::{CameraTable, list};
-use crate::failure::Failure;
+use crate::flags::camera::{CameraTable, list};
 use crate::frames::union::around;
 use crate::input::{FramedScene, Look, Source, read};
+use crate::terminal::failure::Failure;
 use pinhole::camera::{
     CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
 };

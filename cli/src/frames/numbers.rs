@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use crate::failure::Failure;
 use crate::frames::args::FrameRange;
 use crate::frames::moving::{WantedPath, in_frame};
 use crate::frames::target::Target;
@@ -10,7 +9,8 @@ use crate::frames::union::{Union, scene_of};
 use crate::frames::{Pictures, SeriesRequest};
 use crate::input::contents::Contents;
 use crate::input::{FoundFrames, Source};
-use crate::progress::{self, tell};
+use crate::terminal::failure::Failure;
+use crate::terminal::progress::{self, tell};
 use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::scene::{Scene, SceneError};
 

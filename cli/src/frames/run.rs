@@ -6,20 +6,20 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::device::OpenDevice;
-use crate::failure::Failure;
+use crate::flags::render::RenderArgs;
 use crate::frames::args::numbered;
 use crate::frames::movie::{Message, STOPPED_BETWEEN, Sink};
 use crate::frames::numbers::{Notes, Overview, numbers, wanted_path};
 use crate::frames::series::{Series, Start, frames, still, turntable};
 use crate::frames::{Pictures, SeriesRequest};
-use crate::picture::Outputs;
-use crate::progress::{self, tell};
+use crate::output::picture::Outputs;
+use crate::render::device::OpenDevice;
+use crate::render::stop_rule::StopRule;
+use crate::render::views::{Shot, views_of};
 use crate::render::{Job, render_joined};
-use crate::render_args::RenderArgs;
-use crate::stop_rule::StopRule;
-use crate::threads;
-use crate::views::{Shot, views_of};
+use crate::terminal::failure::Failure;
+use crate::terminal::progress::{self, tell};
+use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 

@@ -7,11 +7,11 @@ use std::thread;
 use anyhow::Context;
 
 use super::union::{Union, swept};
-use crate::failure::Failure;
 use crate::frames::moving::{Axis, Course, MovingCamera, Stage, WantedPath, up_of};
 use crate::frames::numbers::{Notes, Numbers, Overview, frame};
 use crate::input::contents::Contents;
 use crate::input::{FramedScene, Input, Look, Source};
+use crate::terminal::failure::Failure;
 use pinhole::glam::DVec3;
 
 struct Change {

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::failure::Failure;
 use crate::frames::args::{Pattern, has_sign};
 use crate::input::extension;
-use crate::output::check_writable;
+use crate::output::files::check_writable;
+use crate::terminal::failure::Failure;
 use pinhole::image::encoding::{Bits, Encoding};
 
 #[derive(Debug)]

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use anyhow::{Context, Result, anyhow};
 
 use crate::bricks::BrickFile;
-use crate::data::{self, DataOptions, as_usage};
-use crate::failure::Failure;
+use crate::input::data::{self, DataOptions, as_usage};
+use crate::input::read_file::{Format, data_format};
 use crate::input::source::{Source, default_color};
 use crate::input::{extension, read};
-use crate::read_file::{Format, data_format};
-use crate::{profile, progress};
+use crate::terminal::failure::Failure;
+use crate::terminal::{profile, progress};
 use pinhole::added::Additions;
 use pinhole::camera::film::Film;
 use pinhole::color_by::{ColorBy, ColorKey, Mapping};

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use anyhow::{Context, Error, Result};
 
-use super::{Input, read};
-use crate::failure::Failure;
+use super::Input;
+use super::read;
 use crate::input::contents::{Contents, Details};
+use crate::input::read_file::Format;
 use crate::input::source::Source;
-use crate::progress;
-use crate::read_file::Format;
-use crate::report::Report;
+use crate::output::report::Report;
+use crate::terminal::failure::Failure;
+use crate::terminal::progress;
 use pinhole::camera::{Camera, CameraParameters, Viewpoint};
 use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;

@@ -5,17 +5,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Result;
 
-use crate::annotation::AnnotationFlags;
 #[cfg(feature = "gpu")]
-use crate::args::BenchArgs;
-use crate::args::{InputArgs, ViewArgs};
+use crate::bench::args::BenchArgs;
 use crate::bricks::BrickFile;
-use crate::camera::CameraFlags;
-use crate::data::{self, DataOptions};
-use crate::data_flags::{ColorFlags, StructureFlags};
-use crate::failure::Failure;
-use crate::light::LightFlags;
-use crate::read_file::{Format, data_format, parse_size};
+use crate::flags::annotation::AnnotationFlags;
+use crate::flags::camera::CameraFlags;
+use crate::flags::common::{InputArgs, ViewArgs};
+use crate::flags::data::{ColorFlags, StructureFlags};
+use crate::flags::light::LightFlags;
+use crate::input::data::{self, DataOptions};
+use crate::input::read_file::{Format, data_format, parse_size};
+use crate::terminal::failure::Failure;
 use pinhole::color_by::ColorBy;
 use pinhole::image::color::LinearRgb;
 use pinhole::load::{self, Dataset, Trajectory};

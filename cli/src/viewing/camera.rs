@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use crate::camera::{CameraArgs, CameraTable, list};
+use crate::flags::camera::{CameraArgs, CameraTable, list};
 use crate::viewing::ViewError;
 use crate::viewing::flags::RenderFlags;
 use pinhole::camera::CameraParameters;

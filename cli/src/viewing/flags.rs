@@ -10,12 +10,13 @@ use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
 
 use super::ViewError;
-use crate::commands::Arguments;
-use crate::explain::{explain, one_message};
+use crate::command_line::Arguments;
+use crate::commands::render;
+use crate::flags::render::{RenderArgs, RenderCommand, RenderLine};
+use crate::flags::{annotation, camera, light};
 use crate::render::Job;
-use crate::render_args::{RenderArgs, RenderCommand, RenderLine};
-use crate::text::in_quotes;
-use crate::{annotation, camera, light, render_command};
+use crate::terminal::explain::{explain, one_message};
+use crate::terminal::text::in_quotes;
 
 /// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
 ///
@@ -182,7 +183,7 @@ impl RenderFlags {
         // A name that starts with a dash is a file here, not standard output.
         let output =
             if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
-        Ok(render_command::run(&*self.render_args(&output)?)?)
+        Ok(render::run(&*self.render_args(&output)?)?)
     }
 
     /// Checks the flags as far as is possible before the file is read.
@@ -256,7 +257,7 @@ const PICTURE: [&str; 9] =
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::USAGE;
+    use crate::terminal::failure::USAGE;
 
     fn parsed(words: &[&str]) -> RenderFlags {
         RenderFlags::parse(words).unwrap()

@@ -11,7 +11,7 @@ pub use flags::RenderFlags;
 pub use open_view::{Facts, OpenView, TimeLine};
 pub use still::{StillPicture, StillRenderer};
 
-use crate::failure::{FAILED, Failure, USAGE};
+use crate::terminal::failure::{FAILED, Failure, USAGE};
 pub use crate::viewing::camera::ViewCamera;
 
 mod camera;
@@ -61,27 +61,27 @@ impl std::error::Error for ViewError {}
 
 /// Prepares the process for showing files: starts its threads, and shows no progress on the terminal.
 pub fn prepare() -> Result<(), ViewError> {
-    crate::progress::close();
-    Ok(crate::threads::start()?)
+    crate::terminal::progress::close();
+    Ok(crate::terminal::threads::start()?)
 }
 
 /// Prints an error as `pinhole` does, on standard error.
 pub fn print_error(error: &dyn fmt::Display) {
-    crate::progress::tell(format_args!("error: {error}"));
+    crate::terminal::progress::tell(format_args!("error: {error}"));
 }
 
 /// Prints a line on standard error, with control characters escaped.
 pub fn print_note(line: &str) {
-    crate::progress::tell(line);
+    crate::terminal::progress::tell(line);
 }
 
 /// Writes a number with a comma before each group of three digits.
 pub fn grouped(number: usize) -> String {
-    crate::report::grouped(number)
+    crate::output::report::grouped(number)
 }
 
 /// Prints a line on standard output.
 pub fn print_line(line: &str) {
     // Nobody may be listening, which is no error of a window.
-    let _ = crate::progress::answer(format!("{line}\n").as_bytes());
+    let _ = crate::terminal::progress::answer(format!("{line}\n").as_bytes());
 }

@@ -12,10 +12,11 @@ use pinhole::load::Column;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 
-use super::{RenderFlags, ViewError};
-use crate::failure::Failure;
+use super::RenderFlags;
+use super::ViewError;
+use crate::input::read_file::Format;
 use crate::input::{FramedScene, Input, OpenFrames, Source};
-use crate::read_file::Format;
+use crate::terminal::failure::Failure;
 
 /// What [`RenderFlags`] mean: the spheres of a file, seen by a camera with a film, and the settings of the picture.
 pub struct OpenView {

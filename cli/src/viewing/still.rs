@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use anyhow::Context;
 
-use super::{OpenView, RenderFlags, ViewError};
-use crate::device::{OpenDevice, explained};
-use crate::failure::Failure;
+use super::OpenView;
+use super::RenderFlags;
+use super::ViewError;
 use crate::render;
-use crate::with_scene::{upload, with_structures};
+use crate::render::device::{OpenDevice, explained};
+use crate::render::with_scene::{upload, with_structures};
+use crate::terminal::failure::Failure;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers, Wait};

@@ -1,0 +1,292 @@
+//! `pinhole bench`: measures acceleration structures on an adapter, and shows whether the automatic choice is fastest.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+
+use crate::bench::args::BenchArgs;
+use crate::bench::report::{BenchReport, BenchScene, RunReport, SceneReport, Spread};
+use crate::input::read_file::parse_size;
+use crate::input::{Input, Source};
+use crate::render::device::{AdapterReport, DEVICE_CLOCK, WantedAdapter, explained};
+use crate::render::with_scene::watch_upload;
+use crate::terminal::failure::Failure;
+use crate::terminal::progress::{self, answer, tell};
+use crate::terminal::text::json;
+use crate::terminal::{interrupt, memory, threads};
+use pinhole::accel::{AccelChoice, Structure};
+use pinhole::camera::View;
+use pinhole::camera::film::Film;
+use pinhole::generate::{BYTES_PER_SPHERE, Standard};
+use pinhole::gpu::{
+    GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
+    UploadStep, Wait,
+};
+use pinhole::image::LayerSet;
+use pinhole::image::color::LinearRgb;
+use pinhole::internals::text::one_line;
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::scene_file::DEFAULT_COLOR;
+
+pub(crate) mod args;
+mod report;
+
+pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    let size = args.size.as_deref().map(parse_size).transpose()?;
+    let sources = if args.scenes.is_empty() {
+        DEFAULT.into_iter().map(BenchSource::Standard).collect()
+    } else {
+        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args, size));
+        sources.collect::<Result<Vec<_>, _>>()?
+    };
+    let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.iter().copied());
+    threads::start()?;
+    let headless = adapter.open_any()?;
+    let mut report = BenchReport {
+        version: env!("CARGO_PKG_VERSION"),
+        adapter: AdapterReport::of(headless.adapter_info()),
+        reps: args.reps,
+        scenes: Vec::new(),
+    };
+    if !args.json {
+        say(&report.heading())?;
+    }
+    for source in sources {
+        let scene = source.load(size)?;
+        let measured = measure_scene(&headless, &scene, args)?;
+        if !args.json {
+            say(&measured.readable())?;
+        }
+        report.scenes.push(measured);
+    }
+    if args.json {
+        say(&json(&report)?)?;
+    }
+    Ok(())
+}
+
+/// Prints a part of the report at once, because all scenes together take minutes.
+fn say(text: &str) -> Result<(), Failure> {
+    progress::clear();
+    Ok(answer(text.as_bytes())?)
+}
+
+fn measure_scene(
+    headless: &Headless,
+    scene: &BenchScene,
+    args: &BenchArgs,
+) -> Result<SceneReport, Failure> {
+    let mut choices = args.accel.clone();
+    if choices.is_empty() {
+        let planned = headless.plan_accel(&scene.scene, AccelChoice::Auto).structure;
+        let other = match planned {
+            Structure::WideTree => AccelChoice::Grid,
+            _ => AccelChoice::Tree,
+        };
+        choices = vec![AccelChoice::Auto, other];
+    }
+    let mut runs = Vec::new();
+    for choice in choices {
+        runs.push(measure(headless, scene, choice, args)?);
+    }
+    Ok(SceneReport::new(scene, runs))
+}
+
+/// Measures one structure, from planning to tracing.
+fn measure(
+    headless: &Headless,
+    scene: &BenchScene,
+    choice: AccelChoice,
+    args: &BenchArgs,
+) -> Result<RunReport, Failure> {
+    let BenchScene { name, scene: spheres, camera, film, .. } = scene;
+    let failed = |error: GpuError| explained(headless, &error);
+    progress::stage(format!("{name}: building, {choice}"));
+    let started = Instant::now();
+    let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
+    let request = PictureRequest {
+        scene: spheres,
+        view,
+        settings: &settings,
+        layers: LayerSet::COLOR,
+        host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
+    };
+    let accel = headless.plan_accel(spheres, choice);
+    let reps = args.reps;
+    let structures = StructurePlans { accel, occluders: None };
+    let plan = RenderPlan::new(&request, structures, &headless.device_limits());
+    plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
+    tell(format_args!(
+        "{name}: {}; at most {} of memory on the device, and {} on the host in addition to the scene and the driver",
+        plan.accel.structure.name(),
+        memory::readable(plan.device_bytes),
+        memory::readable(plan.host_bytes),
+    ));
+    let mut times =
+        UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
+    let uploaded = interrupt::on_device(|| {
+        headless
+            .upload_planned(spheres, &plan.structures(), &mut |progress| {
+                times.begin(Some(progress.step));
+                watch_upload(plan.accel.structure.name(), progress)
+            })
+            .wait()
+    })?;
+    times.begin(None);
+    let buffers = uploaded.map_err(failed)?;
+    let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
+
+    progress::stage(format!("{name}: first render, {}", structure.name()));
+    let started = Instant::now();
+    let first = interrupt::on_device(|| {
+        let watch = &mut |_: &_| interrupt::decide();
+        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch).wait()
+    })?;
+    first.map(drop).map_err(failed)?;
+    let first_render = started.elapsed();
+
+    let times = repeat(headless, &buffers, name, &view, reps)?;
+    let longest = times.iter().map(|time| time.longest).max().unwrap_or_default();
+    // The scene counts as it was built, and the frame as it was planned.
+    let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
+    let device_bytes = buffers.bytes() + frame.sum::<u64>();
+    let clock = AdapterReport::of(headless.adapter_info()).clock();
+    let rays = film.pixel_count();
+    // The clock of a software device says nothing about the work.
+    let has_clock = clock == DEVICE_CLOCK;
+    let of_device = |time: &TraceTime| time.device.filter(|_| has_clock);
+    let trace_wall = Spread::of(times.iter().map(|time| Some(time.wall)));
+    let trace_device = Spread::of(times.iter().map(of_device));
+    let rate = trace_device.or(trace_wall).map(|spread| rays as f64 / spread.median_seconds);
+    Ok(RunReport {
+        choice: choice.to_string(),
+        structure: structure.name(),
+        reason: plan.accel.reason.clone(),
+        build_seconds: build.as_secs_f64(),
+        upload_seconds: upload.as_secs_f64(),
+        first_render_seconds: first_render.as_secs_f64(),
+        trace_wall,
+        trace_device,
+        clock,
+        rays,
+        rays_per_second: rate,
+        submissions: times.iter().map(|time| time.submissions).max().unwrap_or(0),
+        longest_submission_seconds: longest.as_secs_f64(),
+        device_bytes,
+        device_bytes_per_sphere: (!spheres.is_empty())
+            .then(|| device_bytes as f64 / spheres.len() as f64),
+        peak_memory_bytes: memory::peak_bytes(),
+    })
+}
+
+/// How long building bricks took, and copying them to the device, each in total. Planning counts as building.
+struct UploadTimes {
+    build: Duration,
+    upload: Duration,
+    started: Instant,
+    step: Option<UploadStep>,
+}
+
+impl UploadTimes {
+    /// Ends a step and begins the next.
+    fn begin(&mut self, next: Option<UploadStep>) {
+        let elapsed = self.started.elapsed();
+        match self.step {
+            Some(UploadStep::Copying) => self.upload += elapsed,
+            _ => self.build += elapsed,
+        }
+        (self.started, self.step) = (Instant::now(), next);
+    }
+}
+
+fn repeat(
+    headless: &Headless,
+    buffers: &SceneBuffers,
+    name: &str,
+    view: &View<'_>,
+    reps: u32,
+) -> Result<Vec<TraceTime>, Failure> {
+    (0..reps)
+        .map(|rep| {
+            progress::stage(format!("{name}: tracing, {} of {reps}", rep + 1));
+            let time = interrupt::on_device(|| headless.measure(buffers, view).wait())?;
+            time.map_err(|error| explained(headless, &error))
+        })
+        .collect()
+}
+
+/// The scenes to measure by default; any machine has enough memory for them.
+pub(crate) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
+
+/// A scene as it was named on the command line.
+pub(crate) enum BenchSource {
+    Standard(Standard),
+    File(PathBuf, Box<Source>),
+}
+
+impl BenchSource {
+    /// Finds the standard scene of this name, or takes the name as that of a file.
+    pub(crate) fn new(
+        named: &Path,
+        args: &BenchArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
+        let standard = Standard::ALL.iter().find(|standard| named == Path::new(standard.name()));
+        match standard {
+            Some(standard) => Ok(Self::Standard(*standard)),
+            None if named.extension().is_none() => {
+                let names: Vec<_> = Standard::ALL.iter().map(|standard| standard.name()).collect();
+                Err(Failure::usage(format!(
+                    "{}: this is neither a standard scene nor a file with an extension; name one of {} or a file",
+                    named.display(),
+                    names.join(", ")
+                )))
+            }
+            None => {
+                Ok(Self::File(named.to_path_buf(), Box::new(Source::of_bench(named, args, size)?)))
+            }
+        }
+    }
+
+    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not
+    /// free.
+    pub(crate) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+        match self {
+            Self::Standard(standard) => made(*standard, size),
+            Self::File(path, source) => {
+                let started = Instant::now();
+                let input = source.load()?;
+                let load = started.elapsed();
+                let note = progress::notes(false);
+                input.notes.iter().for_each(|text| note(text));
+                let name = one_line(&path.display().to_string());
+                let Input { scene, camera, film, .. } = input;
+                let scene = Arc::unwrap_or_clone(scene);
+                Ok(BenchScene { name, scene, camera, film, load })
+            }
+        }
+    }
+}
+
+fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+    let (name, count) = (standard.name(), standard.count());
+    let film = match size {
+        Some((width, height)) => {
+            Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))?
+        }
+        None => standard.film().context(name)?,
+    };
+    let bytes = count * BYTES_PER_SPHERE;
+    memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")?;
+    tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
+    progress::stage(format!("generating {name}"));
+    let started = Instant::now();
+    let spheres = standard.spheres().context(name)?;
+    let scene = Scene::from_f32(spheres, LinearRgb::from_srgb8(DEFAULT_COLOR)).context(name)?;
+    let load = started.elapsed();
+    let camera = Box::new(standard.camera().context(name)?);
+    Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
+}

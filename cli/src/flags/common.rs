@@ -1,0 +1,137 @@
+//! Flags that several commands share, as clap parses them. Values are checked where they are used.
+
+use std::path::PathBuf;
+
+use clap::{Args, Command, Id, ValueEnum};
+
+use crate::flags::camera::CameraArgs;
+use crate::input::data::format_parser;
+use crate::terminal::text::one_of;
+use pinhole::accel::AccelChoice;
+use pinhole::load::Format;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Stereo {
+    /// In one picture of twice the width, with the left eye on the left
+    SideBySide,
+    /// In two files: OUT-left.png and OUT-right.png
+    TwoFiles,
+}
+
+/// The scene and the view of it. [`crate::input::Source`] checks them.
+#[derive(Debug, Args)]
+pub(crate) struct InputArgs {
+    #[arg(value_name = "SCENE_OR_DATA", help = input_help())]
+    pub(crate) path: PathBuf,
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
+}
+
+/// The help of the input, which lists the extensions of all formats.
+fn input_help() -> String {
+    format!(
+        "File to render: a scene file (.toml), or a data file ({}; .bin with --format), which the camera frames \
+         automatically and which may be compressed (.gz); `-` for standard input, with --format",
+        Format::extensions_of(|_| true)
+    )
+}
+
+/// Flags for reading the input, and for the camera.
+#[derive(Debug, Default, Args)]
+pub(crate) struct ViewArgs {
+    /// Format of the data file, whatever its extension is
+    #[arg(long, value_parser = format_parser())]
+    pub(crate) format: Option<&'static Format>,
+    /// File that says what the spheres of a trajectory are, for formats that have positions alone
+    #[arg(long, value_name = "FILE")]
+    pub(crate) topology: Option<PathBuf>,
+    /// Names of the columns of a table without a header, such as x,y,z,radius
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) columns: Vec<String>,
+    /// Radius of all spheres, for data without radii
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    /// CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]
+    #[arg(long, value_name = "CSS")]
+    pub(crate) color: Option<String>,
+    /// Frame of a trajectory, counted from 0 [default: the scene's, or 0]
+    #[arg(long, value_name = "N")]
+    pub(crate) frame: Option<usize>,
+    /// Width and height of the picture in pixels, such as 800x600 [default: the scene's, or 800x600]
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<String>,
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DeviceArgs {
+    /// What renders the picture
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub(crate) backend: Backend,
+    #[command(flatten)]
+    pub(crate) adapter: AdapterArgs,
+}
+
+/// Flags that choose the adapter and its limits.
+#[derive(Debug, Args)]
+pub(crate) struct AdapterArgs {
+    /// Use the adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best adapter]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Limits of the device that the program may use [default: adapter]
+    #[arg(long, value_enum)]
+    pub(crate) limits: Option<Limits>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Limits {
+    /// All limits that the adapter offers
+    Adapter,
+    /// The default limits of WebGPU, or less where the adapter offers less
+    Webgpu,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AccelArgs {
+    /// Acceleration structure with which an adapter finds the spheres that a ray hits [default: auto]
+    #[arg(long, value_parser = one_of(STRUCTURES))]
+    pub(crate) accel: Option<AccelChoice>,
+}
+
+pub(crate) const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
+    ("auto", "The structure that suits the scene best", AccelChoice::Auto),
+    ("grid", "A grid of cells, with nested grids where spheres are dense", AccelChoice::Grid),
+    ("tree", "A tree with eight children per node (BVH8)", AccelChoice::Tree),
+    ("list", "No structure, every ray tests every sphere: slow, for comparison", AccelChoice::List),
+    (
+        "query",
+        "Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`",
+        AccelChoice::RayQuery,
+    ),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Backend {
+    /// An adapter (GPU) if there is one, otherwise the CPU reference
+    Auto,
+    /// An adapter (GPU); without one, the job fails
+    Gpu,
+    /// The CPU reference, which is slower
+    Cpu,
+}
+
+/// The ids of some arguments.
+pub(crate) fn ids<A: Args>() -> impl Iterator<Item = Id> {
+    let command = A::augment_args(Command::new(""));
+    command
+        .get_arguments()
+        .map(|argument| argument.get_id().clone())
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// Arguments that describe the camera and the size of the picture.
+pub(crate) fn camera_ids() -> impl Iterator<Item = Id> {
+    ids::<CameraArgs>().chain(["size".into()])
+}

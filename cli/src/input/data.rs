@@ -1,0 +1,168 @@
+//! Reads data files, and checks the flags and keys that apply to them.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Error, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use crate::input::read_file::read as read_bytes;
+use crate::terminal::failure::Failure;
+use crate::terminal::memory;
+use pinhole::LinearRgb;
+use pinhole::load::{
+    Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
+};
+
+/// The options for a data file, from flags or from a scene file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DataOptions {
+    /// Frame of a trajectory, from 0.
+    pub(crate) frame: Option<usize>,
+    pub(crate) radius: Option<f64>,
+    pub(crate) color: Option<LinearRgb>,
+    /// File that says what the spheres of a trajectory are.
+    pub(crate) topology: Option<PathBuf>,
+    pub(crate) columns: Vec<String>,
+}
+
+pub(crate) fn format_parser() -> impl TypedValueParser<Value = &'static Format> {
+    let value = |format: &Format| PossibleValue::new(format.name).help(format.about);
+    PossibleValuesParser::new(FORMATS.iter().map(value))
+        .try_map(|name| Format::of_name(&name).ok_or("this is not a valid format"))
+}
+
+impl DataOptions {
+    fn to_read(&self) -> Options {
+        let mut options = Options::default();
+        (options.frame, options.radius) = (self.frame, self.radius);
+        (options.topology, options.columns) = (self.topology.clone(), self.columns.clone());
+        options
+    }
+
+    /// A flag about reading data that was given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--frame", self.frame.is_some()),
+            ("--radius", self.radius.is_some()),
+            ("--topology", self.topology.is_some()),
+            ("--columns", !self.columns.is_empty()),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
+    /// Refuses options that do not apply to the format. The keys of a scene file have the same names as the flags, but
+    /// without the `prefix`.
+    pub(crate) fn check(&self, format: &Format, prefix: &str) -> Result<(), String> {
+        format.check(&self.to_read()).map_err(|error| format!("{prefix}{error}"))?;
+        if self.color.is_some() && format.has_colors {
+            return Err(format!(
+                "{prefix}color applies only to data without colors; remove it, because atoms have the colors of \
+                 their elements"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Takes these options, which flags gave, and fills in missing ones from a scene file.
+    pub(crate) fn or(self, file: Self) -> Self {
+        Self {
+            frame: self.frame.or(file.frame),
+            radius: self.radius.or(file.radius),
+            color: self.color.or(file.color),
+            topology: self.topology.or(file.topology),
+            columns: if self.columns.is_empty() { file.columns } else { self.columns },
+        }
+    }
+}
+
+/// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
+/// path in front.
+pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
+    let mut loaded = if format.has_frames() && path.is_file() {
+        read_frame(path, format, options)?
+    } else {
+        read_whole(path, format, options)?
+    };
+    complete_notes(&mut loaded, path, options);
+    Ok(loaded)
+}
+
+fn complete_notes(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
+    if options.color.is_some() && loaded.colors.is_some() {
+        loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
+    }
+    for note in &mut loaded.notes {
+        *note = format!("{}: {note}", path.display());
+    }
+}
+
+/// Reads the frame that the options name from a file whose frames were found, if there is memory for it.
+pub(crate) fn read_frame_of(
+    path: &Path,
+    file: &mut Trajectory,
+    options: &DataOptions,
+) -> Result<Dataset> {
+    let frame = options.frame.unwrap_or_default();
+    check_frame(path, file, frame)?;
+    let mut loaded = file.frame(frame).map_err(|error| named(path, error))?;
+    complete_notes(&mut loaded, path, options);
+    Ok(loaded)
+}
+
+/// Reads the frame that is asked for, if there is memory for it.
+fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
+    let frame = options.frame.unwrap_or_default();
+    let options = options.to_read().with_format(format);
+    let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
+    check_frame(path, &found, frame)?;
+    found.into_frame(frame).map_err(|error| named(path, error))
+}
+
+/// Finds all frames of a file, and checks that there is memory for the one that is asked for.
+pub(crate) fn trajectory(
+    path: &Path,
+    format: &'static Format,
+    options: &DataOptions,
+) -> Result<Trajectory> {
+    let all = options.to_read().with_format(format);
+    let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
+    check_frame(path, &found, options.frame.unwrap_or_default())?;
+    Ok(found)
+}
+
+fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
+    let bytes = found.frame_bytes(frame).unwrap_or_default();
+    let what = format!("{}: reading {bytes} bytes needs", path.display());
+    memory::check_reading(&what, bytes)
+}
+
+/// An error of reading a file, with its path in front.
+pub(crate) fn named(path: &Path, error: LoadError) -> Error {
+    match error.place {
+        // The error has it.
+        Place::File(_) => Error::new(error),
+        _ => Error::new(error).context(path.display().to_string()),
+    }
+}
+
+fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dataset> {
+    let bytes = &read_bytes(path)?;
+    let file_name = || path.display().to_string();
+    let extra = format.extra_bytes(bytes).with_context(file_name)?;
+    if extra > 0 {
+        let what = format!("{}: reading an array of {extra} bytes needs", path.display());
+        memory::check_reading(&what, extra)?;
+    }
+    format.read(bytes, &options.to_read()).with_context(file_name)
+}
+
+/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
+pub(crate) fn as_usage(error: anyhow::Error) -> Failure {
+    match error.downcast_ref::<LoadError>().map(|error| error.kind) {
+        Some(LoadErrorKind::NoTopology) => {
+            Failure::usage(format!("{error:#} (add --topology FILE)"))
+        }
+        Some(LoadErrorKind::TwoRadii) => Failure::usage(format!("{error:#}")),
+        _ => Failure::Job(error),
+    }
+}

@@ -1,0 +1,69 @@
+//! The input: from a path to a scene with its camera and settings.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::bricks::BrickFile;
+pub(crate) use crate::input::look::{FramedScene, Look};
+pub(crate) use crate::input::read_file::{extension, read};
+#[cfg(feature = "gpu")]
+pub(crate) use crate::input::source::OpenFrames;
+pub(crate) use crate::input::source::{FoundFrames, Source, check_flags, default_color};
+use crate::output::report::Report;
+use pinhole::annotate::AnnotationPlan;
+use pinhole::camera::film::Film;
+use pinhole::camera::{Camera, CameraParameters, View};
+use pinhole::color_by::ColorKey;
+use pinhole::image::color::LinearRgb;
+use pinhole::image::encoding::Encoding;
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::scene::sphere::Sphere;
+use pinhole::scene_file::Data;
+
+pub(crate) mod contents;
+pub(crate) mod data;
+mod load;
+mod look;
+pub(crate) mod read_file;
+mod source;
+
+/// Everything that a render needs from its input.
+pub(crate) struct Input {
+    pub(crate) scene: Arc<Scene>,
+    /// The camera; for a stereo camera, the view from the middle between the eyes.
+    pub(crate) camera: Box<dyn Camera>,
+    /// The left and the right eye of a stereo camera.
+    pub(crate) eyes: Option<[Box<dyn Camera>; 2]>,
+    pub(crate) film: Film,
+    pub(crate) settings: RenderSettings,
+    pub(crate) encoding: Encoding,
+    /// What colors mean, if a column of the data gives them.
+    pub(crate) color_key: Option<ColorKey>,
+    /// What the scene file draws over the picture.
+    pub(crate) annotations: AnnotationPlan,
+    /// Where the size of the picture comes from, for messages: a flag or a file.
+    pub(crate) size_from: String,
+    pub(crate) notes: Vec<String>,
+    /// The file of bricks of which the scene has only the outermost spheres.
+    pub(crate) bricks: Option<Arc<BrickFile>>,
+    /// The color of spheres without one.
+    pub(crate) color: LinearRgb,
+    pub(crate) files: Vec<PathBuf>,
+    /// What the program says about the picture.
+    pub(crate) report: Report,
+    /// The camera, with its position.
+    pub(crate) parameters: CameraParameters,
+    /// The data with its keys and the flags about it; its path is as the program found it.
+    pub(crate) data: Option<Data>,
+    /// The spheres of a scene file itself.
+    pub(crate) own_spheres: Vec<Sphere>,
+    pub(crate) sky_image: Option<PathBuf>,
+}
+
+impl Input {
+    /// Returns the view of the camera, or of the middle between two eyes.
+    pub(crate) fn view(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
+}

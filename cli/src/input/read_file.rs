@@ -1,0 +1,124 @@
+//! Reads input files, and tells their formats from their names.
+
+use std::io::{Cursor, Read, Seek};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use crate::bricks::EXTENSION;
+use crate::terminal::failure::Failure;
+use crate::terminal::memory;
+use pinhole::load;
+
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Whether a file starts as one that is compressed with gzip.
+pub(crate) fn is_gzip(path: &Path) -> bool {
+    let mut start = [0; 2];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == [0x1f, 0x8b]
+}
+
+/// Bytes that are read first from a file whose size is not known, such as a pipe.
+const FIRST_PIECE: u64 = 1 << 20;
+
+/// A file of which any part can be read.
+pub(crate) trait ReadSeek: Read + Seek {}
+
+impl<S: Read + Seek> ReadSeek for S {}
+
+/// Opens a file of which parts are read. One that is not a regular file, such as a pipe, is read into memory.
+pub(crate) fn open_seekable(path: &Path) -> Result<Box<dyn ReadSeek>> {
+    if is_standard_input(path) || !path.is_file() {
+        return Ok(Box::new(Cursor::new(read(path)?)));
+    }
+    let file = std::fs::File::open(path);
+    Ok(Box::new(file.with_context(|| format!("{}: cannot be read", path.display()))?))
+}
+
+/// Reads a whole file. A regular file is read into memory of exactly its size.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
+    if path.is_dir() {
+        bail!("{}: this is a folder; name a file", path.display());
+    }
+    let cannot_read = || format!("{}: cannot be read", path.display());
+    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
+        (Box::new(std::io::stdin().lock()), 0)
+    } else {
+        let file = std::fs::File::open(path).with_context(cannot_read)?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        (Box::new(file), size)
+    };
+    let what = format!("{}: reading {size} bytes needs", path.display());
+    memory::check_reading(&what, size)?;
+    let mut bytes = Vec::new();
+    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
+        || format!("{}: there is not enough memory for {size} bytes", path.display()),
+    )?;
+    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
+    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
+    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
+        == piece
+    {
+        piece = bytes.len() as u64;
+        let what = format!("{}: reading more than {piece} bytes needs", path.display());
+        memory::check_reading(&what, 2 * piece)?;
+    }
+    Ok(bytes)
+}
+
+/// The kind of an input file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Scene,
+    Data(&'static load::Format),
+    /// Spheres that `sort` divided among bricks.
+    Bricks,
+}
+
+impl Format {
+    /// Returns the format for the extension of a path.
+    pub(crate) fn of(path: &Path) -> Result<Self> {
+        let extension = extension(path);
+        match (data_format(path), extension.as_deref()) {
+            (_, Some(EXTENSION)) => Ok(Self::Bricks),
+            (Some(format), _) => Ok(Self::Data(format)),
+            (None, Some("toml")) => Ok(Self::Scene),
+            _ if is_standard_input(path) => {
+                bail!("-: name the format of the data on standard input with --format")
+            }
+            (None, Some("bin")) => bail!(
+                "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
+                 little-endian f32, add --format raw-f32x4",
+                path.display()
+            ),
+            _ => bail!(
+                "{}: this is not the extension of a format that can be read; use .toml (scene), \
+                 {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
+                path.display(),
+                load::Format::extensions_of(|_| true)
+            ),
+        }
+    }
+}
+
+/// Returns the extension of a file name in lower case, without the dot.
+pub(crate) fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
+}
+
+/// Returns the format of a data file. What cannot be read is an error later, when it is.
+pub(crate) fn data_format(path: &Path) -> Option<&'static load::Format> {
+    let is_scene = extension(path).as_deref() == Some("toml");
+    load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
+}
+
+/// Parses a size, such as `800x600`.
+pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+    let sides = text.split_once(['x', 'X']);
+    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
+        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
+    )
+}

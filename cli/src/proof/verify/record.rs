@@ -1,0 +1,320 @@
+//! Recordings of `pinhole verify` on a device: the picture by one ray, samples of light, and what the denoiser makes.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+
+use crate::input::{Input, Source};
+use crate::output::files;
+use crate::proof::self_test;
+use crate::proof::verify::args::VerifyArgs;
+use crate::proof::verify::output::{KeptLight, VerifyJob, VerifyOutputs};
+use crate::proof::verify::report::{self, command_line};
+use crate::render;
+use crate::render::device::{AdapterReport, WantedAdapter, explained_alone};
+use crate::render::views::views_of;
+use crate::render::with_scene::{upload, with_structures};
+use crate::terminal::failure::Failure;
+use crate::terminal::progress::{self, tell};
+use crate::terminal::{interrupt, memory, threads};
+use pinhole::accel::{AccelChoice, Structure};
+use pinhole::camera::View;
+use pinhole::camera::film::{Film, FilmError};
+use pinhole::gpu::{Decision, Headless, LitPart, PictureRequest, Progress, SampleRequest, Wait};
+use pinhole::image::color::to_srgb8;
+use pinhole::image::denoise::GUIDES;
+use pinhole::image::encoding::Encoding;
+use pinhole::image::{Image, LayerSet};
+use pinhole::verify::run_file::{self, LitSamples, Provenance, Run, ShownPicture};
+use pinhole::verify::{Checker, LitCertificate, LitRecording};
+
+/// Renders a scene on an adapter and records it.
+pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failure> {
+    let source = Source::of_view(path, &args.view)?.without_bricks("`verify`")?;
+    let outputs = VerifyOutputs::new(args)?;
+    let wanted = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
+    threads::start()?;
+    let input = source.load()?;
+    outputs.check_not_inputs(&input.files)?;
+    for note in &input.notes {
+        tell(format_args!("note: {note}"));
+    }
+    if input.eyes.is_some() {
+        tell(
+            "note: the camera has two eyes; only the view from the middle between them is checked",
+        );
+    }
+    let is_lit = !input.settings.integrator.is_primary();
+    for (flag, is_given) in
+        [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())]
+    {
+        if is_given && !is_lit {
+            return Err(Failure::usage(format!(
+                "{flag} needs a scene with the integrator `studio` or `path`; remove {flag}"
+            )));
+        }
+    }
+    // Of each sample the middle is recorded, and a part elsewhere.
+    let most = run_file::MAX_SAMPLES / 2;
+    if args.save.is_some() && args.paths.is_some_and(|paths| paths > most) {
+        return Err(Failure::usage(format!(
+            "a run file has room for {most} samples of each pixel; choose --paths {most} or less"
+        )));
+    }
+    let headless = wanted.open_any()?;
+    self_test::check(&headless)?;
+    let (scene, view) = (&input.scene, &input.view());
+    let settings = &input.settings.by_primary_rays();
+    let choice = args.accel.accel.unwrap_or_default();
+    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+    let plan = |choice| headless.plan_record(scene, view, choice, encoding);
+    let done = with_structures(&headless, choice, plan, |plan| {
+        interrupt::on_device(|| {
+            let buffers = upload(&headless, scene, plan)?;
+            progress::stage("preparing");
+            let watch = &mut |progress: &Progress| {
+                progress::tracing(progress.part);
+                interrupt::decide()
+            };
+            headless.record_and_render(&buffers, view, settings, watch).wait()
+        })
+    })?;
+    let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
+    let provenance = provenance(&headless, structure);
+    let chosen = (args.paths.unwrap_or(1), args.tile_seed);
+    // Samples are kept in a temporary file beside the run file.
+    let spool = args.save.as_deref().filter(|_| is_lit).map(files::temporary).transpose()?;
+    let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
+    let mut kept = KeptLight { samples, ..KeptLight::default() };
+    let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
+    let light = is_lit.then(certify).transpose()?;
+    if input.settings.is_denoised {
+        kept.denoised = Some(render_denoised(&headless, &input, choice)?);
+    }
+    let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
+    if is_lit && (args.report.is_some() || args.save.is_some()) {
+        kept.shown = Some(render_lit(&headless, &input, choice)?);
+    }
+    let run = Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
+    Ok(VerifyJob { run, outputs, light, denoiser, kept })
+}
+
+fn provenance(headless: &Headless, structure: Structure) -> Provenance {
+    let AdapterReport { name, backend, device_type, driver, driver_info } =
+        AdapterReport::of(headless.adapter_info());
+    let limits = headless.device().limits();
+    let limits = [
+        ("max_buffer_size", limits.max_buffer_size),
+        ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+        ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
+    ];
+    Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        command: command_line(),
+        adapter: name,
+        backend,
+        device_type,
+        driver,
+        driver_info,
+        structure: structure.name().to_owned(),
+        limits: limits.map(|(name, limit)| (name.to_owned(), limit)).into(),
+    }
+}
+
+/// Records this number of samples on an adapter, one after the other, in the middle of the film and in a part at
+/// random, and checks them. If they will be saved, `kept` keeps them.
+pub(crate) fn certify_light(
+    headless: &Headless,
+    input: &Input,
+    (count, tile_seed): (u32, Option<u32>),
+    choice: AccelChoice,
+    kept: Option<&mut LitSamples>,
+) -> Result<LitCertificate, Failure> {
+    let Input { scene, settings, .. } = input;
+    let (view, views) = (input.view(), views_of(input, input.film));
+    let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
+    let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+    let tile_seed = tile_seed.unwrap_or_else(any_seed);
+    let kept = RefCell::new(kept);
+    let done = with_structures(headless, choice, plan, |plan| {
+        let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
+        let buffers = match uploaded {
+            Ok(buffers) => buffers,
+            Err(error) => return Ok(Err(error)),
+        };
+        let checker = Checker::new(scene).context("the checker cannot be prepared")?;
+        let mut certificate = LitCertificate::default();
+        // With another structure, recording begins anew.
+        kept.borrow_mut().iter_mut().for_each(|kept| kept.clear());
+        let failed = RefCell::new(None);
+        let recording = "recording light";
+        progress::stage(recording);
+        let recorded = interrupt::on_device(|| {
+            let each = &mut |recorded: &LitRecording| {
+                interrupt::driver_rests(true);
+                progress::stage("checking light");
+                certificate.join(checker.certify_lit(recorded));
+                let added = kept.borrow_mut().as_mut().map(|kept| kept.add(recorded));
+                if let Some(Err(error)) = added {
+                    *failed.borrow_mut() = Some(error);
+                }
+                progress::stage(recording);
+                interrupt::driver_rests(false);
+            };
+            let watch = &mut |_: &_| match *failed.borrow() {
+                None => interrupt::decide(),
+                Some(_) => Decision::Stop,
+            };
+            [LitPart::Middle, LitPart::Random(tile_seed)].into_iter().try_for_each(|part| {
+                let request = SampleRequest { part, samples: &samples };
+                headless.record_lit(&buffers, &view, settings, request, each, watch).wait()
+            })
+        })?;
+        if let Some(error) = failed.take() {
+            return Err(anyhow!("the samples of the light cannot be kept: {error}").into());
+        }
+        Ok(recorded.map(|()| certificate))
+    })?;
+    let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
+    if let [_, [x, y, width, height]] = certificate.rectangles[..] {
+        tell(format_args!(
+            "note: light was checked in the middle and in {width}x{height} pixels at ({x}, {y}); to check the \
+             same again, add --tile-seed {tile_seed}"
+        ));
+    }
+    Ok(certificate)
+}
+
+/// Another number in each run.
+fn any_seed() -> u32 {
+    use std::hash::{BuildHasher, RandomState};
+    RandomState::new().hash_one(0) as u32
+}
+
+/// The indices of the samples that are checked: `count` of those of a picture, among them the last and, if there are
+/// several, the first; the others are chosen at random. More than the picture has are the first ones.
+fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
+    let all = all.max(1);
+    if count >= all {
+        return (0..count).collect();
+    }
+    let mut chosen = BTreeSet::from([all - 1]);
+    if count > 1 {
+        chosen.insert(0);
+    }
+    let mut random = seed;
+    while chosen.len() < count as usize {
+        // A linear congruential generator, of which the upper bits are used (Numerical Recipes, section 7.1).
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        chosen.insert(((u64::from(random) * u64::from(all)) >> 32) as u32);
+    }
+    chosen.into_iter().collect()
+}
+
+/// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
+const DENOISED_SIDE: u32 = 160;
+const DENOISED_SAMPLES: u32 = 4;
+
+/// Renders a small noisy picture, and what the device makes of it.
+pub(crate) fn render_denoised(
+    headless: &Headless,
+    input: &Input,
+    choice: AccelChoice,
+) -> Result<[Image; 2], Failure> {
+    let mut settings = input.settings.unfinished();
+    settings.sampling.samples = settings.sampling.samples.min(DENOISED_SAMPLES);
+    let film = shrunk(&input.film, DENOISED_SIDE)
+        .context("the picture is too narrow for its denoiser to be checked")?;
+    let view = View::new(input.camera.as_ref(), film);
+    let request = PictureRequest::new(&input.scene, &view, &settings, GUIDES);
+    let plan = |choice| headless.plan(&request, choice);
+    let done = with_structures(headless, choice, plan, |plan| {
+        interrupt::on_device(|| {
+            let buffers = upload(headless, &input.scene, plan)?;
+            progress::stage("checking the denoiser");
+            let watch = &mut |_: &_| interrupt::decide();
+            let noisy =
+                headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch).wait()?.image;
+            let quiet = headless.denoise(&noisy).wait()?;
+            Ok([noisy, quiet])
+        })
+    })?;
+    let (pictures, _) = done.map_err(|error| explained_alone(headless, &error))?;
+    Ok(pictures)
+}
+
+/// The same picture with a longer side of at most this many pixels.
+fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
+    let (width, height) = (film.width(), film.height());
+    let shrink = |side: u32| {
+        let side = u64::from(side) * u64::from(longest) / u64::from(width.max(height).max(longest));
+        side.max(1) as u32
+    };
+    Ok(Film::new(shrink(width), shrink(height))?.with_y_axis(film.y_axis()))
+}
+
+/// More samples would take long, and change little at the size that a page has.
+const SHOWN_SAMPLES: u32 = 16;
+
+/// Renders the scene with its light and few samples, in the view that is checked.
+pub(crate) fn render_lit(
+    headless: &Headless,
+    input: &Input,
+    choice: AccelChoice,
+) -> Result<ShownPicture, Failure> {
+    let mut settings = input.settings.clone();
+    let wanted = settings.sampling.samples;
+    settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
+    settings.is_transparent = false;
+    let background = settings.visible_background();
+    let mut encoding = input.encoding;
+    (encoding.transparent, encoding.background) = (false, background);
+    let layers = encoding.layers();
+    let (view, views) = (input.view(), views_of(input, input.film));
+    let plan = |choice| render::plan(headless, input, &views, layers, choice);
+    let done = with_structures(headless, choice, plan, |plan| {
+        interrupt::on_device(|| {
+            let buffers = upload(headless, &input.scene, plan)?;
+            progress::stage("rendering with light");
+            let watch = &mut |_: &_| interrupt::decide();
+            headless.render_uploaded(&buffers, &view, &settings, layers, watch).wait()
+        })
+    })?;
+    let (picture, _) = done.map_err(|error| explained_alone(headless, &error))?;
+    let samples = settings.sampling.samples;
+    Ok(shown(&picture.image, &encoding, samples, wanted))
+}
+
+/// Encodes the picture as the scene asks for it, but with its background.
+fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> ShownPicture {
+    let (color, alpha) = (image.color(), image.alpha());
+    let srgb = (0..color.len()).map(|i| {
+        to_srgb8(match (alpha, encoding.background) {
+            (Some(alpha), Some(background)) => {
+                encoding.display_over(color[i], alpha[i], background)
+            }
+            _ => encoding.display(color[i]),
+        })
+    });
+    let size = [image.width(), image.height()];
+    ShownPicture { size, srgb: srgb.collect(), samples, wanted }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_sample_is_among_those_that_are_checked() {
+        assert_eq!(chosen(64, 1, 7), [63]);
+        assert_eq!(chosen(64, 2, 7), [0, 63]);
+        assert_eq!(chosen(2, 5, 7), [0, 1, 2, 3, 4]);
+        let some = chosen(1000, 20, 7);
+        assert!(some.len() == 20 && some[0] == 0 && some[19] == 999, "{some:?}");
+        assert!(some[1] > 1, "{some:?}");
+        assert_ne!(some, chosen(1000, 20, 8));
+        assert_eq!(chosen(9, 8, 3).len(), 8);
+    }
+}

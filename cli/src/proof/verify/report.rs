@@ -1,0 +1,326 @@
+//! The report of `pinhole verify`, as JSON and as text.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+
+use crate::render::device::AdapterReport;
+use crate::terminal::text::in_quotes;
+use pinhole::image::Image;
+use pinhole::internals::text::one_line;
+use pinhole::verify::denoised::{self, DenoiseCertificate};
+use pinhole::verify::run_file::{Run, scene_sha256};
+use pinhole::verify::{
+    Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome,
+    Recording, StageCounts, UploadError, Verdict, Violation,
+};
+
+/// The JSON document.
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    pub(crate) version: String,
+    pub(crate) adapter: Adapter<'a>,
+    pub(crate) scene: Scene,
+    pub(crate) picture: Picture,
+    pub(crate) counts: BTreeMap<&'static str, usize>,
+    pub(crate) decided_fraction: f64,
+    pub(crate) worst_depth: f64,
+    pub(crate) worst_normal: f64,
+    /// Number of pixels in which `render` gives other values than the recording; `None` if that is not known.
+    pub(crate) rendered_otherwise: Option<usize>,
+    pub(crate) upload: &'a Option<UploadError>,
+    pub(crate) violations: &'a [Violation],
+    /// The check of the light paths, for a scene with the integrator `path`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) paths: Option<LightReport<'a>>,
+    /// The check of the light of a studio, for a scene with the integrator `studio`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) studio: Option<LightReport<'a>>,
+    /// The check of the denoiser, for a scene whose picture is denoised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) denoiser: Option<DenoiserReport<'a>>,
+    /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
+    pub(crate) biased: Vec<String>,
+    pub(crate) outcome: Outcome,
+    pub(crate) legal: bool,
+    pub(crate) command: String,
+    #[serde(skip)]
+    certificate: &'a Certificate,
+    pub(crate) open: Vec<OpenPixel>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct Adapter<'a> {
+    #[serde(flatten)]
+    pub(crate) adapter: AdapterReport,
+    pub(crate) limits: &'a BTreeMap<String, u64>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct Scene {
+    pub(crate) spheres: usize,
+    pub(crate) sha256: String,
+}
+
+#[derive(Serialize)]
+pub(crate) struct Picture {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) camera: &'static str,
+    pub(crate) y_axis: &'static str,
+    pub(crate) shading: &'static str,
+    pub(crate) structure: String,
+}
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(
+        run: &'a Run,
+        certificate: &'a Certificate,
+        light: Option<&'a LitCertificate>,
+        denoiser: Option<&'a DenoiseCertificate>,
+    ) -> Self {
+        let Run { scene, recording, provenance } = run;
+        let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
+        let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);
+        let of_denoiser = denoiser.map_or(Outcome::Proved, DenoiseCertificate::outcome);
+        let outcome = certificate.outcome().max(of_light).max(of_denoiser);
+        Self {
+            version: one_line(&provenance.version),
+            adapter: Adapter {
+                adapter: AdapterReport::of_run(provenance),
+                limits: &provenance.limits,
+            },
+            scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
+            picture: Picture {
+                width: recording.film.width(),
+                height: recording.film.height(),
+                camera: recording.camera.kind.name(),
+                y_axis: recording.film.y_axis().name(),
+                shading: recording.primary.shading.name(),
+                structure: one_line(&provenance.structure),
+            },
+            counts: Verdict::ALL.iter().map(count).collect(),
+            decided_fraction: certificate.decided_fraction(),
+            worst_depth: certificate.worst_depth,
+            worst_normal: certificate.worst_normal,
+            rendered_otherwise: certificate.rendered_otherwise,
+            upload: &certificate.upload,
+            violations: listed(&certificate.violations),
+            paths: light.filter(|light| !light.is_studio).map(LightReport::new),
+            studio: light.filter(|light| light.is_studio).map(LightReport::new),
+            denoiser: denoiser
+                .map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
+            biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
+                .into_iter()
+                .flatten()
+                .flat_map(Deviations::biased)
+                .map(ToString::to_string)
+                .collect(),
+            outcome,
+            legal: outcome == Outcome::Proved,
+            command: one_line(&provenance.command),
+            certificate,
+            open: Vec::new(),
+        }
+    }
+
+    /// The check of light, if there was one.
+    pub(crate) fn light(&self) -> Option<&LightReport<'a>> {
+        self.paths.as_ref().or(self.studio.as_ref())
+    }
+
+    pub(crate) fn verdict(&self) -> String {
+        match (self.legal, self.upload, self.certificate.count(Verdict::Violation)) {
+            (true, ..) => match self.light() {
+                Some(light) => format!(
+                    "legal: every pixel by one ray, and {}, are as a conforming device may have made them",
+                    light.judged.words()
+                ),
+                None => "legal: every pixel is as a conforming device may have made it".to_owned(),
+            },
+            (false, ..) if self.outcome == Outcome::Undecided => {
+                "undecided: no violation was found, but too many answers could be others".to_owned()
+            }
+            (false, Some(_), _) => {
+                "NOT legal: the data on the device are not those of this scene and view".to_owned()
+            }
+            (false, None, 0) if self.light().is_none_or(LightReport::is_without_fault) => {
+                "NOT legal: violations in the denoised picture".to_owned()
+            }
+            (false, None, 0) if self.studio.is_some() => {
+                "NOT legal: violations in the light of the studio".to_owned()
+            }
+            (false, None, 0) => "NOT legal: violations in the light paths".to_owned(),
+            (false, None, 1) => "NOT legal: 1 violation".to_owned(),
+            (false, None, count) => format!("NOT legal: {count} violations"),
+        }
+    }
+
+    /// Returns the report as text. Each entry that comes from a run file has a line of its own.
+    pub(crate) fn table(&self) -> String {
+        let Scene { spheres, sha256 } = &self.scene;
+        let Picture { width, height, camera, structure, .. } = &self.picture;
+        let adapter = one_line(&self.adapter.adapter.line());
+        let light = self.light().map_or(String::new(), LightReport::lines);
+        let denoiser = self.denoiser.as_ref().map_or(String::new(), DenoiserReport::line);
+        format!(
+            "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
+             picture: {width}x{height}, {camera} camera\n\
+             structure: {structure}\n{}\n{light}{denoiser}{}\n",
+            16 * spheres,
+            self.certificate,
+            self.verdict()
+        )
+    }
+}
+
+/// Returns the command line of this program, quoted for a shell.
+pub(crate) fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let arguments = arguments.map(|word| in_quotes(&one_line(&word.to_string_lossy())));
+    std::iter::once("pinhole".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// The largest number of open searches in the table.
+const LINES: usize = 3;
+
+/// The object `paths` or `studio` of the JSON document.
+#[derive(Serialize)]
+pub(crate) struct LightReport<'a> {
+    /// Number of paths, or of samples of a studio.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    paths: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples: Option<u64>,
+    stages: BTreeMap<&'static str, StageCounts>,
+    /// First column and row, width and height of the parts of the film in which samples were checked.
+    rectangles: &'a [[u32; 4]],
+    judged: JudgedShare,
+    upload: &'a Option<UploadError>,
+    violation_count: u64,
+    violations: &'a [LitViolation],
+    outcome: Outcome,
+    legal: bool,
+    #[serde(skip)]
+    certificate: &'a LitCertificate,
+    /// The first stages with several legal results, and those of which the check says little.
+    open: &'a [LitOpen],
+}
+
+impl<'a> LightReport<'a> {
+    fn new(certificate: &'a LitCertificate) -> Self {
+        let LitCertificate { paths, is_studio, violation_count, .. } = *certificate;
+        let share = certificate.share();
+        Self {
+            paths: (!is_studio).then_some(paths),
+            samples: is_studio.then_some(paths),
+            stages: certificate.named().into_iter().collect(),
+            rectangles: &certificate.rectangles,
+            judged: JudgedShare { share, fraction: share.fraction() },
+            upload: &certificate.upload,
+            violation_count,
+            violations: listed(&certificate.violations),
+            outcome: certificate.outcome(),
+            legal: certificate.is_legal(),
+            certificate,
+            open: &certificate.open,
+        }
+    }
+
+    /// Lines of text about the counts, and about the first open searches.
+    fn lines(&self) -> String {
+        let open = self.open.iter().filter(|open| !open.legal.is_empty());
+        let lines = open.take(LINES).map(|open| format!("open: {open}\n"));
+        std::iter::once(format!("{}\n", self.certificate)).chain(lines).collect()
+    }
+
+    /// Whether nothing is known to be wrong.
+    fn is_without_fault(&self) -> bool {
+        self.violation_count == 0 && self.upload.is_none()
+    }
+}
+
+/// How much of the picture was judged.
+#[derive(Serialize)]
+struct JudgedShare {
+    #[serde(flatten)]
+    share: LitShare,
+    fraction: f64,
+}
+
+impl JudgedShare {
+    fn words(&self) -> String {
+        let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
+        // Rounded down, so that nothing but all of them is called 100 %.
+        let percent = (self.fraction * 1e6).floor() / 1e4;
+        format!(
+            "{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)"
+        )
+    }
+}
+
+/// The largest number of violations in the JSON document.
+const LISTED: usize = 100;
+
+fn listed<T>(violations: &[T]) -> &[T] {
+    &violations[..violations.len().min(LISTED)]
+}
+
+/// The largest number of pixels with each verdict.
+const SHOWN: usize = 3;
+
+/// A pixel with several legal answers.
+#[derive(Serialize)]
+pub(crate) struct OpenPixel {
+    pub(crate) pixel: [u32; 2],
+    pub(crate) verdict: Verdict,
+    /// The answer that was found, and the legal ones.
+    pub(crate) message: String,
+}
+
+/// The first ties and silhouettes.
+pub(crate) fn open_pixels(
+    checker: &Checker<'_>,
+    recording: &Recording,
+    certificate: &Certificate,
+) -> Vec<OpenPixel> {
+    let width = recording.film.width() as usize;
+    let of = |verdict| {
+        let all = certificate.verdicts.iter().enumerate();
+        let indices = all.filter(move |(_, of)| **of == verdict).map(|(index, _)| index);
+        indices.take(SHOWN).filter_map(move |index| {
+            let pixel = recording.pixels.get(index)?;
+            let ray = pixel.ray?;
+            let legal = checker.legal_hits(ray.origin, ray.direction);
+            let message = legal.message(pixel.id, pixel.t);
+            // The sides of a film are u32.
+            let pixel = [(index % width) as u32, (index / width) as u32];
+            Some(OpenPixel { pixel, verdict, message })
+        })
+    };
+    of(Verdict::Tie).chain(of(Verdict::Silhouette)).collect()
+}
+
+/// The object `denoiser` of the JSON document.
+#[derive(Serialize)]
+pub(crate) struct DenoiserReport<'a> {
+    #[serde(flatten)]
+    certificate: &'a DenoiseCertificate,
+    outcome: Outcome,
+}
+
+impl DenoiserReport<'_> {
+    fn line(&self) -> String {
+        let DenoiseCertificate { pixels, undecided, violation_count, .. } = self.certificate;
+        let legal = pixels - undecided - violation_count;
+        format!(
+            "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n"
+        )
+    }
+}
+
+/// Judges what the device made of a noisy picture.
+pub(crate) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
+    denoised::certify(noisy, quiet).context("the denoiser cannot be checked")
+}

@@ -1,0 +1,42 @@
+//! The view of one picture, or the two views of a stereo camera, and what is rendered of them.
+
+use crate::input::Input;
+use crate::render::device::OpenDevice;
+use crate::render::stop_rule::StopRule;
+use crate::terminal::memory;
+use pinhole::camera::View;
+use pinhole::camera::film::Film;
+use pinhole::image::LayerSet;
+
+/// A picture to render: its input and views, how long to take samples, and the device.
+#[derive(Clone, Copy)]
+pub(crate) struct Shot<'a> {
+    pub(crate) input: &'a Input,
+    /// One view, or those of the left and of the right eye, on the same film.
+    pub(crate) views: &'a [View<'a>],
+    pub(crate) layers: LayerSet,
+    pub(crate) stop_rule: StopRule,
+    pub(crate) opened: &'a OpenDevice,
+}
+
+impl Shot<'_> {
+    pub(crate) fn film(&self) -> Film {
+        self.views[0].film
+    }
+}
+
+/// The view of an input, or those of both eyes, on its film or on a part of it.
+pub(crate) fn views_of(input: &Input, film: Film) -> Vec<View<'_>> {
+    let cameras = input.eyes.as_ref().map_or(std::slice::from_ref(&input.camera), |eyes| eyes);
+    cameras.iter().map(|camera| View::new(camera.as_ref(), film)).collect()
+}
+
+/// The bytes per pixel that are needed in addition to the layers of one picture.
+pub(crate) fn extra_bytes_per_pixel(views: &[View<'_>], layers: LayerSet) -> u64 {
+    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+    match views.len() {
+        1 => encoding,
+        // The other picture, and a picture of twice the width that joins both.
+        _ => 3 * layers.bytes_per_pixel() + 2 * encoding,
+    }
+}
