@@ -14,43 +14,28 @@
 //! ```
 
 mod atoms;
-pub mod csv;
 mod dataset;
-mod dcd;
 mod elements;
 #[cfg(feature = "exr")]
 pub mod environment;
 mod error;
 mod format;
 mod formats;
-mod gromacs;
-mod gsd;
 mod labels;
-pub mod lammps;
-mod las;
-pub mod mmcif;
-pub mod npy;
-pub mod npz;
 mod numbers;
 mod open;
-pub mod pdb;
 #[cfg(any(feature = "png", feature = "exr"))]
 pub mod picture;
-mod ply;
-pub mod raw;
 mod rows;
 mod source;
 mod spacing;
 mod table;
 mod topology;
-#[cfg(feature = "vtk")]
-mod vtk;
-pub mod xyz;
 
 pub use dataset::{Column, ColumnValues, Dataset, Labels};
 #[cfg(feature = "scene-file")]
 pub(crate) use elements::{Covalent, covalent};
 pub use error::{LoadError, LoadErrorKind, Place};
 pub use format::{Format, Options};
-pub use formats::FORMATS;
+pub use formats::{FORMATS, csv, lammps, mmcif, npy, npz, pdb, raw, xyz};
 pub use open::{Trajectory, from_bytes, open};

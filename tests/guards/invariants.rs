@@ -96,6 +96,18 @@ fn files_are_short() {
     }
 }
 
+#[test]
+fn folders_are_small() {
+    let mut folders = std::collections::BTreeMap::<_, usize>::new();
+    let crates = ["src", "cli/src", "python/src", "viewer/src"];
+    for (path, _) in crates.into_iter().flat_map(sources) {
+        *folders.entry(path.parent().unwrap().to_owned()).or_default() += 1;
+    }
+    for (folder, files) in folders {
+        assert!(files <= 24, "{} has {files} files; make rooms", folder.display());
+    }
+}
+
 /// A shader that a comment names is there: by its path below `shaders`, or by its file's name.
 #[test]
 fn shaders_that_are_named_exist() {

@@ -5,11 +5,11 @@
 //! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
 //! one by one, such as the crate ply-rs-bw, would take more memory and time.
 
-use super::dataset::Dataset;
-use super::error::{LoadError, LoadErrorKind, Place};
-use super::format::Options;
-use super::numbers::{Order, Scalar};
-use super::table::{Table, TableColumn};
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, LoadErrorKind, Place};
+use crate::load::format::Options;
+use crate::load::numbers::{Order, Scalar};
+use crate::load::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened};
 

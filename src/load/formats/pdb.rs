@@ -14,11 +14,11 @@ mod record;
 
 use std::io;
 
-use super::Dataset;
-use super::atoms::{Atom, Atoms};
-use super::error::{LoadError, Place};
-use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
-use super::source::LineReader;
+use crate::load::Dataset;
+use crate::load::atoms::{Atom, Atoms};
+use crate::load::error::{LoadError, Place};
+use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
+use crate::load::source::LineReader;
 use crate::text::without_byte_order_mark;
 use record::{Kind, Lines, Record, cell_of, hybrid36};
 

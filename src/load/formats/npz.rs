@@ -11,11 +11,11 @@ use flate2::bufread::DeflateDecoder;
 use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
-use super::dataset::Dataset;
-use super::error::{LoadError, Place, first_names};
-use super::format::Options;
 use super::npy::{Array, Spheres};
-use super::table::Table;
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, Place, first_names};
+use crate::load::format::Options;
+use crate::load::table::Table;
 use crate::text::{one_line, shortened};
 
 /// Names that mark the array of positions among several; the first name that occurs counts.

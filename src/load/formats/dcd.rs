@@ -9,13 +9,13 @@
 
 use std::ops::Range;
 
-use super::atoms::edges_of;
-use super::dataset::Dataset;
-use super::error::LoadError;
-use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use super::numbers::{Order, Reader, numbers, wrong_position, wrong_start};
-use super::source::Bytes;
-use super::topology::{Positions, Topology};
+use crate::load::atoms::edges_of;
+use crate::load::dataset::Dataset;
+use crate::load::error::LoadError;
+use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
+use crate::load::numbers::{Order, Reader, numbers, wrong_position, wrong_start};
+use crate::load::source::Bytes;
+use crate::load::topology::{Positions, Topology};
 
 pub(super) const FRAMES: Frames = Frames::Positions { find };
 

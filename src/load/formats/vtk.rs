@@ -13,11 +13,11 @@ use std::io::Read as _;
 use data_encoding::BASE64;
 use flate2::bufread::ZlibDecoder;
 
-use super::dataset::Dataset;
-use super::error::{LoadError, Place};
-use super::format::Options;
-use super::numbers::{Number, Scalar};
-use super::table::{Table, TableColumn};
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, Place};
+use crate::load::format::Options;
+use crate::load::numbers::{Number, Scalar};
+use crate::load::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::{one_line, shortened, without_byte_order_mark};
 use document::{Array, Data, Document, Encoding};

@@ -9,14 +9,14 @@
 
 use std::io;
 
-use super::dataset::Dataset;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
-use super::numbers::component_names;
-use super::numbers::number;
-use super::rows::{self, Field, Kind, Lines, Rows, Values};
-use super::source::LineReader;
-use super::table::Table;
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
+use crate::load::numbers::component_names;
+use crate::load::numbers::number;
+use crate::load::rows::{self, Field, Kind, Lines, Rows, Values};
+use crate::load::source::LineReader;
+use crate::load::table::Table;
 use crate::text::{one_line, shortened, without_byte_order_mark};
 
 /// Reads one frame, counted from 0.

@@ -6,11 +6,11 @@
 pub(super) mod data;
 pub(super) mod dump;
 
-use super::dataset::ColumnValues;
-use super::error::LoadError;
-use super::numbers::number;
-use super::rows::Values;
-use super::table::{Table, TableColumn};
+use crate::load::dataset::ColumnValues;
+use crate::load::error::LoadError;
+use crate::load::numbers::number;
+use crate::load::rows::Values;
+use crate::load::table::{Table, TableColumn};
 use crate::parallel;
 use crate::text::shortened;
 

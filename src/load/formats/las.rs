@@ -4,10 +4,10 @@
 //! compressed, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes asks for
 //! 50 GB of memory, which ends the program.
 
-use super::dataset::Dataset;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::Options;
-use super::table::{Table, TableColumn};
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::format::Options;
+use crate::load::table::{Table, TableColumn};
 use crate::parallel;
 
 /// Bytes of a point of each format, by the specification of LAS 1.4 (R15, tables 7 to 17).

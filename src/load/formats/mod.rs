@@ -5,11 +5,26 @@ use std::io;
 use std::io::Read as _;
 use std::path::Path;
 
-use super::dataset::Dataset;
-use super::error::LoadError;
-use super::format::{Format, Options, ReadMethod};
-use super::raw;
-use super::source::{Source, without_gz};
+use crate::load::dataset::Dataset;
+use crate::load::error::LoadError;
+use crate::load::format::{Format, Options, ReadMethod};
+use crate::load::source::{Source, without_gz};
+
+pub mod csv;
+mod dcd;
+mod gromacs;
+mod gsd;
+pub mod lammps;
+mod las;
+pub mod mmcif;
+pub mod npy;
+pub mod npz;
+pub mod pdb;
+mod ply;
+pub mod raw;
+#[cfg(feature = "vtk")]
+mod vtk;
+pub mod xyz;
 
 /// The row of a format without a name, a header and extras, to which the others add what they have.
 const RAW: Format = Format {
@@ -32,17 +47,17 @@ pub static FORMATS: &[Format] = &[
         name: "xyz",
         extensions: &["xyz"],
         about: "Text with one atom on each line (XYZ)",
-        method: ReadMethod::Frames(super::xyz::FRAMES),
+        method: ReadMethod::Frames(xyz::FRAMES),
         may_lack_radii: true,
         has_colors: true,
-        starts: super::xyz::starts,
+        starts: xyz::starts,
         ..RAW
     },
     Format {
         name: "extxyz",
         extensions: &["extxyz"],
         about: "Text with one atom on each line and named columns (extended XYZ)",
-        method: ReadMethod::Frames(super::xyz::FRAMES),
+        method: ReadMethod::Frames(xyz::FRAMES),
         may_lack_radii: true,
         has_colors: true,
         ..RAW
@@ -51,126 +66,126 @@ pub static FORMATS: &[Format] = &[
         name: "pdb",
         extensions: &["pdb", "ent"],
         about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
-        method: ReadMethod::Frames(super::pdb::FRAMES),
+        method: ReadMethod::Frames(pdb::FRAMES),
         has_colors: true,
-        starts: super::pdb::starts,
+        starts: pdb::starts,
         ..RAW
     },
     Format {
         name: "lammps-dump",
         extensions: &["lammpstrj", "dump"],
         about: "A dump of atoms of LAMMPS; a frame is a step",
-        method: ReadMethod::Frames(super::lammps::dump::FRAMES),
+        method: ReadMethod::Frames(lammps::dump::FRAMES),
         may_lack_names: true,
         may_lack_radii: true,
         z_is_up: true,
-        starts: super::lammps::dump::starts,
+        starts: lammps::dump::starts,
         ..RAW
     },
     Format {
         name: "lammps-data",
         extensions: &["data", "lmp"],
         about: "A data file of LAMMPS, with the section Atoms",
-        method: ReadMethod::Whole(super::lammps::data::read),
+        method: ReadMethod::Whole(lammps::data::read),
         may_lack_names: true,
         may_lack_radii: true,
         z_is_up: true,
-        starts: super::lammps::data::starts,
+        starts: lammps::data::starts,
         ..RAW
     },
     Format {
         name: "mmcif",
         extensions: &["cif", "mmcif"],
         about: "Text of named items (mmCIF), or the CIF of a small molecule; a frame is a model",
-        method: ReadMethod::Frames(super::mmcif::FRAMES),
+        method: ReadMethod::Frames(mmcif::FRAMES),
         has_colors: true,
-        starts: super::mmcif::starts,
+        starts: mmcif::starts,
         ..RAW
     },
     Format {
         name: "las",
         extensions: &["las"],
         about: "Points of a laser scanner (LAS)",
-        method: ReadMethod::Whole(super::las::read),
+        method: ReadMethod::Whole(las::read),
         may_lack_radii: true,
         z_is_up: true,
-        starts: super::las::starts,
+        starts: las::starts,
         ..RAW
     },
     Format {
         name: "gsd",
         extensions: &["gsd"],
         about: "Particles of HOOMD-blue (GSD)",
-        method: ReadMethod::Frames(super::gsd::FRAMES),
+        method: ReadMethod::Frames(gsd::FRAMES),
         may_lack_radii: true,
         z_is_up: true,
-        starts: super::gsd::starts,
+        starts: gsd::starts,
         ..RAW
     },
     Format {
         name: "dcd",
         extensions: &["dcd"],
         about: "Positions of atoms by CHARMM, NAMD, OpenMM or LAMMPS, with a topology",
-        method: ReadMethod::Frames(super::dcd::FRAMES),
+        method: ReadMethod::Frames(dcd::FRAMES),
         needs_topology: true,
-        starts: super::dcd::starts,
+        starts: dcd::starts,
         ..RAW
     },
     Format {
         name: "trr",
         extensions: &["trr"],
         about: "Positions and velocities of atoms by GROMACS, with a topology",
-        method: ReadMethod::Frames(super::gromacs::TRR),
+        method: ReadMethod::Frames(gromacs::TRR),
         needs_topology: true,
-        starts: super::gromacs::starts_trr,
+        starts: gromacs::starts_trr,
         ..RAW
     },
     Format {
         name: "xtc",
         extensions: &["xtc"],
         about: "Compressed positions of atoms by GROMACS, with a topology",
-        method: ReadMethod::Frames(super::gromacs::XTC),
+        method: ReadMethod::Frames(gromacs::XTC),
         needs_topology: true,
-        starts: super::gromacs::starts_xtc,
+        starts: gromacs::starts_xtc,
         ..RAW
     },
     Format {
         name: "npy",
         extensions: &["npy"],
         about: "A NumPy array of x, y, z, and radius, a value or colors, or of structures",
-        method: ReadMethod::Whole(|bytes, options| super::npy::read(bytes, options.radius)),
+        method: ReadMethod::Whole(|bytes, options| npy::read(bytes, options.radius)),
         may_lack_radii: true,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
-        extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
+        extra_bytes: |bytes| Ok(npy::extra_bytes(bytes)),
         ..RAW
     },
     Format {
         name: "npz",
         extensions: &["npz"],
         about: "A NumPy archive with arrays of positions, radii, colors and so on",
-        method: ReadMethod::Whole(|bytes, options| super::npz::read(bytes, options.radius)),
+        method: ReadMethod::Whole(|bytes, options| npz::read(bytes, options.radius)),
         may_lack_radii: true,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
-        extra_bytes: |bytes| super::npz::array_bytes(bytes),
+        extra_bytes: |bytes| npz::array_bytes(bytes),
         ..RAW
     },
     Format {
         name: "csv",
         extensions: &["csv", "tsv"],
         about: "A table of text with commas, tabs, semicolons or white space",
-        method: ReadMethod::Whole(super::csv::read),
+        method: ReadMethod::Whole(csv::read),
         may_lack_names: true,
         may_lack_radii: true,
-        starts: super::csv::starts,
+        starts: csv::starts,
         ..RAW
     },
     Format {
         name: "ply",
         extensions: &["ply"],
         about: "The vertices of a PLY file, as text or binary data",
-        method: ReadMethod::Whole(super::ply::read),
+        method: ReadMethod::Whole(ply::read),
         may_lack_radii: true,
-        starts: super::ply::starts,
+        starts: ply::starts,
         ..RAW
     },
     #[cfg(feature = "vtk")]
@@ -178,9 +193,9 @@ pub static FORMATS: &[Format] = &[
         name: "vtk",
         extensions: &["vtp", "vtu"],
         about: "The points of a VTK XML file: PolyData or UnstructuredGrid",
-        method: ReadMethod::Whole(super::vtk::read),
+        method: ReadMethod::Whole(vtk::read),
         may_lack_radii: true,
-        starts: super::vtk::starts,
+        starts: vtk::starts,
         ..RAW
     },
     RAW,

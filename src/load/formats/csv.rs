@@ -4,14 +4,14 @@
 //! are comments, and the last comment before the first row may have the names of the columns. What the names mean is the
 //! same as in all tables. A value that is missing (empty, `NaN`, `NA`, `null`) is NaN.
 
-use super::dataset::{ColumnValues, Dataset};
-use super::error::LoadError;
-use super::format::Options;
-use super::labels::LabelsBuilder;
-use super::numbers::number;
-use super::rows::{Lines, Values};
-use super::table::{Table, TableColumn};
-use super::{rows, table};
+use crate::load::dataset::{ColumnValues, Dataset};
+use crate::load::error::LoadError;
+use crate::load::format::Options;
+use crate::load::labels::LabelsBuilder;
+use crate::load::numbers::number;
+use crate::load::rows::{Lines, Values};
+use crate::load::table::{Table, TableColumn};
+use crate::load::{rows, table};
 use crate::text::without_byte_order_mark;
 
 /// Reads a table.

@@ -8,12 +8,12 @@ mod xtc;
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
 
-use super::dataset::Dataset;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::{FrameIndex, FrameReader, FrameSpan, Options};
-use super::numbers::{Order, Reader};
-use super::source::Bytes;
-use super::topology::{Positions, Topology};
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Options};
+use crate::load::numbers::{Order, Reader};
+use crate::load::source::Bytes;
+use crate::load::topology::{Positions, Topology};
 
 const ANGSTROMS: f64 = 10.0;
 

@@ -9,13 +9,13 @@ pub(super) use index::starts;
 
 use std::collections::BTreeSet;
 
-use super::dataset::{Column, ColumnValues, Dataset, Labels};
-use super::elements::appearance;
-use super::error::LoadError;
-use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use super::numbers::{Order, Reader, component_names, shown, wrong_position, wrong_start};
-use super::source::Bytes;
-use super::table::{Table, TableColumn};
+use crate::load::dataset::{Column, ColumnValues, Dataset, Labels};
+use crate::load::elements::appearance;
+use crate::load::error::LoadError;
+use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
+use crate::load::numbers::{Order, Reader, component_names, shown, wrong_position, wrong_start};
+use crate::load::source::Bytes;
+use crate::load::table::{Table, TableColumn};
 use index::{Chunk, Index};
 
 pub(super) const FRAMES: Frames = Frames::Bytes { find };

@@ -6,12 +6,12 @@ pub mod pixels;
 
 use std::collections::TryReserveError;
 
-use super::dataset::Dataset;
-use super::error::{LoadError, LoadErrorKind};
-use super::format::Options;
-use super::numbers::component_names;
 use super::raw::{Layout, rows};
-use super::table::{Table, TableColumn};
+use crate::load::dataset::Dataset;
+use crate::load::error::{LoadError, LoadErrorKind};
+use crate::load::format::Options;
+use crate::load::numbers::component_names;
+use crate::load::table::{Table, TableColumn};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 use dtype::{Dtype, Place};

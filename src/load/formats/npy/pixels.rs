@@ -7,7 +7,7 @@ use crate::camera::film::Film;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
 use crate::load::error::LoadError;
-use crate::load::npz::{array_of, of_array};
+use crate::load::formats::npz::{array_of, of_array};
 use crate::text::{one_line, shortened};
 
 /// One value for each pixel, row by row from the top.

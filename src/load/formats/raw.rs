@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::error::LoadError;
+use crate::load::error::LoadError;
 use crate::parallel;
 use crate::scene::sphere_array::SphereArray;
 

@@ -14,11 +14,11 @@ use std::io::SeekFrom;
 
 use memchr::memchr;
 
-use super::Dataset;
-use super::atoms::{Atom, Atoms};
-use super::error::LoadError;
-use super::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
-use super::source::{Bytes, bytes};
+use crate::load::Dataset;
+use crate::load::atoms::{Atom, Atoms};
+use crate::load::error::LoadError;
+use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
+use crate::load::source::{Bytes, bytes};
 use crate::text::{shortened, without_byte_order_mark};
 use tokens::{
     Columns, Header, Place, SLOTS, Token, Tokens, cut_row, decimal, is_unknown, not_a_number,
