@@ -80,7 +80,7 @@ impl<'a> Visit<'a> for Names {
         }
     }
 
-    /// `pub(in crate::gpu)` names no code.
+    /// `pub(crate)` names no code.
     fn visit_visibility(&mut self, _: &'a syn::Visibility) {}
 
     fn visit_path(&mut self, path: &'a syn::Path) {

@@ -45,13 +45,13 @@ pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
 
 /// All kernels that can be composed, with one set of constants for each source.
 #[cfg(test)]
-pub(in crate::gpu) fn all_sources() -> Vec<Kernel> {
+pub(crate) fn all_sources() -> Vec<Kernel> {
     let mut names = BTreeSet::new();
     all_kernels().into_iter().filter(|kernel| names.insert(kernel.name())).collect()
 }
 
 /// All kernels of which pipelines are made. Many have the same source and differ in constants.
-pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
+pub(crate) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
         ["arithmetic", "exact", "loops"].map(|probe| Kernel::new(probe, &[])).to_vec();
     for &camera in CameraKind::ALL {

@@ -19,7 +19,7 @@ pub(super) fn folded(source: &str, entry_point: &str, constants: &[(&str, f64)])
 }
 
 /// The module with these values of its constants.
-pub(in crate::gpu) fn folded_module(
+pub(crate) fn folded_module(
     module: &Module,
     info: &ModuleInfo,
     entry_point: &str,

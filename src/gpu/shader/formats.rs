@@ -2,9 +2,9 @@
 
 use wgpu::TextureFormat;
 
-pub(in crate::gpu) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
-pub(in crate::gpu) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-pub(in crate::gpu) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
+pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
+pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
 
 /// The format of the colour texture. Every WebGPU device supports all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

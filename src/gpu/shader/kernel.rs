@@ -7,15 +7,15 @@ use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 
 /// The value of an `override` constant of WGSL, which is 0 or 1 for one of type `bool`.
-pub(in crate::gpu) type Constant = (&'static str, u32);
+pub(crate) type Constant = (&'static str, u32);
 
 /// An entry point, the parts that it is composed of, and the values of the `override` constants that they declare.
 /// Kernels that differ in the values alone have the same source, and a pipeline for each set of values.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
-    pub(in crate::gpu) entry_point: &'static str,
-    pub(in crate::gpu) parts: Vec<Part>,
-    pub(in crate::gpu) constants: Vec<Constant>,
+    pub(crate) entry_point: &'static str,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) constants: Vec<Constant>,
 }
 
 /// The files of structures, which are alternatives to each other.
@@ -38,12 +38,12 @@ fn is_choice(part: &str) -> bool {
 impl Kernel {
     /// The kernel of the list in `shaders/kernels.txt` with the name of its entry point. `choices` are names in the list that
     /// begin with `$`, and the lists that stand for them.
-    pub(in crate::gpu) fn new(entry_point: &'static str, choices: &[(&str, &'static str)]) -> Self {
+    pub(crate) fn new(entry_point: &'static str, choices: &[(&str, &'static str)]) -> Self {
         Self { entry_point, parts: parts(entry_point, choices), constants: Vec::new() }
     }
 
     /// The kernel with the values of those of some constants that it declares.
-    pub(in crate::gpu) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
+    pub(crate) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
         let lines = self.parts.iter().flat_map(|part| part.source.lines());
         let names: BTreeSet<_> = lines
             .filter_map(|line| Some(line.strip_prefix("override ")?.split_once(':')?.0))
@@ -54,7 +54,7 @@ impl Kernel {
     }
 
     /// The entry point and the parts that distinguish this kernel from others with another source.
-    pub(in crate::gpu) fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         let chosen = self.parts.iter().map(|part| part.name).filter(|name| is_choice(name));
         chosen.fold(self.entry_point.to_owned(), |name, part| {
             let (_, file) = part.split_once('/').unwrap_or(("", part));
@@ -63,24 +63,24 @@ impl Kernel {
     }
 
     /// The constants as wgpu takes them.
-    pub(in crate::gpu) fn values_of_constants(&self) -> Vec<(&'static str, f64)> {
+    pub(crate) fn values_of_constants(&self) -> Vec<(&'static str, f64)> {
         self.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect()
     }
 
     /// Whether it is written in more than the WGSL of any device.
-    pub(in crate::gpu) fn has_ray_queries(&self) -> bool {
+    pub(crate) fn has_ray_queries(&self) -> bool {
         self.parts.iter().any(|part| part.name == WITH_DIRECTIVE)
     }
 
     /// The kernel with one more part.
     #[cfg(test)]
-    pub(in crate::gpu) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
+    pub(crate) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
         self.parts.push(Part::of(file, source));
         self
     }
 
     /// The kernel after the edits of its parts, and after it was rewritten as a whole.
-    pub(in crate::gpu) fn edited(mut self, edits: &Edits) -> Result<Self, GpuError> {
+    pub(crate) fn edited(mut self, edits: &Edits) -> Result<Self, GpuError> {
         for edit in &edits.replacements {
             for part in self.parts.iter_mut().filter(|part| part.name == edit.file) {
                 if !part.source.contains(&edit.find) {
@@ -101,7 +101,7 @@ impl Kernel {
     }
 
     /// The composed WGSL, in which a comment names each part.
-    pub(in crate::gpu) fn source(&self) -> String {
+    pub(crate) fn source(&self) -> String {
         let parts = self.in_order();
         parts.flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
     }
@@ -116,7 +116,7 @@ impl Kernel {
     /// Replaces every position in the composed WGSL that occurs in a message of naga or wgpu by a position in a file.
     ///
     /// The parser names the source `wgsl`, and the validator names it by its label, which is the name of the kernel.
-    pub(in crate::gpu) fn with_positions_in_files(&self, message: &str) -> String {
+    pub(crate) fn with_positions_in_files(&self, message: &str) -> String {
         let positions = self.replace_positions("wgsl:", message);
         self.replace_positions(&format!("{}:", self.name()), &positions)
     }

@@ -14,19 +14,19 @@ use crate::gpu::shader::records;
 #[derive(Debug)]
 pub(crate) struct Layouts {
     /// Layout of bind group 0 of every kernel.
-    pub(in crate::gpu) frame: BindGroupLayout,
+    pub(crate) frame: BindGroupLayout,
     /// Layouts of bind group 1 of `trace`: brick, shapes, ids, and the words of the structure.
-    pub(in crate::gpu) brick: Vec<(BrickKind, BindGroupLayout)>,
+    pub(crate) brick: Vec<(BrickKind, BindGroupLayout)>,
     /// Layout of bind group 1 of `shade`, for spheres.
-    pub(in crate::gpu) surface: BindGroupLayout,
+    pub(crate) surface: BindGroupLayout,
     /// Layout of bind group 3 of kernels that search a brick and shade its shapes: their appearance.
-    pub(in crate::gpu) appearance: BindGroupLayout,
+    pub(crate) appearance: BindGroupLayout,
     /// Layout of bind group 2 of `shade`.
-    pub(in crate::gpu) targets: BindGroupLayout,
+    pub(crate) targets: BindGroupLayout,
 }
 
 impl Layouts {
-    pub(in crate::gpu) fn new(device: &Device, options: &RendererOptions) -> Self {
+    pub(crate) fn new(device: &Device, options: &RendererOptions) -> Self {
         let RendererOptions {
             color, data_layers, keeps_rays, ref structures, ref primitives, ..
         } = *options;
@@ -76,21 +76,21 @@ impl Layouts {
 
 impl Layouts {
     /// Layout of bind group 1 of `trace`.
-    pub(in crate::gpu) fn brick_of(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
+    pub(crate) fn brick_of(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
         let found = self.brick.iter().find(|(of, _)| *of == kind);
         found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
     }
 
     /// Layout of bind group 1 of `trace` for a brick of which it is not known yet whether it will be
     /// searched as a nested grid. Both kinds of grids have the same bindings.
-    pub(in crate::gpu) fn brick_like(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
+    pub(crate) fn brick_like(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
         let bound_as = |kind: BrickKind| (kind.structure.with_nested(true), kind.primitive);
         let found = self.brick.iter().find(|(of, _)| bound_as(*of) == bound_as(kind));
         found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
     }
 
     /// Layout of bind group 1 of `shade`.
-    pub(in crate::gpu) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
+    pub(crate) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
         match primitive {
             Primitive::Sphere => &self.surface,
         }
@@ -105,17 +105,13 @@ fn shapes(primitive: Primitive) -> BindingType {
 }
 
 /// Creates a layout of bindings that are numbered from 0.
-pub(in crate::gpu) fn layout(
-    device: &Device,
-    label: &str,
-    kinds: &[BindingType],
-) -> BindGroupLayout {
+pub(crate) fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
     let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
     layout_of(device, label, &kinds)
 }
 
 /// Creates a layout of bindings with the given numbers.
-pub(in crate::gpu) fn layout_of(
+pub(crate) fn layout_of(
     device: &Device,
     label: &str,
     kinds: &[(u32, BindingType)],
@@ -142,7 +138,7 @@ fn word_buffers(structure: Structure) -> Vec<BindingType> {
 
 /// Binding type of a uniform record. Because of the minimum size, wgpu compares the sizes of the record and of the WGSL
 /// struct when a pipeline is created.
-pub(in crate::gpu) fn uniform<Record>() -> BindingType {
+pub(crate) fn uniform<Record>() -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,
@@ -150,7 +146,7 @@ pub(in crate::gpu) fn uniform<Record>() -> BindingType {
     }
 }
 
-pub(in crate::gpu) fn storage<Element>(read_only: bool) -> BindingType {
+pub(crate) fn storage<Element>(read_only: bool) -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only },
         has_dynamic_offset: false,

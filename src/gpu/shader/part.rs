@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// The start of the line that begins a variant in its file. The rest of the line is the name of the variant.
-pub(in crate::gpu) const VARIANT: &str = "//// ";
+pub(crate) const VARIANT: &str = "//// ";
 
 /// A WGSL file, or one variant of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::gpu) struct Part {
+pub(crate) struct Part {
     /// Path of the file relative to `shaders`. For a variant, `#` and its name follow.
-    pub(in crate::gpu) name: &'static str,
-    pub(in crate::gpu) source: Cow<'static, str>,
+    pub(crate) name: &'static str,
+    pub(crate) source: Cow<'static, str>,
     /// Number of lines of the file before the source.
     skipped: usize,
 }
@@ -72,7 +72,7 @@ pub(super) fn parts(names: &'static str, choices: &[(&str, &'static str)]) -> Ve
 impl Part {
     /// A file of the folder, or one of its variants. The source of one that does not exist is empty, which a test of all
     /// kernels detects.
-    pub(in crate::gpu) fn named(name: &'static str) -> Self {
+    pub(crate) fn named(name: &'static str) -> Self {
         let file = name.split('#').next();
         let text =
             FILES.iter().find(|(known, _)| Some(*known) == file).map_or("", |(_, text)| text);
@@ -80,7 +80,7 @@ impl Part {
     }
 
     /// The part with this name of a file with this text.
-    pub(in crate::gpu) fn of(name: &'static str, text: &'static str) -> Self {
+    pub(crate) fn of(name: &'static str, text: &'static str) -> Self {
         let (source, skipped) = match name.split_once('#') {
             None => (text, 0),
             Some((_, wanted)) => {
@@ -92,7 +92,7 @@ impl Part {
     }
 
     /// Path of the file relative to `shaders`.
-    pub(in crate::gpu) fn file(&self) -> &'static str {
+    pub(crate) fn file(&self) -> &'static str {
         self.name.split('#').next().unwrap_or(self.name)
     }
 
@@ -103,7 +103,7 @@ impl Part {
 }
 
 /// The variants of a file: name, source without the line of the name, and number of lines before the source.
-pub(in crate::gpu) fn variants(file: &str) -> impl Iterator<Item = (&str, &str, usize)> {
+pub(crate) fn variants(file: &str) -> impl Iterator<Item = (&str, &str, usize)> {
     let starts = file.match_indices(VARIANT).map(|(at, _)| at);
     let starts: Vec<usize> = starts.filter(|at| file[..*at].ends_with('\n')).collect();
     let ends = starts.clone().into_iter().skip(1).chain([file.len()]);

@@ -8,7 +8,7 @@ use crate::gpu::error::GpuError;
 
 /// Creates the pipeline of a kernel. `groups` are the layouts of its bind groups, in order. Whether the device accepts
 /// the kernel is known when the checks have passed.
-pub(in crate::gpu) fn pipeline(
+pub(crate) fn pipeline(
     device: &Device,
     kernel: &Kernel,
     groups: &[&wgpu::BindGroupLayout],
@@ -19,7 +19,7 @@ pub(in crate::gpu) fn pipeline(
 }
 
 /// Creates the pipeline of a kernel like [`pipeline`]. It has no bind group where there is `None`.
-pub(in crate::gpu) fn pipeline_with(
+pub(crate) fn pipeline_with(
     device: &Device,
     kernel: &Kernel,
     groups: &[Option<&wgpu::BindGroupLayout>],
@@ -68,7 +68,7 @@ fn source<'a>(
 }
 
 /// The options of a stage whose `override` constants have some values.
-pub(in crate::gpu) fn with_constants<'a>(
+pub(crate) fn with_constants<'a>(
     constants: &'a [(&'a str, f64)],
 ) -> wgpu::PipelineCompilationOptions<'a> {
     wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() }

@@ -13,13 +13,13 @@ pub(crate) enum BrickPass {
 }
 
 impl BrickPass {
-    pub(in crate::gpu) fn constant(self) -> Constant {
+    pub(crate) fn constant(self) -> Constant {
         ("IS_LATER_BRICK", u32::from(self == Self::Later))
     }
 }
 
 /// The kernel that finds the nearest sphere of every ray, and may record the rays.
-pub(in crate::gpu) fn trace_kernel(
+pub(crate) fn trace_kernel(
     camera: CameraKind,
     kind: BrickKind,
     brick_pass: BrickPass,
@@ -31,7 +31,7 @@ pub(in crate::gpu) fn trace_kernel(
 
 /// The kernel that finds the nearest sphere of every ray and probes fences, which the self-test makes of the one that
 /// records rays (`gpu/self_test/fence_probe.rs`).
-pub(in crate::gpu) fn probe_kernel() -> Kernel {
+pub(crate) fn probe_kernel() -> Kernel {
     let kind = BrickKind { structure: Structure::Grid, primitive: Primitive::Sphere };
     entered_kernel(CameraKind::Pinhole, kind, BrickPass::First, "primary/entry.wgsl#probed")
 }
@@ -48,7 +48,7 @@ fn entered_kernel(
 }
 
 /// The choice of the parts that traverse a structure.
-pub(in crate::gpu) fn structure_choice(structure: Structure) -> (&'static str, &'static str) {
+pub(crate) fn structure_choice(structure: Structure) -> (&'static str, &'static str) {
     let list = match structure {
         Structure::List => "list",
         Structure::RayQuery => "ray-query",
@@ -60,13 +60,13 @@ pub(in crate::gpu) fn structure_choice(structure: Structure) -> (&'static str, &
 }
 
 /// The choice of the part that writes data layers, if there are any.
-pub(in crate::gpu) fn data_layers_choice(are_written: bool) -> (&'static str, &'static str) {
+pub(crate) fn data_layers_choice(are_written: bool) -> (&'static str, &'static str) {
     let all = "primary/data_layers.wgsl#all";
     ("$data", if are_written { all } else { "primary/data_layers.wgsl#none" })
 }
 
 /// The choice of the part that writes colours.
-pub(in crate::gpu) fn color_target_choice(color: ColorTarget) -> (&'static str, &'static str) {
+pub(crate) fn color_target_choice(color: ColorTarget) -> (&'static str, &'static str) {
     let part = match color {
         ColorTarget::Srgb8 => "primary/color_target.wgsl#rgba8unorm",
         ColorTarget::Linear16 => "primary/color_target.wgsl#rgba16float",
@@ -76,7 +76,7 @@ pub(in crate::gpu) fn color_target_choice(color: ColorTarget) -> (&'static str, 
 }
 
 /// The kernel that computes colours and, if requested, data layers from hits.
-pub(in crate::gpu) fn shade_kernel(
+pub(crate) fn shade_kernel(
     camera: CameraKind,
     primitive: Primitive,
     color: ColorTarget,
@@ -98,6 +98,6 @@ fn primitive_part(primitive: Primitive) -> &'static str {
 }
 
 /// The constant that chooses a camera.
-pub(in crate::gpu) fn camera_constant(camera: CameraKind) -> Constant {
+pub(crate) fn camera_constant(camera: CameraKind) -> Constant {
     ("CAMERA", camera as u32)
 }

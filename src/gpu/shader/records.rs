@@ -14,15 +14,15 @@ use crate::verify::RequestedCamera;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct Camera {
-    pub(in crate::gpu) origin: [f32; 3],
-    pub(in crate::gpu) advance: f32,
-    pub(in crate::gpu) right: [f32; 3],
-    pub(in crate::gpu) first: f32,
-    pub(in crate::gpu) up: [f32; 3],
-    pub(in crate::gpu) second: f32,
-    pub(in crate::gpu) forward: [f32; 3],
-    pub(in crate::gpu) third: f32,
+pub(crate) struct Camera {
+    pub(crate) origin: [f32; 3],
+    pub(crate) advance: f32,
+    pub(crate) right: [f32; 3],
+    pub(crate) first: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) second: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) third: f32,
 }
 
 #[repr(C)]
@@ -39,75 +39,75 @@ pub(crate) struct FrameParameters {
     tile_origin: [u32; 2],
     tile_size: [u32; 2],
     target_origin: [u32; 2],
-    pub(in crate::gpu) traced_first: [u32; 2],
-    pub(in crate::gpu) traced_size: [u32; 2],
-    pub(in crate::gpu) first_group: [u32; 2],
+    pub(crate) traced_first: [u32; 2],
+    pub(crate) traced_size: [u32; 2],
+    pub(crate) first_group: [u32; 2],
     row_step: u32,
     iteration_limit_again: u32,
 }
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct Brick {
-    pub(in crate::gpu) min: [f32; 3],
-    pub(in crate::gpu) cell_size: f32,
-    pub(in crate::gpu) cell_counts: [u32; 3],
-    pub(in crate::gpu) shape_count: u32,
-    pub(in crate::gpu) first_shape: u32,
-    pub(in crate::gpu) is_first: u32,
-    pub(in crate::gpu) last_appearance: u32,
-    pub(in crate::gpu) color_shift: u32,
-    pub(in crate::gpu) color_mask: u32,
-    pub(in crate::gpu) material_first: u32,
-    pub(in crate::gpu) material_mask: u32,
-    pub(in crate::gpu) first_reference: u32,
-    pub(in crate::gpu) crowd_min: [f32; 3],
-    pub(in crate::gpu) crowd_margin: f32,
-    pub(in crate::gpu) crowd_max: [f32; 3],
-    pub(in crate::gpu) unused: u32,
+pub(crate) struct Brick {
+    pub(crate) min: [f32; 3],
+    pub(crate) cell_size: f32,
+    pub(crate) cell_counts: [u32; 3],
+    pub(crate) shape_count: u32,
+    pub(crate) first_shape: u32,
+    pub(crate) is_first: u32,
+    pub(crate) last_appearance: u32,
+    pub(crate) color_shift: u32,
+    pub(crate) color_mask: u32,
+    pub(crate) material_first: u32,
+    pub(crate) material_mask: u32,
+    pub(crate) first_reference: u32,
+    pub(crate) crowd_min: [f32; 3],
+    pub(crate) crowd_margin: f32,
+    pub(crate) crowd_max: [f32; 3],
+    pub(crate) unused: u32,
 }
 
 /// The status word, which is nonzero if an invocation reached its iteration limit.
-pub(in crate::gpu) type Status = u32;
+pub(crate) type Status = u32;
 
 /// A hit, which is a `vec4u`: the bits of t, the id, the shape index, and the bits of the distance to the ray's origin.
-pub(in crate::gpu) type Hit = [u32; 4];
+pub(crate) type Hit = [u32; 4];
 
 /// The recorded rays of a pixel, each of which is two `vec4f`: origin and distance; direction, and a number that is
 /// nonzero if there is a ray. The first was traced, and with the second the hit was shaded.
-pub(in crate::gpu) type RecordedRays = [f32; 16];
+pub(crate) type RecordedRays = [f32; 16];
 
 /// The position of a scene: the origin of its frame in world space, and its box in that frame, to which rays are moved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneSpace {
-    pub(in crate::gpu) origin: DVec3,
-    pub(in crate::gpu) min: Vec3,
-    pub(in crate::gpu) max: Vec3,
+    pub(crate) origin: DVec3,
+    pub(crate) min: Vec3,
+    pub(crate) max: Vec3,
 }
 
 impl SceneSpace {
     /// The box's corners, in the scene's frame.
-    pub(in crate::gpu) fn corners(&self) -> [DVec3; 8] {
+    pub(crate) fn corners(&self) -> [DVec3; 8] {
         Bounds::between(self.min.as_dvec3(), self.max.as_dvec3()).corners()
     }
 }
 
 /// A sphere, which is a `vec4f`: its centre in the scene's frame, and its radius.
-pub(in crate::gpu) type Sphere = [f32; 4];
+pub(crate) type Sphere = [f32; 4];
 
 /// A colour, which is a `vec4f`: linear red, green and blue, and alpha.
-pub(in crate::gpu) type Color = [f32; 4];
+pub(crate) type Color = [f32; 4];
 
 /// The number for transparent misses, `SHADING_TRANSPARENT` in `shaders/primary/shading.wgsl`.
 const SHADING_TRANSPARENT: u32 = 2;
 
 /// Distance of a miss, `NO_HIT` in `shaders/scene/frame.wgsl`.
-pub(in crate::gpu) use crate::verify::NO_HIT;
+pub(crate) use crate::verify::NO_HIT;
 
 impl Camera {
     /// Computes the record in f64 and rounds it to f32: the camera is transformed to the scene's frame and moved along
     /// its forward vector up to the scene's box, if its rays can start there.
-    pub(in crate::gpu) fn new(camera: &RequestedCamera, scene: &SceneSpace) -> Self {
+    pub(crate) fn new(camera: &RequestedCamera, scene: &SceneSpace) -> Self {
         let RequestedCamera { kind, vectors } = camera;
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
@@ -136,7 +136,7 @@ impl Camera {
 }
 
 impl FrameParameters {
-    pub(in crate::gpu) fn new(
+    pub(crate) fn new(
         camera: &RequestedCamera,
         scene: &SceneSpace,
         film: &Film,
@@ -174,13 +174,13 @@ impl FrameParameters {
 
 impl FrameParameters {
     /// The same record with the order of rows that suits a device.
-    pub(in crate::gpu) fn in_order_of(self, shape: DeviceShape) -> Self {
+    pub(crate) fn in_order_of(self, shape: DeviceShape) -> Self {
         let row_step = if shape.spreads_rows { self.row_step } else { 1 };
         Self { row_step, ..self }
     }
 
     /// The record for lit pictures, whose colours depend on other records.
-    pub(in crate::gpu) fn of_tile(
+    pub(crate) fn of_tile(
         view: &View<'_>,
         scene: &SceneSpace,
         tile: Tile,

@@ -2,7 +2,7 @@
 
 /// The step between consecutive rows of workgroups. It is about the golden ratio of their number, so that any run of
 /// rows is spread evenly over the picture, and coprime to their number, so that no row is left out.
-pub(in crate::gpu) fn row_step(row_count: u32) -> u32 {
+pub(crate) fn row_step(row_count: u32) -> u32 {
     let has_common_factor = |step: u32| {
         let (mut a, mut b) = (row_count, step);
         while b != 0 {

@@ -4,7 +4,7 @@ use crate::load::elements::appearance;
 
 /// Kinds of residues. The atoms of known kinds are of few elements, whatever their names look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::load) enum Residue {
+pub(crate) enum Residue {
     AminoAcid,
     NucleotideOrWater,
     Other,

@@ -14,7 +14,7 @@ const HEADER_BYTES: u64 = 256;
 const ENTRY_BYTES: u64 = 32;
 const NAME_BYTES: u64 = 64;
 
-pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+pub(crate) fn starts(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC.to_le_bytes())
 }
 
