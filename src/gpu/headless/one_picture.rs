@@ -202,9 +202,9 @@ impl Headless {
 }
 
 impl Headless {
-    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`]), with what is needed to put it together
-    /// with those of the other parts. Each planned brick is built, traced and dropped before the next. A large picture is
-    /// rendered in tiles, for each of which the bricks are built again.
+    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::Scene::part)), with what is needed
+    /// to put it together with those of the other parts. Each planned brick is built, traced and dropped before the next.
+    /// A large picture is rendered in tiles, for each of which the bricks are built again.
     ///
     /// # Errors
     /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
