@@ -20,6 +20,7 @@ use pinhole::{Colors, Film, LayerSet, LinearRgb, RenderSettings, Scene};
 use crate::pictures::go_on;
 use crate::support::View;
 use crate::support::appearances::kinds;
+use crate::support::effort::share;
 use crate::{lit_scenes, scenes, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -165,7 +166,7 @@ fn opened_otherwise(headless: &'static Headless) {
         (name, view)
     });
     let primary = scenes::all().into_iter().map(|(name, view)| (name.to_owned(), view));
-    for (name, view) in primary.chain(lit) {
+    for (name, view) in share(primary.chain(lit)) {
         let expected = view.picture(headless, LayerSet::ALL);
         for (how, other) in &others {
             assert_eq!(view.picture(other, LayerSet::ALL), expected, "{name}, {how:?}");

@@ -9,6 +9,11 @@ pub(crate) fn effort() -> f64 {
     effort
 }
 
+/// What runs of a campaign over these: every eighth, or all.
+pub(crate) fn share<T>(all: impl Iterator<Item = T>) -> impl Iterator<Item = T> {
+    all.step_by((1.0 / effort()).round() as usize)
+}
+
 /// The number of tries of a campaign that tries `full` if all of it runs; at least one.
 pub(crate) fn tries(full: u32) -> u32 {
     (f64::from(full) * effort()).ceil() as u32

@@ -13,6 +13,7 @@ use pinhole::{Appearance, Colors, Image, LayerSet, RenderSettings, Scene};
 use crate::host_program::{Host, Layers};
 use crate::lit_scenes::{self, sampled as named};
 use crate::support::View;
+use crate::support::effort::share;
 use crate::trial;
 
 pub(super) fn trials() -> Vec<Trial> {
@@ -155,7 +156,7 @@ fn budgets(headless: &'static Headless) {
 fn every_scene(headless: &'static Headless) {
     // All have the same film.
     let show = Show::of(&named("path_glass", 3));
-    for (name, mut view) in lit_scenes::all() {
+    for (name, mut view) in share(lit_scenes::all()) {
         view.settings.sampling.samples = 3;
         view.settings.is_transparent = true;
         let scene = show.scene(&view.scene);
