@@ -19,7 +19,7 @@ use pinhole::verify::{
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
 use crate::planted::{Fault, planted};
-use crate::support::effort::{share, tries};
+use crate::support::effort::tries;
 use crate::support::{View, random_light};
 use crate::{headless, lit_scenes, planted, trial};
 
@@ -49,9 +49,8 @@ pub(crate) fn trials() -> Vec<Trial> {
             trials.push(Trial::test(name, move || random(suite, seed)));
         }
         let find = move |fault: &Fault| is_found(fault, suite, chosen);
-        // A device is opened and a light is recorded for each.
-        let faults = share(planted(suite));
-        trials.extend(planted::trials(&format!("{suite}::faults::"), faults, find));
+        let name = format!("{suite}::faults::");
+        trials.extend(planted::trials(&name, planted(suite), find));
     }
     for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();

@@ -47,7 +47,7 @@ fn main() {
             host::trials(),
             device::trials(),
             structures::trials(),
-            vec![planted::trial()],
+            planted::checks(),
             ray_query::trials(),
             twin::trials(),
             update::trials(),

@@ -7,6 +7,8 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 use pinhole::internals::ShaderEdit;
 
+use crate::support::effort::share;
+
 /// The suites that have faults.
 const SUITES: [&str; 11] = [
     "primary",
@@ -61,26 +63,33 @@ pub(crate) fn named<T: Copy>(table: &[(&str, T)], name: &str) -> T {
     found.unwrap_or_else(|| panic!("nothing is named {name}")).1
 }
 
-/// A test for each of some faults.
+/// Tests for some faults, an eighth of which runs by default: each opens a device and renders.
 pub(crate) fn trials(
     group: &str,
     faults: impl Iterator<Item = Fault>,
     is_found: impl Fn(&Fault) -> Result<(), Failed> + Copy + Send + 'static,
 ) -> impl Iterator<Item = Trial> {
-    faults.map(move |fault| Trial::test(format!("{group}{}", fault.name), move || is_found(&fault)))
+    share(faults)
+        .map(move |fault| Trial::test(format!("{group}{}", fault.name), move || is_found(&fault)))
 }
 
 /// Opens a device one part of whose shaders is edited. `file` may name a variant: `file.wgsl#variant`.
 pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("shaders")
-        .join(file.split('#').next().unwrap_or(file));
-    if !std::fs::read_to_string(path)?.contains(find) {
-        return Err(format!("{file} has no `{find}`").into());
-    }
+    find_in(file, find)?;
     let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
     Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() })
         .wait()?)
+}
+
+/// Refuses an edit whose text is not in its file.
+fn find_in(file: &str, text: &str) -> Result<(), Failed> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("shaders")
+        .join(file.split('#').next().unwrap_or(file));
+    match std::fs::read_to_string(path)?.contains(text) {
+        true => Ok(()),
+        false => Err(format!("{file} has no `{text}`").into()),
+    }
 }
 
 fn parse(text: &'static str) -> Result<Vec<Fault>, String> {
@@ -126,9 +135,13 @@ fn parse_fault(suite: &'static str, line: &'static str) -> Option<Fault> {
     })
 }
 
-/// The parser refuses what is not a list of faults, so that no fault is lost unseen.
-pub(crate) fn trial() -> Trial {
-    Trial::test("planted::malformed_lines_are_refused", || {
+/// No fault is lost unseen: all can be planted, also those that do not run, and the parser refuses what is not a list.
+pub(crate) fn checks() -> Vec<Trial> {
+    let fit = Trial::test("planted::every_fault_can_be_planted", || {
+        let mut all = SUITES.into_iter().flat_map(planted);
+        all.try_for_each(|fault| find_in(&fault.edit.file, &fault.edit.find))
+    });
+    let refused = Trial::test("planted::malformed_lines_are_refused", || {
         let good = "[live]\na b c/d.wgsl#e `f\\ng` => ``\n# why\nh c/d.wgsl `i` => `j`";
         let [first, second] = parse(good)?.try_into().map_err(|other| format!("{other:?}"))?;
         assert_eq!(first.setup::<1>(), ["b"]);
@@ -154,5 +167,6 @@ pub(crate) fn trial() -> Trial {
             assert!(parse(bad).is_err(), "{bad}");
         }
         Ok(())
-    })
+    });
+    vec![fit, refused]
 }

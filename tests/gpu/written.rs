@@ -11,6 +11,7 @@ use pinhole::{Encoding, Image, LayerSet, cpu};
 
 use crate::planted::{self, Fault, named, planted};
 use crate::support::View;
+use crate::support::effort::share;
 use crate::{headless, lit_scenes, scenes, verify};
 
 /// Faults of layers that are not in the picture.
@@ -39,7 +40,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
     }
-    for (name, view) in lit_scenes::all() {
+    for (name, view) in share(lit_scenes::all()) {
         trials.push(Trial::test(format!("written::means::{name}"), move || {
             let means = means(headless()?, &view)?;
             match means.count(Outcome::Violated) {
