@@ -1,15 +1,49 @@
 //! Outlines: lines around shapes, which are found from the data layers of a picture.
 
+use std::f32::consts::PI;
 use std::ops::Range;
 
 use glam::Vec2;
 
+use crate::image::color::LinearRgb;
 use crate::image::{Image, Layer, LayerSet, NO_ID};
 use crate::parallel;
-use crate::render::Outline;
 
 /// The layers from which outlines are found.
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
+
+/// Lines at edges of the data layers: between spheres where the depth jumps or the direction of the normal changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+pub struct Outline {
+    /// Width of the outline in pixels: 0.5 to 64.
+    pub width: f32,
+    /// Colour of the outline.
+    pub color: LinearRgb,
+    /// The smallest jump in depth that makes an outline, as a fraction of the depth; 0 or more.
+    pub depth: f32,
+    /// The smallest angle between normals that makes an outline, in radians: 0 to π.
+    pub angle: f32,
+}
+
+impl Outline {
+    /// Thin dark lines where the depth jumps, and none between surfaces that meet.
+    #[must_use]
+    pub fn thin() -> Self {
+        Self {
+            width: 1.2,
+            color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]),
+            depth: 0.01,
+            angle: PI,
+        }
+    }
+}
+
+impl Default for Outline {
+    fn default() -> Self {
+        Self { width: 2.0, color: LinearRgb::BLACK, depth: 0.01, angle: 0.6 }
+    }
+}
 
 /// The hit at the centre of a pixel.
 #[derive(Clone, Copy)]
@@ -259,7 +293,6 @@ fn distance(point: Vec2, a: Vec2, b: Vec2) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::color::LinearRgb;
 
     /// A white picture of two spheres at these depths, of which `is_second` tells the second by index.
     fn two(

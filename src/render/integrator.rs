@@ -1,8 +1,7 @@
 //! Integrators: the algorithms that turn rays into colours, and their settings.
 
-use std::f32::consts::PI;
-
 use crate::image::color::LinearRgb;
+use crate::image::outline::Outline;
 use crate::light::codes;
 
 /// The algorithm that turns rays into colours.
@@ -200,37 +199,4 @@ pub struct DepthCue {
     pub far: f64,
     /// The colour to which others fade.
     pub color: LinearRgb,
-}
-
-/// Lines at edges of the data layers: between spheres where the depth jumps or the direction of the normal changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
-pub struct Outline {
-    /// Width of the outline in pixels: 0.5 to 64.
-    pub width: f32,
-    /// Colour of the outline.
-    pub color: LinearRgb,
-    /// The smallest jump in depth that makes an outline, as a fraction of the depth; 0 or more.
-    pub depth: f32,
-    /// The smallest angle between normals that makes an outline, in radians: 0 to π.
-    pub angle: f32,
-}
-
-impl Outline {
-    /// Thin dark lines where the depth jumps, and none between surfaces that meet.
-    #[must_use]
-    pub fn thin() -> Self {
-        Self {
-            width: 1.2,
-            color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]),
-            depth: 0.01,
-            angle: PI,
-        }
-    }
-}
-
-impl Default for Outline {
-    fn default() -> Self {
-        Self { width: 2.0, color: LinearRgb::BLACK, depth: 0.01, angle: 0.6 }
-    }
 }

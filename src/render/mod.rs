@@ -23,12 +23,12 @@ mod nearest;
 mod notes;
 mod progress;
 
+pub use crate::image::outline::Outline;
 #[cfg(feature = "scene-file")]
 pub(crate) use check::BRIGHTEST;
 pub use check::SettingsError;
 pub use integrator::{
-    DepthCue, Integrator, LightSampling, Occlusion, Outline, PathTracing, PrimarySettings, Shading,
-    Studio,
+    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, PrimarySettings, Shading, Studio,
 };
 pub use nearest::{Nearest, NotOfOneScene};
 pub use progress::{Decision, Picture, Progress, Watch};
