@@ -49,8 +49,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             trials.push(Trial::test(name, move || random(suite, seed)));
         }
         let find = move |fault: &Fault| is_found(fault, suite, chosen);
-        let name = format!("{suite}::faults::");
-        trials.extend(planted::trials(&name, planted(suite), find));
+        trials.extend(planted::trials(&format!("{suite}::faults::"), planted(suite), find));
     }
     for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree] {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();

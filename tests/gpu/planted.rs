@@ -75,14 +75,14 @@ pub(crate) fn trials(
 
 /// Opens a device one part of whose shaders is edited. `file` may name a variant: `file.wgsl#variant`.
 pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
-    find_in(file, find)?;
+    check_text(file, find)?;
     let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
     Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() })
         .wait()?)
 }
 
-/// Refuses an edit whose text is not in its file.
-fn find_in(file: &str, text: &str) -> Result<(), Failed> {
+/// Refuses a text to edit that is not in its file.
+fn check_text(file: &str, text: &str) -> Result<(), Failed> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("shaders")
         .join(file.split('#').next().unwrap_or(file));
@@ -139,7 +139,7 @@ fn parse_fault(suite: &'static str, line: &'static str) -> Option<Fault> {
 pub(crate) fn checks() -> Vec<Trial> {
     let fit = Trial::test("planted::every_fault_can_be_planted", || {
         let mut all = SUITES.into_iter().flat_map(planted);
-        all.try_for_each(|fault| find_in(&fault.edit.file, &fault.edit.find))
+        all.try_for_each(|fault| check_text(&fault.edit.file, &fault.edit.find))
     });
     let refused = Trial::test("planted::malformed_lines_are_refused", || {
         let good = "[live]\na b c/d.wgsl#e `f\\ng` => ``\n# why\nh c/d.wgsl `i` => `j`";

@@ -9,7 +9,7 @@ pub(crate) fn effort() -> f64 {
     effort
 }
 
-/// What runs of a campaign over these: every eighth, or all.
+/// Takes the cases of a campaign that run: the first, and by default every eighth from there; all, if all of it runs.
 pub(crate) fn share<T>(all: impl Iterator<Item = T>) -> impl Iterator<Item = T> {
     all.step_by((1.0 / effort()).round() as usize)
 }
