@@ -4,8 +4,8 @@
 
 use std::io::Write as _;
 
-use pinhole::load::{self, Column, ColumnValues, Dataset, LoadErrorKind, Options, Trajectory};
 use pinhole::{LinearRgb, SphereArray};
+use pinhole_data::load::{self, Column, ColumnValues, Dataset, LoadErrorKind, Options, Trajectory};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -51,7 +51,6 @@ fn print(out: &mut impl std::io::Write, index: usize, frame: &Dataset) -> std::i
         let [x, y, z, radius] = match &frame.spheres {
             SphereArray::F32(all) => all[row].map(f64::from),
             SphereArray::F64(all) => all[row],
-            _ => [0.0; 4],
         };
         write!(out, "{x}\t{y}\t{z}\t{radius}")?;
         for Column { values, .. } in &frame.columns {
@@ -60,7 +59,6 @@ fn print(out: &mut impl std::io::Write, index: usize, frame: &Dataset) -> std::i
                 ColumnValues::Labels(all) => {
                     write!(out, "\t{}", all.names[all.indices[row] as usize])?;
                 }
-                _ => {}
             }
         }
         if has_colors {

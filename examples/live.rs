@@ -17,9 +17,9 @@ use pinhole::gpu::{
     LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers,
     TargetTextures, Wait, adapter, wgpu,
 };
-use pinhole::load::pdb;
 use pinhole::render::{Integrator, Occlusion, Studio};
 use pinhole::{Film, LinearRgb, RenderSettings, View};
+use pinhole_data::load::pdb;
 
 mod shared;
 

@@ -3,7 +3,7 @@
 # the library and the program built without the feature `gpu`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-for feature in "" exr formats gpu png run-file scene-file vtk; do
+for feature in "" gpu run-file; do
     cargo clippy --locked --quiet -p pinhole --lib --no-default-features --features "$feature" -- -D warnings
 done
 scripts/test.sh --cpu-only --locked

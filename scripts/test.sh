@@ -31,7 +31,7 @@ case "${1:-}" in
     --cpu-only)
         shift
         export PINHOLE_NO_GPU_TESTS=1
-        scope=(-p pinhole -p pinhole-cli --no-default-features --features pinhole/all-formats --lib --test cpu --test program)
+        scope=(-p pinhole -p pinhole-data -p pinhole-figure -p pinhole-cli --no-default-features --features pinhole/run-file --lib --test cpu --test readers --test figures --test program)
         ;;
 esac
 

@@ -9,12 +9,10 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, Expected, MapAccess, SeqAccess, Visitor};
 
 /// Reads all elements of a list, which must have exactly `N`.
-pub(crate) fn elements<
-    'de,
-    A: SeqAccess<'de>,
-    T: Deserialize<'de> + Copy + Default,
-    const N: usize,
->(
+///
+/// # Errors
+/// If there are more or fewer, or one is of another type.
+pub fn elements<'de, A: SeqAccess<'de>, T: Deserialize<'de> + Copy + Default, const N: usize>(
     mut seq: A,
     expected: &dyn Expected,
 ) -> Result<[T; N], A::Error> {
@@ -30,7 +28,10 @@ pub(crate) fn elements<
 }
 
 /// Reads a list of exactly `N` numbers.
-pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
+///
+/// # Errors
+/// If it is another value.
+pub fn array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<[f64; N], D::Error> {
     struct Numbers<const N: usize>;
@@ -51,7 +52,10 @@ pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
 }
 
 /// Reads a list of exactly `N` numbers for a key that may be left out.
-pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
+///
+/// # Errors
+/// If it is another value.
+pub fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<Option<[f64; N]>, D::Error> {
     array(deserializer).map(Some)
@@ -60,7 +64,7 @@ pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
 /// A list of exactly `N` numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
-pub(crate) struct List<const N: usize>(#[serde(deserialize_with = "array")] pub(crate) [f64; N]);
+pub struct List<const N: usize>(#[serde(deserialize_with = "array")] pub [f64; N]);
 
 impl<const N: usize> serde::Serialize for List<N> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -71,7 +75,7 @@ impl<const N: usize> serde::Serialize for List<N> {
 /// A value that must be a table in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 #[serde(transparent)]
-pub(crate) struct Table<T>(pub(crate) T);
+pub struct Table<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

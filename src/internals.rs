@@ -11,6 +11,16 @@ pub use crate::verify::lit::recording::{
     PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 
+/// Lists and tables of settings, read more strictly than serde does.
+pub mod exact {
+    pub use crate::exact::*;
+}
+
+/// Loops on all cores.
+pub mod parallel {
+    pub use crate::parallel::*;
+}
+
 /// Foreign text in messages.
 pub mod text {
     pub use crate::text::*;

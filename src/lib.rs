@@ -3,10 +3,10 @@
 //!
 //! | I want to … | start here |
 //! |---|---|
-//! | render a file of atoms or points | [`load::open`], [below](#render-a-file) |
+//! | render a file of atoms or points | the package `pinhole-data`, [below](#render-a-file) |
 //! | render arrays that I have in memory | [`Scene::from_f32`], [below](#render-from-arrays) |
 //! | have light, shadows and soft edges | [`RenderSettings::studio`], [`RenderSettings::path`], [below](#light-it) |
-//! | color spheres by numbers, with a legend | `color_by::ColorBy`, `annotate::Annotations` |
+//! | colour spheres by numbers, with a legend, or read a scene file | the package `pinhole-figure` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
 //! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchStructure`], not so slowly |
@@ -18,10 +18,12 @@
 //!
 //! # Render a file
 //! ```no_run
-//! # #[cfg(all(feature = "gpu", feature = "png"))] {
+//! # #[cfg(feature = "gpu")] {
 //! use pinhole::camera::PinholeCamera;
 //! use pinhole::gpu::{Headless, HeadlessOptions, Wait};
-//! use pinhole::{Encoding, Film, LayerSet, LinearRgb, RenderSettings, View, load, write};
+//! use pinhole::{Encoding, Film, LayerSet, LinearRgb, RenderSettings, View};
+//! use pinhole_data::load;
+//! use pinhole_figure::write;
 //!
 //! let loaded = load::open("4hhb.pdb", &load::Options::default())?;
 //! let scene = loaded.scene(LinearRgb::WHITE)?; // white where the file gives no colours
@@ -109,12 +111,12 @@
 //! ```
 //!
 //! # Features
-//! `gpu` (default) is the compute-shader renderer. `formats` (default) reads files of spheres and writes arrays of NumPy, and
-//! `png` (default) writes pictures. `vtk` reads VTK files. `scene-file` reads scene files, turns columns into colours, selects by them, adds
-//! bonds and cells, and draws legends, scale bars and labels. `exr` writes OpenEXR pictures, and
-//! reads environments from OpenEXR and Radiance HDR. `run-file` stores what a device rendered. `all-formats` is all of these but `gpu`. To embed only
-//! the renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package
-//! `pinhole-cli`.
+//! `gpu` (default) is the compute-shader renderer. `run-file` stores what a device rendered. To embed only the renderer, use
+//! `default-features = false, features = ["gpu"]`.
+//!
+//! The package `pinhole-data` reads files of spheres, finds and selects by their columns, and adds bonds and cells.
+//! `pinhole-figure` reads scene files, turns columns into colours, draws legends, scale bars and labels, and writes
+//! pictures. The command-line program is `pinhole-cli`.
 //!
 //! # Stability
 //! A version that breaks nothing may add fields to settings and options, such as [`RenderSettings`]: write
@@ -133,15 +135,8 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
-#[cfg(feature = "scene-file")]
-pub mod added;
-#[cfg(feature = "scene-file")]
-pub mod annotate;
 pub mod camera;
-#[cfg(feature = "scene-file")]
-pub mod color_by;
 pub mod cpu;
-#[cfg(feature = "scene-file")]
 mod exact;
 pub mod generate;
 pub mod geometry;
@@ -151,21 +146,12 @@ pub mod image;
 #[doc(hidden)]
 pub mod internals;
 pub mod light;
-#[cfg(feature = "formats")]
-pub mod load;
 mod parallel;
 pub mod range;
 pub mod render;
 pub mod scene;
-#[cfg(feature = "scene-file")]
-pub mod scene_file;
-#[cfg(feature = "scene-file")]
-pub mod select;
-#[cfg(feature = "scene-file")]
-pub mod style;
 mod text;
 pub mod verify;
-pub mod write;
 
 pub use camera::View;
 pub use camera::film::Film;
@@ -191,7 +177,6 @@ mod pages {
     struct Verify;
     #[doc = include_str!("../docs/conformance.md")]
     struct Conformance;
-    #[cfg(all(feature = "scene-file", feature = "png"))]
     #[doc = include_str!("../docs/color.md")]
     struct Color;
 }

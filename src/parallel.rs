@@ -17,12 +17,13 @@ fn each_index(count: usize, f: &(dyn Fn(usize) + Sync)) {
 }
 
 /// The number of threads that loops run on.
-pub(crate) fn threads() -> usize {
+#[must_use]
+pub fn threads() -> usize {
     rayon::current_num_threads()
 }
 
 /// The results of `f` for `0..count`, in order.
-pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
+pub fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
     let chunk = count.div_ceil(16 * threads()).clamp(1, CHUNK / 8);
     extended(Vec::with_capacity(count), count, chunk, f)
 }
@@ -31,7 +32,7 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R
 ///
 /// # Errors
 /// Returns an error if there is not enough memory for `count` results.
-pub(crate) fn try_map<R: Send>(
+pub fn try_map<R: Send>(
     count: usize,
     f: impl Fn(usize) -> R + Sync,
 ) -> Result<Vec<R>, TryReserveError> {
@@ -64,15 +65,12 @@ fn extended<R: Send>(
 }
 
 /// The results of `f` for every chunk and the index of its first item, in order.
-pub(crate) fn map_chunks<T: Sync, R: Send>(
-    items: &[T],
-    f: impl Fn(usize, &[T]) -> R + Sync,
-) -> Vec<R> {
+pub fn map_chunks<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &[T]) -> R + Sync) -> Vec<R> {
     map_parts(ranges(items.len(), CHUNK), |range| f(range.start, &items[range]))
 }
 
 /// The results of `f` for every element of `parts`, in order.
-pub(crate) fn map_parts<T: Send, R: Send>(parts: Vec<T>, f: impl Fn(T) -> R + Sync) -> Vec<R> {
+pub fn map_parts<T: Send, R: Send>(parts: Vec<T>, f: impl Fn(T) -> R + Sync) -> Vec<R> {
     let mut results: Vec<_> = parts.iter().map(|_| None).collect();
     let slots = results.iter_mut().zip(parts).collect();
     for_each(slots, |(slot, part)| *slot = Some(f(part)));
@@ -80,19 +78,19 @@ pub(crate) fn map_parts<T: Send, R: Send>(parts: Vec<T>, f: impl Fn(T) -> R + Sy
 }
 
 /// Calls `f` with every element of `parts`.
-pub(crate) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync) {
+pub fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync) {
     let parts: Vec<_> = parts.into_iter().map(|part| Mutex::new(Some(part))).collect();
     let take = |k: usize| parts[k].lock().unwrap_or_else(PoisonError::into_inner).take();
     each_index(parts.len(), &|k| take(k).into_iter().for_each(&f));
 }
 
 /// Calls `f` with every item of a slice.
-pub(crate) fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
+pub fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
     for_each(items.chunks_mut(CHUNK).collect(), |chunk| chunk.iter_mut().for_each(&f));
 }
 
 /// Runs two tasks, at the same time if they are `large`.
-pub(crate) fn both<A: Send, B: Send>(
+pub fn both<A: Send, B: Send>(
     large: bool,
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,
@@ -101,15 +99,13 @@ pub(crate) fn both<A: Send, B: Send>(
 }
 
 /// Splits `0..count` into ranges of at most `size`.
-pub(crate) fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
+#[must_use]
+pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
 
 /// Splits a slice at the ascending indices `ends`, the last of which is the length of the slice.
-pub(crate) fn split_mut<T>(
-    mut slice: &mut [T],
-    ends: impl IntoIterator<Item = usize>,
-) -> Vec<&mut [T]> {
+pub fn split_mut<T>(mut slice: &mut [T], ends: impl IntoIterator<Item = usize>) -> Vec<&mut [T]> {
     let mut start = 0;
     ends.into_iter()
         .map(|end| {

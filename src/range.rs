@@ -20,7 +20,10 @@ impl RangeError {
     }
 
     /// Returns the value if it is at least `low` and at most `high`. NaN is always out of range.
-    pub(crate) fn unless_within(
+    ///
+    /// # Errors
+    /// Returns an error that names the parameter if the value is out of range.
+    pub fn unless_within(
         parameter: &'static str,
         value: f64,
         [low, high]: [f64; 2],

@@ -15,8 +15,8 @@ pub fn one_line(text: &str) -> String {
 }
 
 /// The text, shortened to 40 characters and an ellipsis if it is longer, with control characters escaped.
-#[cfg(any(feature = "formats", feature = "run-file"))]
-pub(crate) fn shortened(text: &str) -> String {
+#[must_use]
+pub fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     let mut shown = String::new();
     for (index, c) in text.chars().enumerate() {
@@ -33,14 +33,13 @@ pub(crate) fn shortened(text: &str) -> String {
 }
 
 /// The first names, at most `most` of them, with an ellipsis if there are more.
-#[cfg(feature = "formats")]
-pub(crate) fn listed(mut names: impl Iterator<Item = String>, most: usize) -> String {
+pub fn listed(mut names: impl Iterator<Item = String>, most: usize) -> String {
     let shown: Vec<String> = names.by_ref().take(most).collect();
     shown.join(", ") + if names.next().is_some() { ", …" } else { "" }
 }
 
 /// The text without the byte order mark that some editors put before UTF-8.
-#[cfg(feature = "formats")]
-pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
+#[must_use]
+pub fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }

@@ -7,8 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::fault::{Fault, Outcome};
-use pinhole::color_by::{ColorKey, KeyKind};
 use pinhole::{LinearRgb, SphereArray};
+use pinhole_data::css;
+use pinhole_figure::color_by::{ColorKey, KeyKind};
 
 /// Centres, an array of shape (n, 3).
 #[derive(FromPyObject)]
@@ -138,6 +139,6 @@ pub(crate) fn in_python(py: Python<'_>, key: &ColorKey) -> PyResult<Py<PyAny>> {
 /// The colours of CSS with these names, three bytes of sRGB for each; None if any of the names is not that of a colour.
 #[pyfunction]
 pub(crate) fn srgb_of_names(names: Vec<String>) -> Option<Vec<u8>> {
-    let colors = names.iter().map(|name| LinearRgb::from_css(name).ok().map(LinearRgb::to_srgb8));
+    let colors = names.iter().map(|name| css::color(name).ok().map(LinearRgb::to_srgb8));
     colors.collect::<Option<Vec<_>>>().map(|colors| colors.into_flattened())
 }

@@ -1,7 +1,7 @@
 //! What may go wrong, and the Python exceptions that say so.
 
 use pinhole::gpu::GpuError;
-use pinhole::load::{LoadError, Place};
+use pinhole_data::load::{LoadError, Place};
 use pyo3::prelude::*;
 
 /// A failure, by the kind of exception that it becomes.

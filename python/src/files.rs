@@ -10,8 +10,8 @@ use crate::look::SceneText;
 use crate::scene::DataExtras;
 use crate::spheres::SphereData;
 use crate::worker;
-use pinhole::color_by::JoinedKeys;
-use pinhole::load::{self, Dataset, Format, LoadError, Options, Trajectory};
+use pinhole_data::load::{self, Dataset, Format, LoadError, Options, Trajectory};
+use pinhole_figure::color_by::JoinedKeys;
 
 /// A file of spheres, perhaps with several frames, of which one at a time is read.
 #[pyclass(frozen, module = "pinhole._pinhole")]

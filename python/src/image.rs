@@ -3,11 +3,11 @@
 use std::io::Cursor;
 
 use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, Layer};
-use pinhole::write::{exr, npy, png};
 use pinhole::{Encoding, LayerSet};
+use pinhole_figure::annotate::Annotations;
+use pinhole_figure::write::{exr, npy, png};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -63,7 +63,6 @@ impl Picture {
             Layer::Variance => image.variance().map(|layer| self.numbers(py, layer)).transpose()?,
             Layer::Id => image.id().map(|layer| self.numbers(py, layer)).transpose()?,
             Layer::Samples => image.samples().map(|layer| self.numbers(py, layer)).transpose()?,
-            _ => None,
         })
     }
 

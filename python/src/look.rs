@@ -4,14 +4,14 @@
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
-use pinhole::annotate::{AnnotationError, Annotations};
 use pinhole::camera::{Camera, CameraError};
-use pinhole::color_by::ColorKey;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::light::environment::Environment;
-use pinhole::load::environment;
-use pinhole::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
+use pinhole_figure::annotate::{AnnotationError, Annotations};
+use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::read::environment;
+use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 
 /// The text of a scene file, and which argument of Python each line is of.
 #[derive(Clone, Debug, Default)]

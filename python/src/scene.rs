@@ -2,11 +2,11 @@
 
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
-use pinhole::color_by::{ColorBy, ColorKey, JoinedKeys};
-use pinhole::load::Dataset;
 use pinhole::scene::material::SurfaceProperties;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::{Appearance, Colors, LinearRgb, Scene};
+use pinhole_data::load::Dataset;
+use pinhole_figure::color_by::{ColorBy, ColorKey, JoinedKeys};
+use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 
 /// A scene, and what is known about its spheres.
 pub(crate) struct DataScene {

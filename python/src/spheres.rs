@@ -16,12 +16,12 @@ use crate::render::OnDevice;
 use crate::scene::{DataExtras, DataScene, scene_of};
 use crate::worker;
 use pinhole::camera::Viewpoint;
-use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
 use pinhole::image::Layer;
-use pinhole::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
+use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
+use pinhole_figure::color_by::ColorKey;
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 /// Which row of the picture has y = +1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum YAxis {
     /// y = +1 is the top row, so `up = (0, 1, 0)` gives a picture the right way up.
     #[default]

@@ -8,13 +8,8 @@
 use std::f64::consts::PI;
 
 /// A pixel filter: how densely samples are placed around a pixel's centre. Distances are in pixels, along each axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    any(feature = "run-file", feature = "scene-file"),
-    derive(serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PixelFilter {
     /// The same weight everywhere within 0.5, which is the pixel itself.

@@ -3,7 +3,6 @@
 use glam::{DVec2, DVec3};
 
 use crate::geometry::basis::OrthonormalBasis;
-#[cfg(feature = "scene-file")]
 use crate::geometry::bounds::Bounds;
 use crate::geometry::subject::Subject;
 
@@ -144,7 +143,6 @@ pub(super) fn parallel_extent(
 
 /// How far behind the centre of the box an eye must stand so that the bounding sphere of the box lies within a cone of
 /// this half angle. If the cone is wider than a half space, this is just outside the bounding sphere.
-#[cfg(feature = "scene-file")]
 pub(super) fn round_distance(bounds: &Bounds, half_angle: f64) -> f64 {
     /// How much of the picture's radius the bounding sphere may fill.
     const FILL: f64 = 0.95;

@@ -16,12 +16,10 @@ mod framing;
 mod host;
 mod orthographic;
 mod panorama;
-#[cfg(feature = "scene-file")]
 mod parameters;
 mod path;
 mod path_curve;
 mod pinhole;
-#[cfg(feature = "scene-file")]
 mod placement;
 mod pose;
 pub mod sampling;
@@ -34,7 +32,6 @@ pub use fisheye::FisheyeCamera;
 pub use host::{DepthOrder, HostCamera, HostCameraError, HostMatrix};
 pub use orthographic::OrthographicCamera;
 pub use panorama::PanoramaCamera;
-#[cfg(feature = "scene-file")]
 pub use parameters::CameraParameters;
 pub use path::{
     CameraKey, CameraMotion, CameraOnPath, CameraPath, CameraPathError, KeyPlace, PathClock,
@@ -127,7 +124,6 @@ macro_rules! camera_table {
         }
     };
 }
-#[cfg(feature = "scene-file")]
 pub(crate) use camera_table;
 
 macro_rules! define_kind {
@@ -164,7 +160,8 @@ impl CameraKind {
     /// Whether straight lines stay straight in the picture, so that a box lies between the images of its corners. The
     /// rays of such a camera may start on any plane along `forward` instead of at the camera; see `Camera` in
     /// `shaders/scene/records.wgsl`.
-    pub(crate) const fn is_linear(self) -> bool {
+    #[must_use]
+    pub const fn is_linear(self) -> bool {
         matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)
     }
 }

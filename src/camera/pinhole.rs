@@ -119,7 +119,6 @@ impl PinholeCamera {
     }
 
     /// The same camera with a narrower field of view: the picture is enlarged about its middle.
-    #[cfg(feature = "scene-file")]
     pub(super) fn zoomed(self, zoom: Option<f64>) -> Result<Self, CameraError> {
         let Some(zoom) = zoom else { return Ok(self) };
         let half_extent = checked_half_extent(self.half_extent / checked_length("`zoom`", zoom)?)?;

@@ -18,7 +18,8 @@ pub const MIN_LENGTH: f64 = 1.0 / MAX_LENGTH;
 /// The vector of length one along `v`, or `None` if `v` is zero or not finite.
 ///
 /// Scales by the largest component first, so that no finite vector overflows or underflows.
-pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
+#[must_use]
+pub fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     if !v.is_finite() || largest == 0.0 {
         return None;

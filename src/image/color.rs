@@ -2,9 +2,6 @@
 
 use std::sync::LazyLock;
 
-#[cfg(feature = "scene-file")]
-use crate::text::shortened;
-
 /// A colour in linear light with the Rec. 709 primaries; 1 is display white.
 ///
 /// Components are finite and not negative, and may exceed 1.
@@ -52,7 +49,7 @@ impl LinearRgb {
 
     /// A gray of the given value. NaN, infinities and negative values give black.
     #[must_use]
-    pub(crate) const fn gray(value: f32) -> Self {
+    pub const fn gray(value: f32) -> Self {
         // The comparison is false for NaN as well.
         if value >= 0.0 && value < f32::INFINITY { Self([value; 3]) } else { Self::BLACK }
     }
@@ -73,24 +70,6 @@ impl LinearRgb {
     #[must_use]
     pub fn to_srgb8(self) -> [u8; 3] {
         to_srgb8(self.0)
-    }
-
-    /// Reads a CSS colour: a name, `#rgb`, `#rrggbb`, `rgb(…)` and the other forms of CSS Color 4, all
-    /// rounded to eight bits of sRGB.
-    ///
-    /// # Errors
-    /// Returns an error if the text is not a valid colour, or the colour is not opaque.
-    #[cfg(feature = "scene-file")]
-    pub fn from_css(text: &str) -> Result<Self, ColorError> {
-        let refused = |what| ColorError(format!("`{}` is not {what}", shortened(text)));
-        let color = csscolorparser::parse(text).map_err(|_| {
-            refused("a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")
-        })?;
-        if color.a < 1.0 {
-            return Err(refused("opaque; a color here cannot have alpha"));
-        }
-        let [r, g, b, _] = color.to_rgba8();
-        Ok(Self::from_srgb8([r, g, b]))
     }
 }
 
@@ -200,21 +179,5 @@ mod tests {
             assert!(error.ends_with("has a component that is negative or not finite"), "{error}");
         }
         assert_eq!(LinearRgb::new([0.0, 0.5, 7.0]), Ok(LinearRgb([0.0, 0.5, 7.0])));
-    }
-
-    #[cfg(feature = "scene-file")]
-    #[test]
-    fn css_names_and_hex_are_the_same_bytes() {
-        for (text, bytes) in [
-            ("powderblue", [0xb0, 0xe0, 0xe6]),
-            ("#b0e0e6", [0xb0, 0xe0, 0xe6]),
-            ("green", [0, 0x80, 0]),
-            ("#F00", [255, 0, 0]),
-        ] {
-            assert_eq!(LinearRgb::from_css(text).unwrap(), LinearRgb::from_srgb8(bytes), "{text}");
-        }
-        for (text, words) in [("gren", "is not a valid color"), ("#ff000080", "is not opaque")] {
-            assert!(LinearRgb::from_css(text).unwrap_err().to_string().contains(words), "{text}");
-        }
     }
 }

@@ -6,7 +6,6 @@ use crate::image::{Layer, LayerSet};
 
 /// The number of bits of each sample of a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum Bits {
     /// 256 steps for each channel.
     #[default]
@@ -103,7 +102,8 @@ impl Encoding {
     }
 
     /// The background, if exposure or tone curve would change it.
-    pub(crate) fn kept_background(&self) -> Option<LinearRgb> {
+    #[must_use]
+    pub fn kept_background(&self) -> Option<LinearRgb> {
         let is_changed = self.exposure != 0.0 || self.tone != ToneCurve::None;
         self.background.filter(|_| is_changed && !self.transparent)
     }

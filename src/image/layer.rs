@@ -8,7 +8,6 @@ pub const NO_ID: u32 = u32::MAX;
 
 /// One layer of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum Layer {
     /// Linear colour, three f32. Over a black background it is premultiplied by [`Layer::Alpha`].
     Color,

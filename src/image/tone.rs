@@ -1,8 +1,8 @@
 //! Tone curves, which map light of any strength into the range of a display.
 
 /// A tone curve: it maps linear light that may exceed 1 to light that a display can show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ToneCurve {
     /// No change: values above 1 are clamped later. A flat colour comes out as the bytes that went in.

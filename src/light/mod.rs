@@ -30,7 +30,6 @@ pub struct Light {
 /// The kind of a light and its parameters. Colours are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub enum LightKind {
     /// A light at the eye without shadows: each surface is lit along the ray that sees it.
     Head {
@@ -66,13 +65,8 @@ pub enum LightKind {
 }
 
 /// The frame of a light's position or direction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    any(feature = "run-file", feature = "scene-file"),
-    derive(serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LightFrame {
     /// World space.
@@ -164,7 +158,6 @@ pub struct Sky {
 /// The radiance of a sky.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub enum SkyLight {
     /// The same radiance in all directions; black for no light.
     Constant(LinearRgb),

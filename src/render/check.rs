@@ -157,7 +157,7 @@ impl RenderSettings {
 }
 
 /// The largest radiance: its square, and the sum of many squares, stay below 2¹²⁸.
-pub(crate) const BRIGHTEST: f32 = 1e18;
+pub const BRIGHTEST: f32 = 1e18;
 
 fn check_brightness(
     rgb: [f32; 3],

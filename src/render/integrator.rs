@@ -7,7 +7,6 @@ use crate::light::codes;
 /// The algorithm that turns rays into colours.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub enum Integrator {
     /// Colours the surface that the ray through a pixel's centre hits first, without lights.
     Primary(Shading),
@@ -43,14 +42,8 @@ impl Integrator {
 }
 
 /// How the surface that a primary ray hits is coloured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    any(feature = "run-file", feature = "scene-file"),
-    derive(serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
-#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Shading {
     /// The colour of the sphere, without any shading.
     Flat,
@@ -120,13 +113,8 @@ impl LightSampling {
 }
 
 /// How emissive spheres, a sun and the image of a sky are sampled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    any(feature = "run-file", feature = "scene-file"),
-    derive(serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LightSampling {
     /// Only by scattered rays that happen to hit a light.

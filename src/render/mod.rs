@@ -24,8 +24,7 @@ mod notes;
 mod progress;
 
 pub use crate::image::outline::Outline;
-#[cfg(feature = "scene-file")]
-pub(crate) use check::BRIGHTEST;
+pub use check::BRIGHTEST;
 pub use check::SettingsError;
 pub use integrator::{
     DepthCue, Integrator, LightSampling, Occlusion, PathTracing, PrimarySettings, Shading, Studio,

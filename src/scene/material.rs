@@ -4,7 +4,6 @@ use crate::range::RangeError;
 
 /// What a surface does with light that hits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Material {
     /// A diffuse surface (Lambert's law), with an optional glossy lobe on top.
     Lambert {

@@ -328,8 +328,8 @@ fn appearance_of(spheres: &[Sphere]) -> Appearance {
 
 impl Colors {
     /// The distinct colours, in the order of first use, and the index of each sphere's colour.
-    #[cfg(feature = "formats")]
-    pub(crate) fn distinct(colors: &[LinearRgb]) -> Self {
+    #[must_use]
+    pub fn distinct(colors: &[LinearRgb]) -> Self {
         Self::of_palette(distinct(colors, |color| keyed(*color)))
     }
 

@@ -56,7 +56,10 @@ impl Sphere {
 }
 
 /// Checks that a centre (x, y, z) and a radius are in range.
-pub(crate) fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
+///
+/// # Errors
+/// Returns an error if one of them is not.
+pub fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
     let center = [x, y, z];
     // `contains` is false for NaN.
     let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);

@@ -6,7 +6,6 @@ use crate::scene::sphere::Sphere;
 /// Spheres (x, y, z, radius) in the precision of their source, not yet checked.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum SphereArray {
     /// Spheres in f32.
     F32(Vec<[f32; 4]>),
@@ -61,9 +60,12 @@ impl SphereArray {
         self.len() == 0
     }
 
-    /// A sphere: its centre and radius.
-    #[cfg(feature = "formats")]
-    pub(crate) fn at(&self, index: usize) -> [f64; 4] {
+    /// The centre and the radius of the sphere with this index.
+    ///
+    /// # Panics
+    /// If there is no such sphere.
+    #[must_use]
+    pub fn at(&self, index: usize) -> [f64; 4] {
         match self {
             Self::F32(spheres) => spheres[index].map(f64::from),
             Self::F64(spheres) => spheres[index],
@@ -71,8 +73,7 @@ impl SphereArray {
     }
 
     /// Multiplies every radius by `factor`; the precision of the array stays the same.
-    #[cfg(feature = "scene-file")]
-    pub(crate) fn scale_radii(&mut self, factor: f64) {
+    pub fn scale_radii(&mut self, factor: f64) {
         match self {
             Self::F32(spheres) => {
                 spheres.iter_mut().for_each(|s| s[3] = (f64::from(s[3]) * factor) as f32);

@@ -9,11 +9,11 @@ use pinhole::render::{PathTracing, PrimarySettings, Sampling};
 use pinhole::verify::denoised::certify;
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Outcome, Verdict};
-use pinhole::write::png;
 use pinhole::{
     Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, View,
     cpu,
 };
+use pinhole_figure::write::png;
 
 use crate::scene::colored;
 use crate::support::{spheres, spheres_of};

@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-tests=$(cargo test --locked --quiet -p pinhole --features all-formats --test gpu --no-run --message-format=json |
+tests=$(cargo test --locked --quiet -p pinhole --features run-file --test gpu --no-run --message-format=json |
     python3 -c 'import json, sys
 for line in sys.stdin:
     if line.startswith("{") and (path := json.loads(line).get("executable")): print(path)' | tail -n 1)

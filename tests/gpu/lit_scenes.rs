@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use pinhole::light::LightKind;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::scene::material::Material;
-use pinhole::scene_file::SceneFile;
 use pinhole::{Appearance, Environment, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties};
+use pinhole_figure::scene_file::SceneFile;
 
 use crate::support::random_light::RandomView;
 use crate::support::{View, spheres_of};

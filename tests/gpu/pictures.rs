@@ -11,8 +11,8 @@ use pinhole::gpu::{
 use pinhole::image::{Layer, NO_ID};
 use pinhole::render::{Integrator, Outline, Sampling};
 use pinhole::verify::Recording;
-use pinhole::write::npy::encode;
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, glam};
+use pinhole_figure::write::npy::encode;
 
 use crate::support::View;
 use crate::support::compare::{Picture, compare};

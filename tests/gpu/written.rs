@@ -6,8 +6,8 @@ use pinhole::image::encoding::Bits;
 use pinhole::verify::means::{Estimates, Means};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
-use pinhole::write::png;
 use pinhole::{Encoding, Image, LayerSet, cpu};
+use pinhole_figure::write::png;
 
 use crate::planted::{self, Fault, named, planted};
 use crate::support::View;

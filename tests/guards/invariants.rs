@@ -6,6 +6,10 @@ use std::path::Path;
 
 use super::sources::{ROOT, sources};
 
+/// The sources of all crates.
+const CRATES: [&str; 6] =
+    ["src", "crates/data/src", "crates/figure/src", "cli/src", "python/src", "viewer/src"];
+
 /// Files below `folder` that contain one of the words, but for those that end with `except`.
 fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
     for (path, text) in sources(folder) {
@@ -69,7 +73,9 @@ fn only_headless_submits_polls_and_waits() {
 fn readers_and_writers_touch_no_files() {
     // The crate's documentation shows how a picture is written.
     let but = ["kernels/tests.rs", "kernels/page_tests.rs", "load/source.rs", "src/lib.rs"];
-    assert_absent("src", &["std::fs", "fs::File"], &but);
+    for folder in ["src", "crates/data/src", "crates/figure/src"] {
+        assert_absent(folder, &["std::fs", "fs::File"], &but);
+    }
     let program = [
         "bricks/read.rs",
         "bricks/writer.rs",
@@ -85,12 +91,28 @@ fn readers_and_writers_touch_no_files() {
 
 #[test]
 fn only_the_program_sees_clap() {
-    assert_absent("src", &["clap::"], &[]);
+    for folder in CRATES.into_iter().filter(|folder| *folder != "cli/src") {
+        assert_absent(folder, &["clap::"], &[]);
+    }
+}
+
+/// The engine knows no file format, and what reads formats knows no settings.
+#[test]
+fn packages_use_only_those_below() {
+    // The crate's documentation shows how a file is rendered.
+    assert_absent("src", &["pinhole_data", "pinhole_figure"], &["src/lib.rs"]);
+    assert_absent("crates/data/src", &["pinhole_figure"], &[]);
+    for folder in ["crates/data/src", "crates/figure/src", "python/src"] {
+        assert_absent(folder, &["pinhole_cli"], &[]);
+    }
+    for folder in ["crates/data", "crates/figure"] {
+        assert_absent(folder, &["pinhole::gpu", "wgpu"], &[]);
+    }
 }
 
 #[test]
 fn files_are_short() {
-    for (path, text) in ["src", "cli/src", "python/src"].into_iter().flat_map(sources) {
+    for (path, text) in CRATES.into_iter().flat_map(sources) {
         let lines = text.lines().count();
         assert!(lines <= 450, "{} has {lines} lines; one idea per file", path.display());
     }
@@ -99,8 +121,7 @@ fn files_are_short() {
 #[test]
 fn folders_are_small() {
     let mut folders = std::collections::BTreeMap::<_, usize>::new();
-    let crates = ["src", "cli/src", "python/src", "viewer/src"];
-    for (path, _) in crates.into_iter().flat_map(sources) {
+    for (path, _) in CRATES.into_iter().flat_map(sources) {
         *folders.entry(path.parent().unwrap().to_owned()).or_default() += 1;
     }
     for (folder, files) in folders {

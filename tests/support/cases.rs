@@ -13,6 +13,10 @@
 //! with escapes (`\n`, `\r`, `\t`, `\\`, `\xff`), and the end of its last line is not part of it. Below `$ pinhole` stands the
 //! answer. An empty line separates cases.
 
+#![allow(dead_code, reason = "each test program uses some of it")]
+
+use std::path::Path;
+
 /// A command line, and the files that belong to it.
 #[derive(Default)]
 pub(crate) struct Case<'a> {
@@ -70,4 +74,22 @@ fn bytes(text: &str) -> Vec<u8> {
         });
     }
     bytes
+}
+
+/// Compares all files of cases in a folder with what `answer` returns, or rewrites them.
+pub(crate) fn compare(folder: &Path, mut answer: impl FnMut(&Case<'_>) -> String) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let file = entry.unwrap().path();
+        let text = std::fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+        assert!(text.contains("$ pinhole "), "{} has no cases", file.display());
+        let found = answered(&text, &mut answer);
+        if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
+            std::fs::write(&file, &found).unwrap();
+            continue;
+        }
+        for (found, expected) in found.lines().zip(text.lines()) {
+            assert_eq!(found, expected, "{}", file.display());
+        }
+        assert_eq!(found.len(), text.len(), "{}", file.display());
+    }
 }

@@ -1,8 +1,8 @@
 //! One picture to be made.
 
 use pinhole::camera::Camera;
-use pinhole::scene_file::{IntegratorKind, SceneFile};
 use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, cpu};
+use pinhole_figure::scene_file::{IntegratorKind, SceneFile};
 
 /// One picture to be made.
 #[derive(Debug)]

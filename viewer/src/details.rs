@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use pinhole::glam::DVec3;
-use pinhole::load::{Column, ColumnValues};
 use pinhole::scene::Scene;
+use pinhole_data::load::{Column, ColumnValues};
 
 /// A sphere that was picked.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,6 @@ impl Details {
             let count = match &column.values {
                 ColumnValues::Labels(labels) => labels.indices.len(),
                 ColumnValues::Numbers(numbers) => numbers.len(),
-                _ => return None,
             };
             // The spheres of the data follow those that a scene file has itself.
             let index = index.checked_sub(of_data.checked_sub(count)?)?;
@@ -82,7 +81,6 @@ fn row(column: &Column, index: usize) -> Option<Row> {
             let select = is_whole.then(|| format!("{name} == {number}"));
             Row { name, value: readable(number), select }
         }
-        _ => return None,
     })
 }
 
@@ -106,7 +104,7 @@ pub(crate) fn readable(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pinhole::load::{self, Options};
+    use pinhole_data::load::{self, Options};
 
     #[test]
     fn a_sphere_is_described_by_its_columns() {

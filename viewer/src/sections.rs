@@ -4,10 +4,10 @@ use eframe::egui::{self, Align, Layout, RichText};
 
 use crate::app::App;
 use crate::state::Fields;
-use pinhole::color_by::MapName;
-use pinhole::load::{Column, ColumnValues};
 use pinhole::render::Integrator;
-use pinhole::style::Style;
+use pinhole_data::load::{Column, ColumnValues};
+use pinhole_figure::color_by::MapName;
+use pinhole_figure::style::Style;
 
 /// The columns that all spheres have.
 const BUILT_IN: [&str; 5] = ["index", "radius", "x", "y", "z"];

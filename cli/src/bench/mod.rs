@@ -29,7 +29,7 @@ use pinhole::image::color::LinearRgb;
 use pinhole::internals::text::one_line;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::DEFAULT_COLOR;
+use pinhole_figure::scene_file::DEFAULT_COLOR;
 
 pub(crate) mod args;
 mod report;

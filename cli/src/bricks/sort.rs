@@ -19,8 +19,8 @@ use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed_w
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::{memory, threads};
-use pinhole::load::Format as DataFormat;
 use pinhole::scene::{Colors, Scene, Whole};
+use pinhole_data::load::Format as DataFormat;
 
 /// Bytes of a brick if nothing is asked for: spheres and ids of 4 Mi spheres.
 const BRICK_BYTES: u64 = 80 << 20;

@@ -12,9 +12,9 @@ use crate::bricks::file::{BEFORE, Brick, COLOR, Header, ID, PLACE, SPHERE, START
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec3, Vec3};
-use pinhole::load::Format;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::{Scene, SceneError, Whole};
+use pinhole_data::load::Format;
 
 /// Spheres of a piece.
 const PIECE: usize = 1 << 16;

@@ -15,7 +15,7 @@ use crate::terminal::progress::answer;
 use crate::terminal::text;
 use pinhole::LinearRgb;
 use pinhole::internals::text::one_line;
-use pinhole::load::{Column, ColumnValues, Dataset, Format};
+use pinhole_data::load::{Column, ColumnValues, Dataset, Format};
 
 /// The file to describe, and how it is read.
 #[derive(Debug, Args)]
@@ -268,7 +268,6 @@ impl ColumnReport {
                 different: labels.names.len(),
                 first: labels.names.iter().take(SHOWN).cloned().collect(),
             },
-            _ => ValuesReport::Text { different: 0, first: Vec::new() },
         };
         Self { name: name.clone(), values }
     }

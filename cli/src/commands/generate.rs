@@ -20,7 +20,7 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::{memory, threads};
 use pinhole::generate::{BYTES_PER_SPHERE, Kind, check_count};
 use pinhole::image::LayerSet;
-use pinhole::write::{npy, raw};
+use pinhole_data::write;
 
 #[derive(Debug, Args)]
 pub(crate) struct GenerateArgs {
@@ -56,8 +56,8 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let path: &Path = &args.output;
     let write: fn(&[[f32; 4]], &mut NamedTempFile) -> std::io::Result<()> =
         match extension(path).as_deref() {
-            Some("npy") => |spheres, file| npy::write_spheres(spheres, file),
-            Some("bin") => |spheres, file| raw::write_spheres(spheres, file),
+            Some("npy") => |spheres, file| write::npy(spheres, file),
+            Some("bin") => |spheres, file| write::raw(spheres, file),
             _ => {
                 return Err(Failure::usage(format!(
                     "{}: spheres are written as .npy or .bin; change the extension",

@@ -18,10 +18,10 @@ use crate::terminal::failure::Failure;
 use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
-use pinhole::annotate::AnnotationPlan;
 use pinhole::image::encoding::Encoding;
 use pinhole::internals::text::one_line;
-use pinhole::scene_file::{Contents, write};
+use pinhole_figure::annotate::AnnotationPlan;
+use pinhole_figure::scene_file::{Contents, write};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]

@@ -7,13 +7,14 @@ use crate::output::picture::PictureFormat;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::one_of;
 use pinhole::LinearRgb;
-use pinhole::annotate::{
-    AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
-};
 use pinhole::camera::film::Film;
-use pinhole::color_by::ColorKey;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::tone::ToneCurve;
+use pinhole_data::css;
+use pinhole_figure::annotate::{
+    AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
+};
+use pinhole_figure::color_by::ColorKey;
 
 pub(crate) const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
 
@@ -106,7 +107,7 @@ impl AnnotationFlags {
                 "--text-scale {scale}: it must be from {low} to {high}"
             )));
         }
-        let color = args.text_color.as_deref().map(LinearRgb::from_css).transpose();
+        let color = args.text_color.as_deref().map(css::color).transpose();
         let color = color.map_err(|error| refused("text-color", &error))?;
         let plan = AnnotationPlan {
             legend,
@@ -303,7 +304,7 @@ impl EncodingFlags {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pinhole::annotate::Anchor;
+    use pinhole_figure::annotate::Anchor;
 
     #[test]
     fn a_scale_bar_has_a_length_and_a_unit() {

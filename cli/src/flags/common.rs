@@ -8,7 +8,7 @@ use crate::flags::camera::CameraArgs;
 use crate::input::data::format_parser;
 use crate::terminal::text::one_of;
 use pinhole::accel::AccelChoice;
-use pinhole::load::Format;
+use pinhole_data::load::Format;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Stereo {

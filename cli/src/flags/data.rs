@@ -6,10 +6,13 @@ use clap::Args;
 use crate::flags::annotation::AnnotationArgs;
 use crate::terminal::failure::Failure;
 use pinhole::LinearRgb;
-use pinhole::added::{Additions, BondLength, Bonds, CellEdges};
-use pinhole::color_by::{ColorBy, EmissionBy, JoinedKeys, Limits, MapName, Mapping, RadiusBy};
-use pinhole::scene_file::IntegratorKind;
-use pinhole::select::Selection;
+use pinhole_data::added::{Additions, BondLength, Bonds, CellEdges};
+use pinhole_data::css;
+use pinhole_data::select::Selection;
+use pinhole_figure::color_by::{
+    ColorBy, EmissionBy, JoinedKeys, Limits, MapName, Mapping, RadiusBy,
+};
+use pinhole_figure::scene_file::IntegratorKind;
 
 pub(crate) const HEADING: &str = "Colors, radii and opacities from data";
 
@@ -70,7 +73,7 @@ impl ColorFlags {
             [&args.radius_by, &args.emission_by].map(|text| text.as_deref().map(with_factor));
         let map = args.cmap.as_deref().map(str::parse).transpose();
         let limits = args.range.as_deref().map(str::parse).transpose();
-        let missing = args.missing_color.as_deref().map(LinearRgb::from_css).transpose();
+        let missing = args.missing_color.as_deref().map(css::color).transpose();
         Ok(Self {
             mapping: Mapping {
                 color: args.color_by.as_deref().map(ColorBy::column),

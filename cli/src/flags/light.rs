@@ -9,8 +9,9 @@ use pinhole::LinearRgb;
 use pinhole::camera::filter::PixelFilter;
 use pinhole::range::RangeError;
 use pinhole::render::{Integrator, Occlusion, Outline, RenderSettings, Sampling, Studio};
-use pinhole::scene_file::IntegratorKind;
-use pinhole::style::Style;
+use pinhole_data::css;
+use pinhole_figure::scene_file::IntegratorKind;
+use pinhole_figure::style::Style;
 
 /// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
 /// is set once.
@@ -100,7 +101,7 @@ impl LightFlags {
         let refused = |flag: &str, given: String, error: &RangeError| {
             Failure::usage(format!("--{flag} {given}: it must be {}", error.range))
         };
-        let background = args.background.as_deref().map(LinearRgb::from_css).transpose();
+        let background = args.background.as_deref().map(css::color).transpose();
         let background =
             background.map_err(|error| Failure::usage(format!("--background: {error}")))?;
         if let Some(samples) = samples {

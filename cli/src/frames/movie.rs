@@ -17,7 +17,7 @@ use crate::output::picture::Outputs;
 use crate::terminal::interrupt;
 use pinhole::image::Image;
 use pinhole::image::encoding::{Bits, Encoding};
-use pinhole::write::png::samples_annotated;
+use pinhole_figure::write::png::samples_annotated;
 
 /// The message if the program is stopped when some frames are complete.
 pub(crate) const STOPPED_BETWEEN: &str =

@@ -13,11 +13,11 @@ use crate::terminal::failure::Failure;
 use pinhole::camera::{
     CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
 };
-use pinhole::color_by::ColorKey;
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
-use pinhole::scene_file::{SceneFile, parse_camera_path};
+use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::scene_file::{SceneFile, parse_camera_path};
 
 /// Most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;

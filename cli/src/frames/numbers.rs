@@ -11,8 +11,8 @@ use crate::input::contents::Contents;
 use crate::input::{FoundFrames, Source};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
-use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::scene::{Scene, SceneError};
+use pinhole_figure::color_by::{ColorBy, JoinedKeys};
 
 #[derive(Default)]
 pub(crate) struct Numbers {

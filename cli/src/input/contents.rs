@@ -12,14 +12,14 @@ use crate::input::source::{Source, default_color};
 use crate::input::{extension, read};
 use crate::terminal::failure::Failure;
 use crate::terminal::{profile, progress};
-use pinhole::added::Additions;
 use pinhole::camera::film::Film;
-use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
-use pinhole::load::{self, Column, Dataset};
 use pinhole::scene::Scene;
-use pinhole::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
-use pinhole::select::{KeptSpheres, Selection};
+use pinhole_data::added::Additions;
+use pinhole_data::load::{self, Column, Dataset};
+use pinhole_data::select::{KeptSpheres, Selection};
+use pinhole_figure::color_by::{ColorBy, ColorKey, Mapping};
+use pinhole_figure::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {

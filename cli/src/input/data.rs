@@ -9,7 +9,7 @@ use crate::input::read_file::read as read_bytes;
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole::LinearRgb;
-use pinhole::load::{
+use pinhole_data::load::{
     Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
 };
 

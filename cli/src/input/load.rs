@@ -12,7 +12,7 @@ use crate::input::read_file::Format;
 use crate::terminal::failure::Failure;
 use pinhole::camera::CameraPath;
 use pinhole::glam::DVec3;
-use pinhole::load;
+use pinhole_data::load;
 
 impl Source {
     /// Reads the file, and the data files that it names.

@@ -14,13 +14,13 @@ use crate::output::report::Report;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::camera::{Camera, CameraParameters, Viewpoint};
-use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
-use pinhole::load::environment;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::SceneFile;
+use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::read::environment;
+use pinhole_figure::scene_file::SceneFile;
 
 /// A camera with its eyes, and settings, which were chosen for some spheres.
 pub(crate) struct Look {

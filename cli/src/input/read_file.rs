@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::bricks::EXTENSION;
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
-use pinhole::load;
+use pinhole_data::load;
 
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")

@@ -16,11 +16,12 @@ use crate::flags::light::LightFlags;
 use crate::input::data::{self, DataOptions};
 use crate::input::read_file::{Format, data_format, parse_size};
 use crate::terminal::failure::Failure;
-use pinhole::color_by::ColorBy;
 use pinhole::image::color::LinearRgb;
-use pinhole::load::{self, Dataset, Trajectory};
-use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
-use pinhole::style::Style;
+use pinhole_data::css;
+use pinhole_data::load::{self, Dataset, Trajectory};
+use pinhole_figure::color_by::ColorBy;
+use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile};
+use pinhole_figure::style::Style;
 
 /// Checks that flags apply to a file of this format.
 pub(crate) fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
@@ -77,7 +78,7 @@ impl Source {
             Some(format) => Format::Data(format),
             None => Format::of(path).map_err(Failure::Usage)?,
         };
-        let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
+        let color = args.color.as_deref().map(css::color).transpose();
         let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
         let (topology, columns) = (args.topology.clone(), args.columns.clone());
         let options =

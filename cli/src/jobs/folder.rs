@@ -11,7 +11,7 @@ use super::part_file::{self, Header, Problem};
 use crate::frames::Overview;
 use crate::jobs::manifest::{Manifest, NAME, StoredOverview};
 use crate::terminal::failure::Failure;
-use pinhole::color_by::JoinedKeys;
+use pinhole_figure::color_by::JoinedKeys;
 
 /// A job and where it is.
 pub(super) struct Folder {

@@ -12,10 +12,10 @@ use crate::output::files::{
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use crate::terminal::{interrupt, profile};
-use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
-use pinhole::write::{exr, npy, png};
+use pinhole_figure::annotate::Annotations;
+use pinhole_figure::write::{exr, npy, png};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PictureFormat {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use pinhole::style::Style;
+use pinhole_figure::style::Style;
 
 /// Flags for what the program says.
 #[derive(Debug, Args)]

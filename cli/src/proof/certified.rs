@@ -13,7 +13,6 @@ use crate::terminal::progress;
 use pinhole::image::denoise;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
-use pinhole::load::picture::FileSamples;
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::means::{Estimates, Means};
 use pinhole::verify::picture_certificate::{
@@ -21,7 +20,8 @@ use pinhole::verify::picture_certificate::{
 };
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome, Verdict};
-use pinhole::write::png;
+use pinhole_figure::read::picture::FileSamples;
+use pinhole_figure::write::png;
 
 /// Arguments of `render` that do not change the samples of the picture, or that name files and devices.
 const NOT_OF_THE_PICTURE: [&str; 15] = [

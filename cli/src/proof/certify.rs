@@ -17,13 +17,13 @@ use crate::terminal::text::json;
 use crate::terminal::threads;
 use pinhole::geometry::ray::Ray;
 use pinhole::image::NO_ID;
-use pinhole::load::LoadError;
-use pinhole::load::npy::pixels::{self, Pixels};
 use pinhole::verify::conformance::{
     Answers, Conformance, ConformanceError, DepthKind, Field, Finding, Rays,
 };
 use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
+use pinhole_data::load::LoadError;
+use pinhole_data::load::npy::pixels::{self, Pixels};
 
 #[derive(Debug, Args)]
 #[command(

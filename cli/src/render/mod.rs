@@ -26,7 +26,6 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, profile};
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
-use pinhole::annotate::Annotations;
 #[cfg(feature = "gpu")]
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
@@ -36,6 +35,7 @@ use pinhole::gpu::{GpuError, Headless, PictureRequest, RenderPlan, Wait};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::{Picture, RenderSettings};
+use pinhole_figure::annotate::Annotations;
 
 pub(crate) mod device;
 pub(crate) mod stop_rule;

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::Context;
-use pinhole::annotate::Annotations;
 use pinhole::camera::{Camera, CameraParameters};
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
-use pinhole::load::Column;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
+use pinhole_data::load::Column;
+use pinhole_figure::annotate::Annotations;
 
 use super::RenderFlags;
 use super::ViewError;

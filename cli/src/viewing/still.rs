@@ -18,7 +18,7 @@ use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::write::png;
+use pinhole_figure::write::png;
 
 /// Renders what is shown, on a device of its own.
 pub struct StillRenderer {

@@ -5,9 +5,10 @@ use std::io::Cursor;
 use libtest_mimic::Trial;
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::color;
-use pinhole::scene_file::SceneFile;
-use pinhole::write::exr::Remarks;
-use pinhole::{Encoding, LayerSet, write};
+use pinhole::{Encoding, LayerSet};
+use pinhole_figure::scene_file::SceneFile;
+use pinhole_figure::write;
+use pinhole_figure::write::exr::Remarks;
 
 use crate::trial;
 use crate::view::View;

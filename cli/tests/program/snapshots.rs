@@ -91,10 +91,13 @@ fn errors() {
     );
 }
 
-/// Files that the readers refuse; `tests/cpu/files.rs` reads them too.
+/// Files that readers refuse; the tests of their packages read them too.
 #[test]
 fn refused_files() {
-    compare("../tests/files/refused", |_| true, |_, text| answered(text, refused));
+    for package in ["data", "figure"] {
+        let folder = format!("../crates/{package}/tests/files/refused");
+        compare(&folder, |_| true, |_, text| answered(text, refused));
+    }
 }
 
 /// Runs a command in a new folder and returns its exit code and its error.

@@ -14,7 +14,7 @@ use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;
 use pinhole::verify::run_file::{Run, ShownPicture};
 use pinhole::verify::{Certificate, TracedPixel, Verdict};
-use pinhole::write::png;
+use pinhole_figure::write::png;
 
 const TEMPLATE: &str = include_str!("page.html");
 

@@ -18,9 +18,9 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
-use pinhole::load::picture::{self, FileSamples};
 use pinhole::verify::Outcome;
 use pinhole::verify::picture_certificate::PictureCertificate;
+use pinhole_figure::read::picture::{self, FileSamples};
 
 /// The file of `--json`.
 #[derive(Serialize)]

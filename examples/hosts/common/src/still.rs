@@ -2,7 +2,8 @@
 #![allow(clippy::print_stdout, reason = "a host tells what it wrote")]
 
 use pinhole::gpu::{Headless, HeadlessOptions, Wait};
-use pinhole::{Encoding, LayerSet, RenderSettings, Scene, View, write};
+use pinhole::{Encoding, LayerSet, RenderSettings, Scene, View};
+use pinhole_figure::write;
 
 use crate::Outcome;
 

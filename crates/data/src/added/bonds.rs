@@ -1,0 +1,298 @@
+//! Bonds between atoms.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, I64Vec3};
+
+use super::spheres::{AddError, AddedSpheres, Base, Look, string_between, string_count};
+use crate::load::{Covalent, covalent};
+use pinhole::internals::text::{listed, shortened};
+use pinhole::scene::sphere_array::SphereArray;
+
+/// Which atoms are bonded. Bonds are drawn as sticks, each half in the colour of its atom.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Bonds {
+    /// How close bonded atoms are.
+    pub length: BondLength,
+}
+
+/// How close bonded atoms are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BondLength {
+    /// Two atoms are bonded if they are closer than this factor times the sum of their covalent radii (Cordero et al.
+    /// 2008), unless both are hydrogen. Lengths are in Å.
+    Covalent(f64),
+    /// Two spheres of any kind are bonded if they are closer than this length.
+    Below(f64),
+}
+
+impl Bonds {
+    /// The factor of covalent radii by which bonds are found unless another is chosen: bonds may be a fifth longer than
+    /// usual, as `CovalentBond.is_bonded` of pymatgen allows. Psi4 uses 1.3.
+    pub const FACTOR: f64 = 1.2;
+
+    /// Bonds of this length.
+    #[must_use]
+    pub fn new(length: BondLength) -> Self {
+        Self { length }
+    }
+}
+
+impl Default for Bonds {
+    fn default() -> Self {
+        Self::new(BondLength::Covalent(Self::FACTOR))
+    }
+}
+
+/// The factor of the van der Waals radius that atoms with bonds have.
+const BALL: f64 = 0.25;
+
+/// The factor of the radius that spheres with bonds have that are not atoms of an element. Their radius is often such
+/// that neighbours touch.
+const OTHER_BALL: f64 = 0.5;
+
+/// The radius of a stick, in radii of the smaller of the spheres that it joins.
+const STICK: f64 = 0.45;
+
+/// The distance of centres on a stick, in radii of the stick. The surface is at most 2 % of the radius below that of a
+/// cylinder, and its normals lean by at most 11.5°.
+const SPACING: f64 = 0.4;
+
+/// The most spheres that are added for each sphere, on average, and however few there are.
+const MOST_ADDED: [usize; 2] = [256, 1 << 16];
+
+/// The factor by which bonds make a sphere of a species smaller.
+pub(super) fn radius_factor(species: Option<&str>) -> f64 {
+    if species.and_then(covalent).is_some() { BALL } else { OTHER_BALL }
+}
+
+fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
+    let [x, y, z, radius] = spheres.at(index);
+    (DVec3::new(x, y, z), radius)
+}
+
+impl Bonds {
+    pub(super) fn add(&self, base: &Base<'_>, added: &mut AddedSpheres) -> Result<(), AddError> {
+        let count = base.spheres.len();
+        let points: Vec<DVec3> = (0..count).map(|index| center(base.spheres, index).0).collect();
+        let bonds = match self.length {
+            BondLength::Below(length) => {
+                check("length", length)?;
+                pairs(&points, length, |_, _, squared| squared > 0.0)?
+            }
+            BondLength::Covalent(factor) => {
+                check("factor", factor)?;
+                covalent_bonds(factor, base, &points, &mut added.notes)?
+            }
+        };
+        added.bonds = bonds.len();
+        let most = count.saturating_mul(MOST_ADDED[0]).saturating_add(MOST_ADDED[1]);
+        for [a, b] in bonds {
+            let ((from, ball_a), (to, ball_b)) =
+                (center(base.spheres, a as usize), center(base.spheres, b as usize));
+            let radius = STICK * ball_a.min(ball_b);
+            let (length, middle) = ((to - from).length(), 0.5 * (from + to));
+            let along = (to - from) / length;
+            // Where the stick comes out of a ball. What lies deeper cannot be seen.
+            let [out_a, out_b] =
+                [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
+            let halves = [
+                (a, from + out_a * along, middle, 0.5 * length - out_a),
+                (b, to - out_b * along, middle, 0.5 * length - out_b),
+            ];
+            for (atom, start, end, seen) in halves {
+                if !(seen > 0.0 && radius > 0.0) {
+                    continue;
+                }
+                let wanted = string_count(seen, radius, SPACING);
+                if wanted > (most - added.len().min(most)) as f64 {
+                    return Err(AddError(format!(
+                        "the bonds of {count} spheres would need more than {most} spheres, because they are thin for \
+                         their length; choose larger radii"
+                    )));
+                }
+                let string = string_between(start, end, radius, wanted as usize);
+                added.push(string, Look::Sphere(atom));
+            }
+        }
+        if base.cell.is_some() {
+            added
+                .notes
+                .push("bonds across the borders of the periodic cell are not drawn".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn check(what: &str, value: f64) -> Result<(), AddError> {
+    match value.is_finite() && value > 0.0 {
+        true => Ok(()),
+        false => Err(AddError(format!(
+            "`bonds`: the {what} is {value}; it must be finite and greater than 0"
+        ))),
+    }
+}
+
+fn no_elements() -> AddError {
+    AddError(
+        "the data does not say which chemical elements its spheres are, from which the lengths of bonds follow; give the \
+         length below which two spheres are bonded (--bond-length L, or bonds = { length = L })"
+            .to_owned(),
+    )
+}
+
+/// Finds pairs that are closer than `factor` times the sum of their covalent radii.
+fn covalent_bonds(
+    factor: f64,
+    base: &Base<'_>,
+    points: &[DVec3],
+    notes: &mut Vec<String>,
+) -> Result<Vec<[u32; 2]>, AddError> {
+    let labels = base.species.ok_or_else(no_elements)?;
+    let known: Vec<Option<Covalent>> = labels.names.iter().map(|name| covalent(name)).collect();
+    let largest = known.iter().flatten().map(|known| known.radius).fold(0.0, f64::max);
+    if largest <= 0.0 && !points.is_empty() {
+        return Err(no_elements());
+    }
+    if known.contains(&None) {
+        let names = labels.names.iter().zip(&known);
+        let unknown = names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name));
+        notes.push(format!(
+            "these species have no covalent radius and therefore no bonds: {}; --bond-length L joins all that are closer",
+            listed(unknown, 5)
+        ));
+    }
+    let of = |index: u32| {
+        let species = *labels.indices.get(index as usize)? as usize;
+        known.get(species).copied().flatten()
+    };
+    pairs(points, 2.0 * factor * largest, |a, b, squared| {
+        let Some((a, b)) = of(a).zip(of(b)) else { return false };
+        let most = factor * (a.radius + b.radius);
+        squared > 0.0 && squared < most * most && !(a.is_hydrogen && b.is_hydrogen)
+    })
+}
+
+/// The most pairs for each point, on average. In the densest packing of equal spheres there are 6 of neighbours.
+pub(super) const MOST_PAIRS: usize = 16;
+
+/// How many distances are computed for each point, on average, before the search is given up.
+const MOST_TESTS: usize = 4096;
+
+/// How many more distances are computed however few points there are.
+const MORE_TESTS: usize = 1 << 22;
+
+/// Half of the cells around a cell: each pair of neighbours is met once.
+const FORWARD: [[i64; 3]; 13] = [
+    [1, 0, 0],
+    [-1, 1, 0],
+    [0, 1, 0],
+    [1, 1, 0],
+    [-1, -1, 1],
+    [0, -1, 1],
+    [1, -1, 1],
+    [-1, 0, 1],
+    [0, 0, 1],
+    [1, 0, 1],
+    [-1, 1, 1],
+    [0, 1, 1],
+    [1, 1, 1],
+];
+
+/// Returns pairs of indices, the smaller first and in ascending order, of points at most `reach` apart for which
+/// `is_pair` is true; it is given two indices and the squared distance. Points that are not finite have no pairs.
+pub(super) fn pairs(
+    points: &[DVec3],
+    reach: f64,
+    is_pair: impl Fn(u32, u32, f64) -> bool,
+) -> Result<Vec<[u32; 2]>, AddError> {
+    let mut cells: HashMap<I64Vec3, Vec<u32>> = HashMap::new();
+    let finite = points.iter().enumerate().filter(|(_, point)| point.is_finite());
+    for (index, point) in finite.clone() {
+        // Cells that are too far for an i64 are all one, which takes time but changes nothing.
+        cells.entry((point / reach).floor().as_i64vec3()).or_default().push(index as u32);
+    }
+    let most_tests = points.len().saturating_mul(MOST_TESTS).saturating_add(MORE_TESTS);
+    let most_pairs = points.len().saturating_mul(MOST_PAIRS);
+    let (mut tests, mut found) = (0_usize, Vec::new());
+    let mut test = |one: &[u32], others: &[u32]| {
+        tests = tests.saturating_add(one.len().saturating_mul(others.len()));
+        if tests > most_tests {
+            return Err(AddError(format!(
+                "too many of the {} spheres are close together to look for bonds; choose a smaller factor or length of \
+                 bonds, or select fewer spheres",
+                points.len()
+            )));
+        }
+        for &a in one {
+            for &b in others {
+                let squared = points[a as usize].distance_squared(points[b as usize]);
+                if squared <= reach * reach && is_pair(a, b, squared) {
+                    found.push([a.min(b), a.max(b)]);
+                }
+            }
+        }
+        if found.len() > most_pairs {
+            let (pairs, spheres) = (found.len(), points.len());
+            return Err(AddError(format!(
+                "{pairs} pairs of {spheres} spheres would be bonds, more than {MOST_PAIRS} for each; choose a smaller \
+                 factor or length of bonds"
+            )));
+        }
+        Ok(())
+    };
+    for (cell, inside) in &cells {
+        for (place, index) in inside.iter().enumerate() {
+            test(&[*index], &inside[place + 1..])?;
+        }
+        for offset in FORWARD {
+            let next = cell.wrapping_add(I64Vec3::from(offset));
+            // A cell at the end of the numbers is not its own neighbour.
+            if let Some(others) = cells.get(&next).filter(|_| next != *cell) {
+                test(inside, others)?;
+            }
+        }
+    }
+    // The order of cells is not the same in every run.
+    found.sort_unstable();
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all_pairs(points: &[DVec3], reach: f64) -> Vec<[u32; 2]> {
+        let count = points.len() as u32;
+        let of = |a: u32| (a + 1..count).map(move |b| [a, b]);
+        let near = |&[a, b]: &[u32; 2]| {
+            points[a as usize].distance_squared(points[b as usize]) <= reach * reach
+        };
+        (0..count).flat_map(of).filter(near).collect()
+    }
+
+    #[test]
+    fn the_grid_finds_what_a_search_of_all_pairs_finds() {
+        let mut random = fastrand::Rng::with_seed(7);
+        for reach in [0.3, 1.0, 2.5] {
+            let mut point = || DVec3::from([0; 3].map(|_| 20.0 * random.f64() - 10.0));
+            let mut points: Vec<DVec3> = (0..600).map(|_| point()).collect();
+            points.push(DVec3::splat(1e300));
+            points.push(DVec3::NAN);
+            // On the borders of cells, and in one place.
+            points.extend([DVec3::ZERO, DVec3::X * reach, DVec3::ZERO]);
+            let found = pairs(&points, reach, |_, _, _| true).unwrap();
+            assert_eq!(found, all_pairs(&points, reach));
+            assert!(!found.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_crowd_is_refused_before_it_takes_long() {
+        let points = vec![DVec3::ZERO; 100_000];
+        let refused = |all| pairs(&points, 1.0, |_, _, _| all).unwrap_err().to_string();
+        assert!(refused(true).contains("pairs of 100000 spheres would be bonds"));
+        assert!(refused(false).starts_with("too many of the 100000 spheres are close together"));
+    }
+}

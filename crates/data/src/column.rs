@@ -1,0 +1,193 @@
+//! Finds the column that a user names.
+
+use std::borrow::Cow;
+
+use crate::load::{Column, ColumnValues};
+use pinhole::internals::text::one_line;
+use pinhole::scene::sphere_array::SphereArray;
+
+/// The columns that all spheres have, whatever their file says.
+pub const BUILT_IN: [&str; 5] = ["index", "radius", "x", "y", "z"];
+
+/// A column that was found.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NamedColumn<'a> {
+    /// Its name, spelled as in the data.
+    pub name: String,
+    /// One value for each sphere.
+    pub values: Cow<'a, ColumnValues>,
+}
+
+/// Why there is no such column.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColumnError {
+    /// The data has no column of this name.
+    #[error("there is no column `{name}`;{} the columns are {columns}",
+        .nearest.as_ref().map_or(String::new(), |nearest| format!(" did you mean `{nearest}`?")))]
+    Unknown {
+        /// The name as given.
+        name: String,
+        /// The name of a column that is spelled alike.
+        nearest: Option<String>,
+        /// The names of all columns.
+        columns: String,
+    },
+    /// The values are text, but numbers are needed.
+    #[error(
+        "the column `{name}` holds text, but numbers are needed here; the columns of numbers are {columns}"
+    )]
+    Text {
+        /// The name of the column.
+        name: String,
+        /// The names of the columns of numbers.
+        columns: String,
+    },
+    /// The column does not have one value for each sphere.
+    #[error("the column `{name}` has {values} values, but there are {spheres} spheres")]
+    Count {
+        /// The name of the column.
+        name: String,
+        /// The number of its values.
+        values: usize,
+        /// The number of spheres.
+        spheres: usize,
+    },
+}
+
+/// Finds a column by its name, in upper or lower case: one of `columns`; or else one of [`BUILT_IN`], which are the
+/// index in input order, the radius and the coordinates of the centre; or `|v|`, the length of a vector whose components
+/// are the columns `v.x`, `v.y` and `v.z`, or `vx`, `vy` and `vz`, or `v_x`, `v_y` and `v_z`.
+///
+/// # Errors
+/// Returns an error if there is no such column, or if it does not have one value for each sphere.
+pub fn column<'a>(
+    name: &str,
+    spheres: &SphereArray,
+    columns: &'a [Column],
+) -> Result<NamedColumn<'a>, ColumnError> {
+    let name = name.trim();
+    if let Some(column) = named(name, columns) {
+        check_count(column, spheres)?;
+        return Ok(NamedColumn {
+            name: column.name.clone(),
+            values: Cow::Borrowed(&column.values),
+        });
+    }
+    if let Some(built_in) = BUILT_IN.into_iter().find(|known| known.eq_ignore_ascii_case(name)) {
+        let values = built_in_values(built_in, spheres);
+        return Ok(NamedColumn { name: built_in.to_owned(), values: owned(values) });
+    }
+    let inside = name.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
+    if let Some((vector, components)) = inside.and_then(|name| components(name.trim(), columns)) {
+        for (column, _) in components {
+            check_count(column, spheres)?;
+        }
+        let [(_, x), (_, y), (_, z)] = components;
+        let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
+        return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
+    }
+    Err(unknown(name, columns))
+}
+
+/// Finds a column of numbers, as [`column()`] does.
+///
+/// # Errors
+/// Returns an error if there is no such column, or its values are text.
+pub fn numbers<'a>(
+    name: &str,
+    spheres: &SphereArray,
+    columns: &'a [Column],
+) -> Result<(String, Cow<'a, [f64]>), ColumnError> {
+    let NamedColumn { name, values } = column(name, spheres, columns)?;
+    match values {
+        Cow::Borrowed(ColumnValues::Numbers(values)) => Ok((name, Cow::Borrowed(values))),
+        Cow::Owned(ColumnValues::Numbers(values)) => Ok((name, Cow::Owned(values))),
+        Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => {
+            let is_number = |column: &&Column| matches!(column.values, ColumnValues::Numbers(_));
+            let columns = names(columns.iter().filter(is_number), columns).join(", ");
+            Err(ColumnError::Text { name, columns })
+        }
+    }
+}
+
+fn owned<'a>(values: Vec<f64>) -> Cow<'a, ColumnValues> {
+    Cow::Owned(ColumnValues::Numbers(values))
+}
+
+fn named<'a>(name: &str, columns: &'a [Column]) -> Option<&'a Column> {
+    let exact = columns.iter().find(|column| column.name == name);
+    exact.or_else(|| columns.iter().find(|column| column.name.eq_ignore_ascii_case(name)))
+}
+
+fn check_count(column: &Column, spheres: &SphereArray) -> Result<(), ColumnError> {
+    let values = match &column.values {
+        ColumnValues::Labels(labels) => labels.indices.len(),
+        ColumnValues::Numbers(numbers) => numbers.len(),
+    };
+    let spheres = spheres.len();
+    if values == spheres {
+        return Ok(());
+    }
+    Err(ColumnError::Count { name: column.name.clone(), values, spheres })
+}
+
+fn built_in_values(name: &str, spheres: &SphereArray) -> Vec<f64> {
+    let place = match name {
+        "x" => 0,
+        "y" => 1,
+        "z" => 2,
+        "radius" => 3,
+        _ => return (0..spheres.len()).map(|index| index as f64).collect(),
+    };
+    match spheres {
+        SphereArray::F32(spheres) => spheres.iter().map(|s| s[place].into()).collect(),
+        SphereArray::F64(spheres) => spheres.iter().map(|s| s[place]).collect(),
+    }
+}
+
+type Component<'a> = (&'a Column, &'a [f64]);
+
+/// Returns the name of a vector, spelled as in the data, and its three components.
+fn components<'a>(name: &str, columns: &'a [Column]) -> Option<(&'a str, [Component<'a>; 3])> {
+    [".", "", "_"].into_iter().find_map(|joint| {
+        let component = |axis: &str| {
+            let column = named(&format!("{name}{joint}{axis}"), columns)?;
+            match &column.values {
+                ColumnValues::Numbers(values) => Some((column, values.as_slice())),
+                ColumnValues::Labels(_) => None,
+            }
+        };
+        let found = [component("x")?, component("y")?, component("z")?];
+        let spelled = &found[0].0.name;
+        Some((spelled.get(..spelled.len() - joint.len() - 1)?, found))
+    })
+}
+
+/// The names that [`column`] understands: those of `shown`, the built-in ones, and the lengths of vectors.
+fn names<'a>(shown: impl Iterator<Item = &'a Column>, columns: &'a [Column]) -> Vec<String> {
+    let mut names: Vec<String> = shown.map(|column| one_line(&column.name)).collect();
+    let built_in = BUILT_IN.into_iter().filter(|name| named(name, columns).is_none());
+    names.extend(built_in.map(str::to_owned));
+    let vectors = columns.iter().filter_map(|column| {
+        let stem = column.name.strip_suffix(['x', 'X'])?;
+        let stem = stem.strip_suffix(['.', '_']).unwrap_or(stem);
+        components(stem, columns).map(|(vector, _)| format!("|{vector}|"))
+    });
+    names.extend(vectors.filter(|name| name != "||"));
+    names
+}
+
+fn unknown(name: &str, columns: &[Column]) -> ColumnError {
+    let known = names(columns.iter(), columns);
+    let likeness = |known: &str| {
+        strsim::jaro_winkler(
+            known.trim_matches('|').to_lowercase().as_str(),
+            name.trim_matches('|').to_lowercase().as_str(),
+        )
+    };
+    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let nearest = nearest.filter(|nearest| likeness(nearest) > 0.75).cloned();
+    ColumnError::Unknown { name: one_line(name), nearest, columns: known.join(", ") }
+}

@@ -1,0 +1,202 @@
+//! The contents of a file of spheres.
+
+use super::elements::UnknownSpecies;
+use pinhole::image::color::LinearRgb;
+use pinhole::scene::sphere::Sphere;
+use pinhole::scene::sphere_array::SphereArray;
+use pinhole::scene::{Appearance, Colors, Scene, SceneError};
+
+/// The spheres of one frame of a file, with their colours and other named values.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Dataset {
+    /// Centres and radii, in the order of the file. They are not checked;
+    /// [`Scene::from_parts`](pinhole::Scene::from_parts) does that.
+    pub spheres: SphereArray,
+    /// The colour of each sphere, if the file or the elements of its atoms give one.
+    pub colors: Option<Vec<LinearRgb>>,
+    /// How opaque each sphere is, from 0 to 1, if the file says so.
+    pub opacities: Option<Vec<f32>>,
+    /// Other named values of the spheres. Each column has one value for each sphere, in the order of the file.
+    pub columns: Vec<Column>,
+    /// The three edge vectors of the periodic cell, if the file has one.
+    pub cell: Option<[[f64; 3]; 3]>,
+    /// The corner of the cell from which the edge vectors start; zero if the file does not say where it is.
+    pub cell_origin: [f64; 3],
+    /// Number of frames in the file; `None` if the file was not read to its end.
+    pub frames: Option<usize>,
+    /// Notes for the user that are not errors, one line each and without the file's name.
+    pub notes: Vec<String>,
+    /// The species that one of the notes is about.
+    pub(super) unknown: Option<UnknownSpecies>,
+}
+
+/// A named value of every sphere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name of the value, such as `species`, `chain` or `b_factor`.
+    pub name: String,
+    /// One value for each sphere.
+    pub values: ColumnValues,
+}
+
+/// The values of a [`Column`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColumnValues {
+    /// Text that takes few different values.
+    Labels(Labels),
+    /// Numbers.
+    Numbers(Vec<f64>),
+}
+
+/// A text for each sphere, stored as an index because few different texts occur.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Labels {
+    /// The different texts, each once, in order of first appearance.
+    pub names: Vec<String>,
+    /// For each sphere, the index of its text in `names`.
+    pub indices: Vec<u32>,
+}
+
+impl Labels {
+    /// Leaves out the spheres for which `is_kept` is false, and texts that no sphere has then. Returns the former index
+    /// of each text that is left.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) -> Vec<u32> {
+        retain(&mut self.indices, is_kept);
+        let mut renumbered: Vec<Option<u32>> = vec![None; self.names.len()];
+        let (mut names, mut former) = (Vec::new(), Vec::new());
+        for index in &mut self.indices {
+            let old = *index as usize;
+            // An index without a text stays one.
+            let (Some(new), Some(name)) = (renumbered.get_mut(old), self.names.get_mut(old)) else {
+                *index = u32::MAX;
+                continue;
+            };
+            *index = *new.get_or_insert_with(|| {
+                names.push(std::mem::take(name));
+                former.push(old as u32);
+                names.len() as u32 - 1
+            });
+        }
+        self.names = names;
+        former
+    }
+}
+
+/// Keeps the values for which `is_kept` is true.
+pub(super) fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
+    let mut is_kept = is_kept.iter();
+    values.retain(|_| is_kept.next().copied().unwrap_or(true));
+}
+
+impl Dataset {
+    /// Makes a `Dataset` that has spheres and nothing else.
+    #[must_use]
+    pub fn new(spheres: SphereArray) -> Self {
+        Self {
+            spheres,
+            colors: None,
+            opacities: None,
+            columns: Vec::new(),
+            cell: None,
+            cell_origin: [0.0; 3],
+            frames: None,
+            notes: Vec::new(),
+            unknown: None,
+        }
+    }
+
+    /// Returns the values of the column with this name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&ColumnValues> {
+        self.columns.iter().find(|column| column.name == name).map(|column| &column.values)
+    }
+
+    /// Returns the column with this name, if its values are text.
+    #[must_use]
+    pub fn labels(&self, name: &str) -> Option<&Labels> {
+        match self.column(name)? {
+            ColumnValues::Labels(labels) => Some(labels),
+            ColumnValues::Numbers(_) => None,
+        }
+    }
+
+    /// Takes out of the notes what is not true any more if something else than the file gives all colours, or all radii,
+    /// or those of the species for which `is_given` is true.
+    pub fn correct_notes(
+        &mut self,
+        has_colors: bool,
+        has_radii: bool,
+        is_given: impl Fn(&str) -> bool,
+    ) {
+        let Some(unknown) = self.unknown.take() else { return };
+        let (former, left) = (unknown.note(), unknown.after(has_colors, has_radii, is_given));
+        // A path may stand before the note.
+        let place = self.notes.iter().position(|note| note.ends_with(&former));
+        if let Some(place) = place {
+            let note = self.notes.remove(place);
+            let before = note.strip_suffix(&former).unwrap_or_default();
+            if let Some(left) = &left {
+                self.notes.insert(place, format!("{before}{}", left.note()));
+            }
+        }
+        self.unknown = left;
+    }
+
+    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. What is
+    /// beyond the end of `is_kept` stays.
+    pub fn keep(&mut self, is_kept: &[bool]) {
+        match &mut self.spheres {
+            SphereArray::F32(spheres) => retain(spheres, is_kept),
+            SphereArray::F64(spheres) => retain(spheres, is_kept),
+        }
+        self.colors.iter_mut().for_each(|colors| retain(colors, is_kept));
+        self.opacities.iter_mut().for_each(|opacities| retain(opacities, is_kept));
+        for column in &mut self.columns {
+            match &mut column.values {
+                ColumnValues::Labels(labels) => drop(labels.keep(is_kept)),
+                ColumnValues::Numbers(numbers) => retain(numbers, is_kept),
+            }
+        }
+        // Nobody needs to know of species that are not in the picture.
+        let left: Option<Vec<String>> = self.labels("species").map(|labels| labels.names.clone());
+        if let Some(left) = left {
+            self.correct_notes(false, false, |name| left.iter().all(|other| other != name));
+        }
+    }
+
+    /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.
+    pub fn colored_spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
+        let color_of = move |index: usize| {
+            self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color)
+        };
+        let opacity_of = |index: usize| {
+            self.opacities.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(1.0)
+        };
+        let colored = move |(index, mut sphere): (usize, Sphere)| {
+            sphere.color = color_of(index);
+            sphere.with_opacity(opacity_of(index))
+        };
+        self.spheres.with_color(color).enumerate().map(colored)
+    }
+
+    /// Makes a scene of the spheres. If the file gives no colours, every sphere gets `color`.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range.
+    pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
+        let colors = match (self.colors, self.opacities) {
+            (colors, Some(opacities)) => {
+                let rgba = |(index, opacity): (usize, &f32)| {
+                    let own = colors.as_ref().and_then(|colors| colors.get(index)).copied();
+                    let [r, g, b] = own.unwrap_or(color).to_srgb8();
+                    [r, g, b, (opacity * 255.0).round() as u8]
+                };
+                Colors::Rgba8(opacities.iter().enumerate().map(rgba).collect())
+            }
+            (Some(colors), None) => Colors::distinct(&colors),
+            (None, None) => Colors::One(color),
+        };
+        Scene::from_parts(self.spheres, Appearance::new(colors))
+    }
+}

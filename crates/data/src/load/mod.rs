@@ -1,0 +1,36 @@
+//! Reads files of spheres: [`open`] takes a path, [`from_bytes`] takes bytes, and both return a [`Dataset`].
+//!
+//! [`FORMATS`] lists every format that this build can read; no other module names a format. The format of a file is
+//! the one in [`Options::format`], or else follows from the file's extension, or else from its content.
+//!
+//! ```
+//! use pinhole_data::load::{self, Options};
+//!
+//! let water = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
+//! let loaded = load::from_bytes(water.as_bytes(), "water.xyz", &Options::default())?;
+//! assert_eq!(loaded.spheres.len(), 3);
+//! assert_eq!(loaded.labels("species").unwrap().names, ["O", "H"]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod atoms;
+mod dataset;
+mod elements;
+mod error;
+mod format;
+mod formats;
+mod labels;
+mod numbers;
+mod open;
+mod rows;
+mod source;
+mod spacing;
+mod table;
+mod topology;
+
+pub use dataset::{Column, ColumnValues, Dataset, Labels};
+pub(crate) use elements::{Covalent, covalent};
+pub use error::{LoadError, LoadErrorKind, Place};
+pub use format::{Format, Options};
+pub use formats::{FORMATS, csv, lammps, mmcif, npy, npz, pdb, raw, xyz};
+pub use open::{Trajectory, from_bytes, open};

@@ -1,0 +1,109 @@
+//! Selects spheres by an expression over the columns of their data.
+//!
+//! A [`Selection`] is a text such as `species == O and z > 3 and |v| < 2`. It compares columns, those of
+//! [`column()`](crate::column::column()), with numbers, texts or other columns, by `==`, `!=`, `<`, `<=`, `>`,
+//! `>=`, and joins comparisons by `and`, `or`, `not` (or `&&`, `||`, `!`) and parentheses. A missing value, which is NaN
+//! or an empty text, never matches, whatever stands before it: neither `z > 3` nor `not z > 3` selects a sphere whose
+//! `z` is NaN. Nothing here accesses the file system.
+//!
+//! ```
+//! use pinhole::SphereArray;
+//! use pinhole_data::load::Dataset;
+//! use pinhole_data::select::Selection;
+//!
+//! let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0], [9.0, 0.0, 0.0, 1.0]]);
+//! let mut loaded = Dataset::new(spheres);
+//! let kept = "x >= 5 and not index == 2".parse::<Selection>()?.apply(&mut loaded)?;
+//! assert_eq!((kept.kept, kept.of), (1, 3));
+//! assert_eq!(loaded.spheres, SphereArray::F32(vec![[5.0, 0.0, 0.0, 1.0]]));
+//! # Ok::<(), pinhole_data::select::SelectError>(())
+//! ```
+
+mod evaluate;
+mod parse;
+
+pub use parse::SelectError;
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::load::{Column, ColumnValues, Dataset};
+use pinhole::scene::sphere_array::SphereArray;
+
+/// An expression that says which spheres are kept.
+///
+/// Two selections are equal if their texts are.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    text: String,
+    expression: parse::Expression,
+}
+
+/// What a selection kept.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct KeptSpheres {
+    /// The number of spheres that are kept.
+    pub kept: usize,
+    /// The number of spheres before.
+    pub of: usize,
+    /// Notes for the user, one line each: texts that no sphere has.
+    pub notes: Vec<String>,
+}
+
+impl PartialEq for Selection {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl fmt::Display for Selection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl FromStr for Selection {
+    type Err = SelectError;
+
+    fn from_str(text: &str) -> Result<Self, SelectError> {
+        Ok(Self { text: text.to_owned(), expression: parse::parse(text)? })
+    }
+}
+
+impl Selection {
+    /// Returns for each sphere whether it matches, and notes for the user.
+    ///
+    /// # Errors
+    /// Returns an error if the expression names a column that the data lacks, or compares text with numbers.
+    pub fn matches(
+        &self,
+        spheres: &SphereArray,
+        columns: &[Column],
+    ) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+        evaluate::evaluate(&self.expression, &self.text, spheres, columns)
+    }
+
+    /// Leaves out the spheres that do not match, with their colours and other values. A column `index` keeps the indices
+    /// that they had before, unless the data has a column of this name.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Selection::matches`], and an error if no sphere of several matches. Then nothing is
+    /// changed.
+    pub fn apply(&self, loaded: &mut Dataset) -> Result<KeptSpheres, SelectError> {
+        let (is_kept, notes) = self.matches(&loaded.spheres, &loaded.columns)?;
+        let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
+        if kept == 0 && of > 0 {
+            let hint = notes.first().map_or(String::new(), |note| format!("; {note}"));
+            return Err(SelectError::Nothing { expression: self.text.clone(), of, hint });
+        }
+        if kept < of {
+            if !loaded.columns.iter().any(|column| column.name.eq_ignore_ascii_case("index")) {
+                let values = ColumnValues::Numbers((0..of).map(|index| index as f64).collect());
+                loaded.columns.push(Column { name: "index".to_owned(), values });
+            }
+            loaded.keep(&is_kept);
+        }
+        Ok(KeptSpheres { kept, of, notes })
+    }
+}

@@ -1,0 +1,170 @@
+//! Files of spheres and what they hold, those that are refused, and damaged files of every format.
+
+use std::path::{Path, PathBuf};
+
+use fastrand::Rng;
+use pinhole::scene::sphere_array::SphereArray;
+use pinhole::{LinearRgb, Sphere};
+use pinhole_data::load::{self, ColumnValues, Dataset, FORMATS, Format, Labels, Options};
+use tempfile::TempDir;
+
+use crate::cases::{Case, compare};
+use crate::damage::{SLOW, damaged, read_all, read_bytes};
+use crate::effort::tries;
+use crate::seeds;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(name)
+}
+
+#[test]
+fn refused_files() {
+    compare(&folder("refused"), answer);
+}
+
+#[test]
+fn accepted_files() {
+    compare(&folder("accepted"), contents);
+}
+
+/// What the program says to a file that cannot be read.
+fn answer(Case { files, arguments }: &Case<'_>) -> String {
+    let [(name, bytes)] = &files[..] else { panic!("{arguments}: not one file") };
+    let options = options(arguments);
+    let error = load::from_bytes(bytes, name, &options).unwrap_err();
+    // Of a file that is opened, frame by frame if it has any, the same is said.
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    assert_eq!(load::open(&path, &options).unwrap_err().to_string(), error.to_string(), "{name}");
+    // A radius that contradicts the file is wrong usage.
+    let code = if options.radius.is_some() { 2 } else { 1 };
+    format!("exit code {code}\nerror: {name}: {error}\n")
+}
+
+fn options(arguments: &str) -> Options {
+    let words = arguments.split(' ');
+    let flag = |name| words.clone().skip_while(|word| *word != name).nth(1);
+    let mut options = Options::default();
+    options.frame = flag("--frame").map(|frame| frame.parse().unwrap());
+    options.radius = flag("--radius").map(|radius| radius.parse().unwrap());
+    options.columns = flag("--columns")
+        .map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
+    options
+}
+
+/// What a file holds. Several files of one case are different ways to write the same.
+fn contents(Case { files, arguments }: &Case<'_>) -> String {
+    let read = |(name, bytes): &(&str, Vec<u8>)| {
+        load::from_bytes(bytes, name, &options(arguments)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    };
+    let loaded = read(&files[0]);
+    for (number, file) in files.iter().enumerate() {
+        // As text, because a missing number is not equal to itself.
+        assert_eq!(written(&read(file)), written(&loaded), "file {number} of {arguments}");
+        if file.0.ends_with(".pdb") {
+            let frame = options(arguments).frame.unwrap_or(0);
+            let direct = load::pdb::read(&file.1, frame).unwrap();
+            assert_eq!(written(&direct), written(&loaded), "{arguments}");
+        }
+    }
+    written(&loaded)
+}
+
+fn written(loaded: &Dataset) -> String {
+    let width = if matches!(loaded.spheres, SphereArray::F32(_)) { 32 } else { 64 };
+    let columns = loaded.columns.iter().map(|column| match &column.values {
+        ColumnValues::Labels(labels) => format!(" {} {:?}", column.name, labels.names),
+        _ => format!(" {}", column.name),
+    });
+    let columns: String = columns.collect();
+    let mut lines = vec![format!("{} spheres of f{width};{columns}", loaded.spheres.len())];
+    let white = LinearRgb::WHITE;
+    for (index, Sphere { center: [x, y, z], radius, .. }) in
+        loaded.spheres.with_color(white).enumerate()
+    {
+        let mut line = format!("{x} {y} {z} radius {radius}");
+        if let Some(colors) = &loaded.colors {
+            let srgb = colors[index].to_srgb8();
+            line += &match LinearRgb::from_srgb8(srgb) == colors[index] {
+                true => format!(" color {srgb:?}"),
+                false => format!(" color {:?}", colors[index]),
+            };
+        }
+        if let Some(opacities) = &loaded.opacities {
+            line += &format!(" opacity {}", opacities[index]);
+        }
+        for column in &loaded.columns {
+            line += &match &column.values {
+                ColumnValues::Labels(Labels { names, indices }) => {
+                    format!(" {:?}", names[indices[index] as usize])
+                }
+                ColumnValues::Numbers(numbers) => format!(" {}", numbers[index]),
+            };
+        }
+        lines.push(line);
+    }
+    if let Some(cell) = loaded.cell {
+        // Cosines may differ in the last digit from one system to another.
+        let cell = cell.map(|edge| edge.map(|x| (x * 1e9).round() / 1e9 + 0.0));
+        lines.push(format!("cell {cell:?} from {:?}", loaded.cell_origin));
+    }
+    lines.extend(loaded.frames.map(|frames| format!("frames: {frames}")));
+    lines.extend(loaded.notes.iter().map(|note| format!("note: {note}")));
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn every_format_has_good_files() {
+    let folder = TempDir::new().unwrap();
+    for format in FORMATS {
+        let seeds = seeds::of(format, folder.path());
+        assert!(!seeds.is_empty(), "{}: give it a file in tests/files/good", format.name);
+        for (index, seed) in seeds.into_iter().enumerate() {
+            let options = seed.options.with_format(format);
+            let loaded = load::from_bytes(&seed.bytes, "", &options);
+            let loaded = loaded.unwrap_or_else(|e| panic!("{} {index}: {e}", format.name));
+            assert!(!loaded.spheres.is_empty(), "{} {index}", format.name);
+        }
+    }
+}
+
+#[test]
+fn damaged_files_end_with_spheres_or_one_line() {
+    // Two threads share the formats, which are about equally slow.
+    std::thread::scope(|scope| {
+        for first in 0..2 {
+            scope.spawn(move || FORMATS.iter().skip(first).step_by(2).for_each(read_damaged));
+        }
+    });
+}
+
+/// Reads files of one format, cut off at every length and damaged at random.
+fn read_damaged(format: &'static Format) {
+    let folder = TempDir::new().unwrap();
+    let seeds = seeds::of(format, folder.path());
+    for seed in &seeds {
+        for end in (0..seed.bytes.len()).filter(|end| *end < 2048 || end % 7 == 0) {
+            let mut random = Rng::with_seed(end as u64);
+            read_bytes(format, &seed.bytes[..end], &seed.options, &mut random)
+                .unwrap_or_else(|e| panic!("{}, cut at {end}: {e}", format.name));
+        }
+    }
+    let each = tries(if format.has_frames() { 64_000 } else { 240_000 });
+    for number in 0..u64::from(each) {
+        let mut random = Rng::with_seed(number);
+        let seed = &seeds[number as usize % seeds.len()];
+        let other = &seeds[random.usize(0..seeds.len())].bytes;
+        let bytes = damaged(&seed.bytes, other, &mut random);
+        // Frames are read from files in many ways, which takes ten times as long.
+        let taken = if random.u8(0..20) == 0 {
+            let file = folder.path().join("file");
+            read_all(format, &bytes, &seed.options, &file, &mut random)
+        } else {
+            read_bytes(format, &bytes, &seed.options, &mut random)
+        };
+        let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
+        // A busy machine may be slow, but what hangs is slower. The long run in `benches` measures.
+        assert!(taken < 60 * SLOW, "{}, input {number}: {taken:?}", format.name);
+    }
+}

@@ -1,0 +1,94 @@
+//! Small good files of every format that can be read, from which the fuzzer makes bad ones.
+//!
+//! A new format gets files in `tests/files/good`; a test fails until it has. Those of DCD, TRR and XTC need a topology, and
+//! are written by `binary_files`.
+
+use std::path::Path;
+
+use pinhole_data::load::{Format, Options};
+
+use crate::binary_files::{dcd as charmm, gromacs, topology};
+
+/// A good file.
+pub(crate) struct Seed {
+    pub(crate) bytes: Vec<u8>,
+    /// What reading it needs beside the format.
+    pub(crate) options: Options,
+}
+
+/// Files that must be given the names of their columns, or `radius`.
+const NEEDS: [(&str, &str); 5] = [
+    ("general.dump", "id type xsu ysu zsu"),
+    ("bare.data", "id type q x y z"),
+    ("columns.npy", "radius"),
+    ("centers.npz", "radius"),
+    ("bare.csv", "x y z"),
+];
+
+/// The names and bytes of the good files of a format, which their extensions tell.
+fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/good");
+    let extensions = if format.name == "raw-f32x4" { &["bin"][..] } else { format.extensions };
+    let names = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
+    let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+    names.sort();
+    names.retain(|name| {
+        let (_, extension) = name.trim_end_matches(".gz").rsplit_once('.').unwrap();
+        extensions.contains(&extension)
+    });
+    let read = |name: String| (name.clone(), std::fs::read(folder.join(name)).unwrap());
+    names.into_iter().map(read).collect()
+}
+
+/// The good files of a format; none if it is unknown here. What they need, such as a topology, is written into the folder.
+pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
+    let mut seeds = match format.name {
+        "dcd" => dcd(folder),
+        "trr" => trr(folder),
+        "xtc" => xtc(folder),
+        _ => Vec::new(),
+    };
+    for (name, bytes) in files(format) {
+        let mut options = Options::default();
+        match NEEDS.iter().find(|(file, _)| *file == name).map_or("", |(_, need)| need) {
+            "radius" => options.radius = Some(1.0),
+            columns => options.columns = columns.split_terminator(' ').map(str::to_owned).collect(),
+        }
+        if let (Ok(text), "xyz" | "mmcif") = (str::from_utf8(&bytes), format.name) {
+            let bytes = text.replace('\n', "\r\n").into_bytes();
+            seeds.push(Seed { bytes, options: options.clone() });
+        }
+        seeds.push(Seed { bytes, options });
+    }
+    seeds
+}
+
+fn dcd(folder: &Path) -> Vec<Seed> {
+    let other = charmm::Layout {
+        order: charmm::Order::Big,
+        marker_bytes: 8,
+        cell: Some([10.0, 0.5, 20.0, 0.0, 0.0, 30.0]),
+        has_fourth: true,
+        has_fixed: true,
+    };
+    let seed = |layout| with_topology(charmm::file(layout), folder, charmm::ATOMS);
+    [charmm::PLAIN, other].map(seed).into()
+}
+
+fn trr(folder: &Path) -> Vec<Seed> {
+    [false, true]
+        .map(|is_double| with_topology(gromacs::trr(is_double), folder, gromacs::ATOMS))
+        .into()
+}
+
+fn xtc(folder: &Path) -> Vec<Seed> {
+    let (old, new) = (molly::Magic::Xtc1995, molly::Magic::Xtc2023);
+    // Of fewer than ten atoms the positions are not compressed.
+    [(5, old), (12, old), (60, new)]
+        .map(|(atoms, magic)| with_topology(gromacs::xtc(2, atoms, magic), folder, atoms))
+        .into()
+}
+
+fn with_topology(bytes: Vec<u8>, folder: &Path, atoms: usize) -> Seed {
+    Seed { bytes, options: Options::default().with_topology(topology(folder, atoms)) }
+}

@@ -1,0 +1,164 @@
+//! Legends, scale bars and labels, drawn over an encoded picture.
+//!
+//! Annotations are drawn on the samples of a PNG, after exposure and tone curve, so that neither changes them: the bar
+//! of a legend has exactly the colours that the map gives. Light does change the colours of spheres, which are brighter
+//! or darker than the bar; with flat shading they are equal. Layers of data and EXR pictures are never drawn on.
+//!
+//! ```
+//! use pinhole_figure::annotate::{Annotation, Annotations, Canvas, Label, Position};
+//! use pinhole::image::encoding::Bits;
+//!
+//! let mut rgb = vec![255; 3 * 200 * 100];
+//! let mut canvas = Canvas::new([200, 100], 3, Bits::Eight, &mut rgb).unwrap();
+//! let label = Label { text: "t = 5 µs".to_owned(), position: Position::TOP_LEFT };
+//! Annotations::default().with(Annotation::Label(label)).draw(&mut canvas);
+//! assert!(rgb.iter().any(|sample| *sample < 128));
+//! ```
+
+mod canvas;
+mod font;
+mod legend;
+mod legend_scale;
+mod place;
+mod plan;
+mod scale_bar;
+mod ticks;
+
+pub use canvas::Canvas;
+pub use font::missing_characters;
+pub use legend::Legend;
+pub use place::{Anchor, Panel, Position, PositionError};
+pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
+pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
+
+use canvas::Block;
+use place::{GAP, PADDING, origin};
+
+/// What is drawn over a picture.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Annotation {
+    /// What colours mean.
+    Legend(Legend),
+    /// How long a length is.
+    ScaleBar(ScaleBar),
+    /// A text.
+    Label(Label),
+}
+
+/// All annotations of a picture. Those with the same [`Anchor`] are stacked in this order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Annotations {
+    /// What is drawn.
+    pub items: Vec<Annotation>,
+    /// The size of text relative to the default, which is 1/36 of the picture's height and at least 10 pixels.
+    pub text_scale: f32,
+    /// The colour of text and lines in 8-bit sRGB. Without one, it is black or white, whichever is easier to read.
+    pub color: Option<[u8; 3]>,
+    /// Whether panels lie behind annotations.
+    pub panel: Panel,
+}
+
+impl Default for Annotations {
+    fn default() -> Self {
+        Self { items: Vec::new(), text_scale: 1.0, color: None, panel: Panel::Auto }
+    }
+}
+
+impl Annotations {
+    /// The smallest and the largest [`Annotations::text_scale`].
+    pub const TEXT_SCALES: [f32; 2] = [0.2, 10.0];
+
+    /// These annotations and one more.
+    #[must_use]
+    pub fn with(mut self, item: Annotation) -> Self {
+        self.items.push(item);
+        self
+    }
+
+    /// Whether nothing is drawn.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// All texts that the user chose, to look for characters that the font lacks; see [`missing_characters`].
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.items.iter().map(|item| match item {
+            Annotation::Legend(legend) => legend.title(),
+            Annotation::ScaleBar(bar) => &bar.unit,
+            Annotation::Label(label) => &label.text,
+        })
+    }
+
+    /// Draws the annotations over a picture.
+    pub fn draw(&self, canvas: &mut Canvas<'_>) {
+        let size = canvas.size();
+        place::draw(&self.blocks(size), self.em(size), self.color, self.panel, canvas);
+    }
+
+    fn blocks(&self, size: [u32; 2]) -> Vec<(Position, Block)> {
+        let em = self.em(size);
+        let block = |item: &Annotation| match item {
+            Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
+            Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
+            Annotation::Label(label) => (label.position, label.block(em)),
+        };
+        self.items.iter().map(block).collect()
+    }
+
+    /// The size of text in pixels: that of the letter M is about 0.7 of it.
+    fn em(&self, [width, height]: [u32; 2]) -> f32 {
+        let [low, high] = Self::TEXT_SCALES;
+        let scale = if self.text_scale.is_nan() { 1.0 } else { self.text_scale.clamp(low, high) };
+        // A picture that is much higher than wide has text that fits its width.
+        let height = (height as f32).min(1.5 * width as f32);
+        scale * (height / 36.0).max(10.0)
+    }
+}
+
+impl Annotations {
+    /// The part of a picture of this size in pixels that must be free so that nothing lies under the legend: on the
+    /// left, the right, the bottom and the top, as fractions of the width and the height. Of the sides the one is free
+    /// that takes the smallest part; if that is more than `most`, or if there is no legend, none is.
+    pub(crate) fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
+        let none = [0.0; 4];
+        let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_));
+        let Some(index) = self.items.iter().position(is_legend) else { return none };
+        let em = self.em([width, height]);
+        let blocks = self.blocks([width, height]);
+        let [left, top] = origin(&blocks, index, em, [width, height]).map(|place| place as f64);
+        let block = &blocks[index].1;
+        let around = f64::from((PADDING + GAP) * em) + 1.0;
+        let [width, height] = [width, height].map(f64::from);
+        let sides = [
+            (left + f64::from(block.width) + around) / width,
+            (width - left + around) / width,
+            (height - top + around) / height,
+            (top + f64::from(block.height) + around) / height,
+        ];
+        let least = (0..4).min_by(|a, b| sides[*a].total_cmp(&sides[*b]));
+        match least.filter(|side| sides[*side] <= most) {
+            Some(side) => std::array::from_fn(|i| if i == side { sides[i] } else { 0.0 }),
+            None => none,
+        }
+    }
+}
+
+/// A text at a place of the picture. It may have several lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// The text.
+    pub text: String,
+    /// Where it lies.
+    pub position: Position,
+}
+
+impl Label {
+    fn block(&self, em: f32) -> Block {
+        let mut block = Block::default();
+        // Somewhat larger than the numbers of a legend.
+        block.lines(&self.text, 1.15 * em);
+        block
+    }
+}

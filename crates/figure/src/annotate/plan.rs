@@ -1,0 +1,137 @@
+//! What a user asks for, before the scene is known.
+
+use glam::DVec3;
+
+use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
+use super::{Annotation, Annotations, Label, Legend, Panel, Position, missing_characters};
+use crate::color_by::ColorKey;
+use crate::color_by::number::short;
+use pinhole::camera::View;
+use pinhole::camera::film::{Film, YAxis};
+use pinhole::geometry::subject::Subject;
+
+/// The annotations that a user asks for, in a scene file or with flags.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AnnotationPlan {
+    /// A legend.
+    pub legend: Option<LegendPlan>,
+    /// A scale bar.
+    pub scale_bar: Option<ScaleBarPlan>,
+    /// Labels.
+    pub labels: Vec<Label>,
+    /// See [`Annotations::text_scale`].
+    pub text_scale: Option<f32>,
+    /// See [`Annotations::color`].
+    pub color: Option<[u8; 3]>,
+    /// See [`Annotations::panel`].
+    pub panel: Option<Panel>,
+}
+
+/// A legend that a user asks for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LegendPlan {
+    /// The title; without one it is the name of the column.
+    pub title: Option<String>,
+    /// Where it lies; without one in the middle of the right side.
+    pub position: Option<Position>,
+}
+
+/// A scale bar that a user asks for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScaleBarPlan {
+    /// The length in scene units; without one it is a round number that suits the picture.
+    pub length: Option<f64>,
+    /// The unit; it may be empty.
+    pub unit: String,
+    /// Where it lies; without one in the bottom left corner.
+    pub position: Option<Position>,
+}
+
+/// Why there are no annotations.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AnnotationError {
+    /// A legend was asked for, but colours do not come from a column.
+    #[error(
+        "a legend shows what colors mean, but no column gives colors; color the spheres by a column"
+    )]
+    NoKey,
+    /// There is no scale bar.
+    #[error(transparent)]
+    ScaleBar(#[from] ScaleBarError),
+}
+
+impl AnnotationPlan {
+    /// Whether nothing is to be drawn.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()
+    }
+
+    /// The labels and the legend, which do not depend on the camera.
+    fn without_camera(&self, key: Option<&ColorKey>) -> Result<Annotations, AnnotationError> {
+        let mut drawn = Annotations { color: self.color, ..Annotations::default() };
+        drawn.text_scale = self.text_scale.unwrap_or(drawn.text_scale);
+        drawn.panel = self.panel.unwrap_or(drawn.panel);
+        drawn.items = self.labels.iter().cloned().map(Annotation::Label).collect();
+        if let Some(LegendPlan { title, position }) = &self.legend {
+            let mut legend = Legend::new(key.ok_or(AnnotationError::NoKey)?.clone());
+            legend.title.clone_from(title);
+            legend.position = position.unwrap_or(legend.position);
+            drawn = drawn.with(Annotation::Legend(legend));
+        }
+        Ok(drawn)
+    }
+
+    /// The parts of a film that a camera must leave free so that no sphere lies under the legend, for
+    /// [`Subject::with_free_sides`]. There are none if there is no legend, no key, or no room for it.
+    #[must_use]
+    pub fn free_sides(&self, key: Option<&ColorKey>, film: Film) -> [f64; 4] {
+        let drawn = self.without_camera(key).unwrap_or_default();
+        let size = [film.width(), film.height()];
+        let [left, right, bottom, top] = drawn.room_of_legend(size, Subject::MOST_FREE);
+        match film.y_axis() {
+            YAxis::Up => [left, right, bottom, top],
+            YAxis::Down => [left, right, top, bottom],
+        }
+    }
+
+    /// The annotations of a picture, and notes for the user. `key` is what colours mean, if a column gives them; a scale
+    /// bar is true at the depth of `middle`, the middle of the scene.
+    ///
+    /// # Errors
+    /// Returns an error if there is no key for a legend, or a scale bar has no meaning or does not fit.
+    pub fn annotations(
+        &self,
+        key: Option<&ColorKey>,
+        view: &View<'_>,
+        middle: DVec3,
+    ) -> Result<(Annotations, Vec<String>), AnnotationError> {
+        let mut notes = Vec::new();
+        let mut drawn = self.without_camera(key)?;
+        if let Some(ScaleBarPlan { length, unit, position }) = &self.scale_bar {
+            let scale = pixels_per_unit(view, middle)?;
+            let mut bar = ScaleBar::new(scale, *length, unit.clone(), view.film.width())?;
+            bar.position = position.unwrap_or(bar.position);
+            if view.camera.kind() != pinhole::camera::CameraKind::Orthographic {
+                let depth = (middle - view.camera.vectors().origin).length();
+                notes.push(format!(
+                    "the scale bar of {} is true at the distance of the middle of the scene, {}; the orthographic \
+                     camera has one scale everywhere",
+                    bar.text(),
+                    short(depth)
+                ));
+            }
+            drawn = drawn.with(Annotation::ScaleBar(bar));
+        }
+        let lacking = missing_characters(&drawn.texts().collect::<String>());
+        if !lacking.is_empty() {
+            let lacking = lacking.into_iter().map(String::from).collect::<Vec<_>>().join(" ");
+            notes.push(format!(
+                "the font of annotations lacks {}, drawn as boxes; it has Latin, Greek and Cyrillic letters",
+                pinhole::internals::text::one_line(&lacking)
+            ));
+        }
+        Ok((drawn, notes))
+    }
+}

@@ -1,0 +1,27 @@
+//! Why a column does not give colours, radii, opacities or strengths.
+
+use super::scale::ScaleError;
+use pinhole::scene::SceneError;
+use pinhole_data::added::AddError;
+use pinhole_data::column::ColumnError;
+
+/// Why a column does not give colours, radii, opacities or strengths of light.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColorByError {
+    /// There is no such column, or its values are text where numbers are needed.
+    #[error(transparent)]
+    Column(#[from] ColumnError),
+    /// The range is wrong.
+    #[error("the range of the colors: {0}")]
+    Scale(#[from] ScaleError),
+    /// The values, the range or the factor cannot be used as they were asked for.
+    #[error("{0}")]
+    Values(String),
+    /// A sphere is out of range.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Bonds or the edges of the cell cannot be added.
+    #[error(transparent)]
+    Add(#[from] AddError),
+}

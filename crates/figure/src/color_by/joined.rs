@@ -1,0 +1,122 @@
+//! Colours with one meaning in several frames, and colours of data that gives none, but says of what kinds its spheres
+//! are.
+
+use super::coloring::order;
+use super::key::{ColorKey, KeyKind};
+use super::{ColorBy, Limit, Limits};
+use pinhole_data::load::Dataset;
+
+/// What colours mean in several frames of a trajectory together, so that equal values have equal colours in all of them.
+///
+/// If the values of any frame are on a scale, the range of all frames is used, and whole numbers that are categories in
+/// other frames count for it. Otherwise the categories of all frames are used, in the order in which one frame has them.
+///
+/// ```
+/// use pinhole_figure::color_by::{ColorBy, JoinedKeys};
+/// use pinhole::SphereArray;
+///
+/// let frames = [1.0, 5.0].map(|x| SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0, 1.0]]));
+/// let mut by = ColorBy::column("x");
+/// let mut joined = JoinedKeys::default();
+/// for spheres in &frames {
+///     joined.add(&by.apply(spheres, &[], &[])?.key);
+/// }
+/// joined.apply_to(&mut by);
+/// let first = by.apply(&frames[0], &[], &[])?;
+/// let last = by.apply(&frames[1], &[], &[])?;
+/// assert_eq!(first.key, last.key);
+/// # Ok::<(), pinhole_figure::color_by::ColorByError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JoinedKeys {
+    /// The lowest and the highest end of the scales.
+    range: Option<[f64; 2]>,
+    /// The names of the categories, without a particular order.
+    names: Vec<String>,
+    missing: Option<[u8; 3]>,
+}
+
+impl JoinedKeys {
+    /// What [`JoinedKeys::range`], [`JoinedKeys::names`] and [`JoinedKeys::missing`] of another process returned.
+    #[must_use]
+    pub fn new(range: Option<[f64; 2]>, names: Vec<String>, missing: Option<[u8; 3]>) -> Self {
+        Self { range, names, missing }
+    }
+
+    /// The lowest and the highest end of the scales of all frames; `None` if no frame has a scale.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        self.range
+    }
+
+    /// The names of the categories of all frames, without a particular order.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Adds what colours mean in a frame.
+    pub fn add(&mut self, key: &ColorKey) {
+        self.missing = self.missing.or(key.missing);
+        match &key.kind {
+            KeyKind::Scale(scale) => self.widen(scale.scale().range()),
+            KeyKind::Categories(categories) => {
+                for category in categories {
+                    if !self.names.contains(&category.name) {
+                        self.names.push(category.name.clone());
+                    }
+                }
+            }
+        }
+    }
+
+    fn widen(&mut self, [low, high]: [f64; 2]) {
+        let [l, h] = self.range.unwrap_or([low, high]);
+        self.range = Some([l.min(low), h.max(high)]);
+    }
+
+    /// Gives a frame's colours the range or the categories of all frames. Without any frame, nothing is changed.
+    pub fn apply_to(&self, by: &mut ColorBy) {
+        if self.range.is_some() {
+            let mut all = self.clone();
+            let numbers = self.names.iter().filter_map(|name| name.parse::<f64>().ok());
+            numbers
+                .filter(|number| number.is_finite() && (!by.is_log || *number > 0.0))
+                .for_each(|number| all.widen([number; 2]));
+            let [low, high] = all.range.unwrap_or_default();
+            by.limits = Limits { low: Limit::Value(low), high: Limit::Value(high) };
+        } else if !self.names.is_empty() {
+            let mut names = self.names.clone();
+            let order = order(names.iter().map(String::as_str));
+            names.sort_by(|a, b| order(a, b));
+            by.categories = Some(names);
+        }
+    }
+
+    /// The colour of spheres without a value, in 8-bit sRGB; `None` if all spheres of all frames have one.
+    #[must_use]
+    pub fn missing(&self) -> Option<[u8; 3]> {
+        self.missing
+    }
+}
+
+/// Names of the columns of kinds, of which the first is taken.
+const KINDS: [&str; 2] = ["species", "type"];
+
+/// More kinds than this cannot be told apart by colour.
+const MOST_KINDS: usize = 32;
+
+impl ColorBy {
+    /// Colours by the kinds of spheres that have no colours: by the column `species` or else `type`, if it is text, and
+    /// there are from 2 to 32 kinds to tell apart. `None` if the data gives colours or says no kinds.
+    #[must_use]
+    pub fn of_kinds(loaded: &Dataset) -> Option<Self> {
+        if loaded.colors.is_some() {
+            return None;
+        }
+        let are_kinds = |name: &&str| {
+            loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()))
+        };
+        KINDS.into_iter().find(are_kinds).map(Self::column)
+    }
+}

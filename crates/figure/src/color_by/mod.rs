@@ -1,0 +1,138 @@
+//! Colours, radii, opacities and strengths of light from the columns of data.
+//!
+//! [`ColorBy`] turns a column, [`column::column`], into a colour for each sphere, and into a [`ColorKey`], which tells
+//! a legend what the colours mean. Nothing here accesses the file system.
+//!
+//! ```
+//! use pinhole_figure::color_by::ColorBy;
+//! use pinhole::SphereArray;
+//!
+//! let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0]]);
+//! let colored = ColorBy::column("x").apply(&spheres, &[], &[])?;
+//! // Viridis begins with a dark violet, and ends with yellow.
+//! assert_eq!(colored.color(0).unwrap().to_srgb8(), [0x44, 0x01, 0x54]);
+//! assert_eq!(colored.color(1).unwrap().to_srgb8(), [0xfd, 0xe7, 0x25]);
+//! # Ok::<(), pinhole_figure::color_by::ColorByError>(())
+//! ```
+
+mod coloring;
+
+mod error;
+mod joined;
+mod key;
+mod mapping;
+mod maps;
+pub mod number;
+mod scale;
+
+pub use error::ColorByError;
+pub use joined::JoinedKeys;
+pub use key::{Category, ColorKey, ColorScale, KeyKind};
+pub use mapping::{EmissionBy, MappedColumns, Mapping, RadiusBy};
+pub use maps::{MapError, MapName};
+pub use pinhole_data::column::ColumnError;
+pub use scale::{Limit, Limits, Scale, ScaleError};
+
+use pinhole::image::color::LinearRgb;
+use pinhole::scene::Colors;
+use pinhole::scene::sphere_array::SphereArray;
+use pinhole_data::column;
+use pinhole_data::load::{Column, ColumnValues};
+
+/// How a column becomes colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorBy {
+    /// The column; see [`column::column`].
+    pub column: String,
+    /// The colour map or palette. Without one, numbers get viridis, and text and few different whole numbers get the
+    /// palette of Okabe and Ito.
+    pub map: Option<MapName>,
+    /// Whether to use the map backwards.
+    pub is_reversed: bool,
+    /// The numbers that have the first and the last colour of the map.
+    pub limits: Limits,
+    /// Whether colours follow the logarithm of the numbers.
+    pub is_log: bool,
+    /// The colour of spheres without a value, in 8-bit sRGB.
+    pub missing: [u8; 3],
+    /// The categories in the order of their colours, whether or not they occur; other values have the colour of missing
+    /// ones. `None` stands for those that occur.
+    pub categories: Option<Vec<String>>,
+}
+
+/// The colour of spheres without a value, unless another is chosen: a middle grey, in 8-bit sRGB.
+pub const MISSING: [u8; 3] = [0x80; 3];
+
+impl ColorBy {
+    /// Colours from this column, with the map and the range that suit its values.
+    #[must_use]
+    pub fn column(column: impl Into<String>) -> Self {
+        Self {
+            column: column.into(),
+            map: None,
+            is_reversed: false,
+            limits: Limits::default(),
+            is_log: false,
+            missing: MISSING,
+            categories: None,
+        }
+    }
+
+    /// Computes the colours of the spheres. `left_out` says for each sphere whether it is left out of the picture, so
+    /// that its value does not count for the range; it may be empty.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such column, if it has no value that can be shown, if the range is wrong, or if
+    /// an option does not apply to text.
+    pub fn apply(
+        &self,
+        spheres: &SphereArray,
+        columns: &[Column],
+        left_out: &[bool],
+    ) -> Result<Coloring, ColorByError> {
+        let found = column::column(&self.column, spheres, columns)?;
+        match found.values.as_ref() {
+            ColumnValues::Labels(labels) => self.color_labels(&found.name, labels, left_out),
+            ColumnValues::Numbers(values) if self.are_categories(&found, values, left_out) => {
+                self.color_whole_numbers(&found.name, values, left_out)
+            }
+            ColumnValues::Numbers(values) => self.color_numbers(&found.name, values, left_out),
+        }
+    }
+}
+
+/// The colours of spheres, and what they mean.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Coloring {
+    /// All colours that may occur. They are those of 8-bit sRGB.
+    pub palette: Vec<LinearRgb>,
+    /// For each sphere, the index of its colour.
+    pub indices: Vec<u32>,
+    /// What the colours mean.
+    pub key: ColorKey,
+    /// Notes for the user, one line each: the range, values that are missing, colours that repeat.
+    pub notes: Vec<String>,
+}
+
+impl Coloring {
+    /// The colour of a sphere, by its index in input order; `None` if there is no such sphere.
+    #[must_use]
+    pub fn color(&self, index: usize) -> Option<LinearRgb> {
+        self.palette.get(*self.indices.get(index)? as usize).copied()
+    }
+
+    /// The colours for a scene, 4 bytes for each sphere.
+    pub(crate) fn to_colors(&self) -> Colors {
+        Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
+    }
+}
+
+/// Whether the sphere with this index is in the picture.
+fn is_kept(left_out: &[bool], index: usize) -> bool {
+    !left_out.get(index).copied().unwrap_or(false)
+}
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}

@@ -1,0 +1,369 @@
+//! Reads scene files: TOML text that describes the film, the camera, the render settings and the spheres. This module
+//! does not access the file system.
+//!
+//! The commented files `examples/*.toml` show every table and key.
+
+mod annotations;
+mod camera_path;
+mod data;
+mod data_spheres;
+mod document;
+mod lighting;
+mod mapping;
+mod materials;
+mod span;
+mod write;
+
+pub use camera_path::parse_camera_path;
+pub use data::{Data, Element};
+pub use data_spheres::{AppliedData, DataError, DataSpheres};
+pub use lighting::IntegratorKind;
+pub use span::{DEFAULT_COLOR, SceneFileError};
+pub use write::{Contents, write};
+
+use toml::Spanned;
+
+use crate::annotate::AnnotationPlan;
+use crate::style::{Style, fit};
+use annotations::read_annotations;
+use document::{Document, FilmTable, SphereTable};
+use lighting::{LightingTables, SceneLighting};
+use materials::Materials;
+use pinhole::camera::film::Film;
+use pinhole::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
+use pinhole::image::color::LinearRgb;
+use pinhole::image::encoding::Encoding;
+use pinhole::light::environment::Environment;
+use pinhole::light::{Sky, SkyLight};
+use pinhole::render::{Integrator, RenderSettings, SettingsError, Shading};
+use pinhole::scene::material::Material;
+use pinhole::scene::sphere::Sphere;
+use pinhole::scene::{Colors, Scene, SceneError};
+use span::{Lines, Span, WithSpan, scaled, unknown};
+
+/// The contents of a scene file.
+#[derive(Debug)]
+pub struct SceneFile {
+    /// Size of the picture, and the direction of its y axis.
+    pub film: Film,
+    /// How the picture is encoded: exposure, tone curve, transparency and bits.
+    pub encoding: Encoding,
+    /// What is drawn over the picture.
+    pub annotations: AnnotationPlan,
+    /// What is seen where there is nothing.
+    pub background: LinearRgb,
+    style: Option<Style>,
+    /// Shading of pictures by primary rays.
+    shading: Shading,
+    lighting: SceneLighting,
+    data: Option<WithSpan<Data>>,
+    camera: WithSpan<CameraParameters>,
+    camera_path: Option<CameraPath>,
+    spheres: Vec<WithSpan<Sphere>>,
+}
+
+impl SceneFile {
+    /// Parses the text of a scene file.
+    ///
+    /// # Errors
+    /// Returns the first error in the text, with its line and column.
+    pub fn parse(text: &str) -> Result<Self, SceneFileError> {
+        Self::parse_in_style(text, None)
+    }
+
+    /// Parses the text of a scene file like [`SceneFile::parse`], with this style in place of the one that the file
+    /// names. An empty text and a style are what data without a scene file is rendered with.
+    ///
+    /// # Errors
+    /// Returns the first error in the text, with its line and column.
+    pub fn parse_in_style(text: &str, style: Option<Style>) -> Result<Self, SceneFileError> {
+        let lines = Lines::of(text);
+        let mut document = Document::parse(text, &lines)?;
+        let named = document.style.as_ref().map(|name| style_of(name, &lines)).transpose()?;
+        let style = style.or(named);
+        let text_of_style = style.map_or("", Style::text);
+        let mut of_style = Document::parse(text_of_style, &Lines::of(text_of_style))?;
+        let lighting_of_style = lighting_tables(&mut of_style);
+        let mut lighting = lighting_tables(&mut document);
+        let materials = Materials::new(std::mem::take(&mut document.materials), &lines)?;
+        let has_lighting = document.material.is_some()
+            || document.opacity.is_some()
+            || document.opacity_by.is_some()
+            || document.emission_by.is_some();
+        let data = document.read_data(&materials, &lines)?;
+        let spheres = document.spheres.into_iter();
+        let spheres: Vec<_> = spheres
+            .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
+            .collect::<Result<_, _>>()?;
+        lighting.has_materials = has_lighting || has_surface(&spheres, data.as_ref());
+        let lighting = lighting.read(lighting_of_style, &lines)?;
+        Ok(Self {
+            film: FilmTable::film(document.film, &lines)?,
+            style,
+            background: document
+                .background
+                .or(of_style.background)
+                .map_or(LinearRgb::WHITE, |color| color.0),
+            shading: document
+                .shading
+                .or(of_style.shading)
+                .map(Spanned::into_inner)
+                .unwrap_or_default(),
+            encoding: document.output.0.encoding(&lines)?,
+            annotations: read_annotations(
+                document.legend,
+                document.scale_bar,
+                document.labels,
+                document.text,
+                &lines,
+            )?,
+            lighting,
+            data,
+            camera: lines.spanned(document.camera),
+            camera_path: document.camera_path.map(|table| table.0.path(&lines)).transpose()?,
+            spheres,
+        })
+    }
+
+    /// Makes the scene: first the file's own spheres, then those of its data.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range. The position is that of the sphere, or of the key `data`.
+    pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
+        let own = self.spheres.iter().map(|sphere| sphere.value);
+        let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
+        Scene::new(&spheres).map_err(|error| self.spanned(&error))
+    }
+
+    /// Makes the scene like [`SceneFile::scene`], from what [`Data::apply`] returns. Spheres without a colour of their
+    /// own get the `color`, and the surface properties that the file gives. If the file has no spheres of its own, an
+    /// array is not copied.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
+    pub fn scene_of(&self, data: DataSpheres, color: LinearRgb) -> Result<Scene, SceneFileError> {
+        let (data, mapped) = match data {
+            DataSpheres::Spheres(spheres) => return self.scene(&spheres),
+            DataSpheres::Array(data, mapped) => (data, mapped),
+        };
+        let surface = self.data().map(|data| data.surface).unwrap_or_default();
+        if self.spheres.is_empty() {
+            let appearance = mapped.appearance(data.len(), Colors::One(color), surface);
+            return Scene::from_parts(data, appearance).map_err(|error| self.spanned(&error));
+        }
+        let of_data = |(index, mut sphere): (usize, Sphere)| {
+            sphere.color = mapped.color(index).unwrap_or(color);
+            sphere.surface = mapped.surface(surface, index);
+            sphere
+        };
+        let spheres: Vec<Sphere> = data.with_color(color).enumerate().map(of_data).collect();
+        self.scene(&spheres)
+    }
+
+    fn spanned(&self, error: &SceneError) -> SceneFileError {
+        let &SceneError::Sphere { index, error: ref fault } = error else {
+            return Span::START.error(error);
+        };
+        match (self.spheres.get(index), &self.data) {
+            (Some(sphere), _) => sphere.span.error(error),
+            (None, Some(data)) => {
+                let in_data = index - self.spheres.len();
+                data.span.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
+            }
+            (None, None) => Span::START.error(error),
+        }
+    }
+
+    /// Adds the position of the camera's table to an error.
+    #[must_use]
+    pub fn at_camera(&self, error: &CameraError) -> SceneFileError {
+        self.camera.span.error(error)
+    }
+
+    /// Returns the style, if there is one.
+    #[must_use]
+    pub fn style(&self) -> Option<Style> {
+        self.style
+    }
+
+    /// Returns the parameters of the camera.
+    #[must_use]
+    pub fn camera_parameters(&self) -> CameraParameters {
+        self.camera.value
+    }
+
+    /// Returns the path along which the camera moves from picture to picture, if the file has one.
+    #[must_use]
+    pub fn camera_path(&self) -> Option<&CameraPath> {
+        self.camera_path.as_ref()
+    }
+
+    /// Returns the spheres that are in the file itself.
+    pub fn spheres(&self) -> impl Iterator<Item = Sphere> {
+        self.spheres.iter().map(|sphere| sphere.value)
+    }
+
+    /// Returns the reference to a data file, if the scene file has one.
+    #[must_use]
+    pub fn data(&self) -> Option<&Data> {
+        self.data.as_ref().map(|data| &data.value)
+    }
+
+    /// Makes the camera for a film of this aspect ratio. For a stereo camera this is the view from the middle between
+    /// the eyes. A camera without an eye position frames the scene.
+    ///
+    /// # Errors
+    /// If a parameter is out of range, or parameters exclude each other.
+    pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
+        self.camera
+            .value
+            .camera(film.aspect(), &scene.subject())
+            .map_err(|error| self.camera.span.error(error))
+    }
+
+    /// Makes the cameras of the left and the right eye, if the camera of the file is a stereo camera.
+    ///
+    /// # Errors
+    /// If a parameter is out of range, or parameters exclude each other.
+    pub fn stereo_pair(
+        &self,
+        film: &Film,
+        scene: &Scene,
+    ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
+        self.camera
+            .value
+            .stereo_pair(film.aspect(), &scene.subject())
+            .map_err(|error| self.camera.span.error(error))
+    }
+}
+
+fn lighting_tables(document: &mut Document) -> LightingTables {
+    LightingTables {
+        shading: document.shading.as_ref().map(|shading| shading.span().start),
+        integrator: document.integrator,
+        studio: document.studio.take(),
+        path: document.path.take(),
+        sampling: document.sampling.take(),
+        lights: document.lights.take(),
+        sky: document.sky.take(),
+        sun: document.sun.take(),
+        ground: document.ground.take(),
+        has_materials: false,
+    }
+}
+
+fn style_of(name: &Spanned<String>, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
+    Style::of_name(name.get_ref()).ok_or_else(|| {
+        let names: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
+        lines.span(name.span().start).error(unknown("style", name.get_ref(), &names))
+    })
+}
+
+/// Whether the surface of any sphere is not matt and opaque.
+fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> bool {
+    let matt = pinhole::scene::material::SurfaceProperties::default();
+    let of_data = data.iter().flat_map(|data| {
+        let elements = data.value.elements.iter().map(|element| element.surface);
+        elements.chain([data.value.surface])
+    });
+    spheres.iter().map(|sphere| sphere.value.surface).chain(of_data).any(|surface| surface != matt)
+}
+
+impl SceneFile {
+    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity
+    /// that needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
+    #[must_use]
+    pub fn integrator(&self) -> Option<IntegratorKind> {
+        self.lighting.integrator
+    }
+
+    /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
+    #[must_use]
+    pub fn sky_image(&self) -> Option<&str> {
+        self.lighting.sky.as_ref()?.image()
+    }
+
+    /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
+    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there
+    /// are the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is
+    /// the image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
+    ///
+    /// # Errors
+    /// For a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
+    /// image of the sky is needed and not given.
+    pub fn settings(
+        &self,
+        kind: IntegratorKind,
+        scene: &Scene,
+        camera: &dyn Camera,
+        image: Option<Environment>,
+    ) -> Result<RenderSettings, SceneFileError> {
+        let (says, defaults) = (&self.lighting, RenderSettings::studio());
+        let background = self.background;
+        let integrator = match kind {
+            IntegratorKind::Primary => {
+                let integrator = Integrator::Primary(self.shading);
+                return Ok(RenderSettings { integrator, background, ..RenderSettings::default() });
+            }
+            IntegratorKind::Studio => {
+                Integrator::Studio(says.studio.studio(scene, camera, background)?)
+            }
+            IntegratorKind::Path => Integrator::Path(says.path),
+        };
+        // Only path tracing is lit by a sky and needs its image.
+        let sky = match &says.sky {
+            _ if kind == IntegratorKind::Studio => defaults.sky,
+            Some(sky) => sky.sky(image)?,
+            None if says.lights.is_none() || !says.given.light => defaults.sky,
+            None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
+        };
+        let mut settings = RenderSettings {
+            integrator,
+            sampling: says.sampling,
+            lights: says.lights.clone().unwrap_or(defaults.lights),
+            sky,
+            ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
+            background,
+            is_transparent: false,
+            is_denoised: says.is_denoised,
+        };
+        self.check_colors()?;
+        if let Some(style) = self.style {
+            fit(&mut settings, style, says.given, scene, &View::new(camera, self.film));
+        }
+        settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
+    }
+
+    /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
+    fn check_colors(&self) -> Result<(), SceneFileError> {
+        for (index, sphere) in self.spheres.iter().enumerate() {
+            let (color, surface) = (sphere.value.color, sphere.value.surface);
+            let (rgb, what) = (color.to_array(), format!("sphere {index}"));
+            match surface.material {
+                Material::Emissive { strength } => {
+                    scaled(color, strength.into(), &what)
+                        .map_err(|error| sphere.span.error(error))?;
+                }
+                _ if rgb.iter().any(|c| *c > 1.0) => {
+                    return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been
+    /// checked before, so only a few errors are left.
+    fn span_of(&self, error: &SettingsError) -> Span {
+        let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
+        let data = || self.data.as_ref().map(|data| data.span);
+        match error {
+            SettingsError::Ground | SettingsError::Catcher => ground(),
+            SettingsError::Albedo { what, .. } if what == "the ground" => ground(),
+            SettingsError::Albedo { .. } | SettingsError::TooBright { .. } => data(),
+            _ => None,
+        }
+        .unwrap_or(Span::START)
+    }
+}

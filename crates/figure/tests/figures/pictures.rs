@@ -1,0 +1,519 @@
+//! Pictures in files, read back by other code; outlines are as a plain second implementation draws them, to the bit.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Text};
+use fastrand::Rng;
+use npyz::NpyFile;
+use pinhole::glam::Vec2;
+use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::{Layer, NO_ID, color};
+use pinhole::render::{Integrator, Outline, Studio};
+use pinhole::{Image, LayerSet, LinearRgb, RenderSettings, ToneCurve, cpu};
+use pinhole_figure::write::exr::ExrError;
+use pinhole_figure::write::{exr as exr_file, npy, png as png_file};
+
+use crate::support::View;
+
+/// Three spheres with all layers, over black, as a transparent picture wants it.
+fn picture() -> Image {
+    let mut view = View::three_spheres();
+    view.film = pinhole::Film::new(61, 47).unwrap();
+    view.settings.background = LinearRgb::BLACK;
+    view.reference()
+}
+
+/// A row of colours and nothing else.
+fn row(colors: &[[f32; 3]]) -> Image {
+    plain([colors.len() as u32, 1], colors.to_vec())
+}
+
+/// Colours and nothing else.
+pub(crate) fn plain(size: [u32; 2], colors: Vec<[f32; 3]>) -> Image {
+    let count = colors.len();
+    let (zeros, vectors) = (vec![0.0; count], vec![[0.0; 3]; count]);
+    Image::from_layers(size, colors, zeros, vectors, vec![0; count]).unwrap()
+}
+
+/// The certificate in a file, and the samples.
+pub(crate) fn read_png(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
+    let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
+    assert!(reader.info().srgb.is_some(), "it says that it is sRGB");
+    let mut samples = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut samples).unwrap();
+    (reader.info().clone(), samples)
+}
+
+/// Colour type and depth in words, and the samples.
+fn decoded(file: &[u8]) -> (String, Vec<u8>) {
+    let (info, samples) = read_png(file);
+    (format!("{:?} {:?}", info.color_type, info.bit_depth), samples)
+}
+
+fn decoded16(file: &[u8]) -> Vec<u16> {
+    let samples = decoded(file).1;
+    samples.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect()
+}
+
+#[test]
+fn without_more_a_png_is_eight_bits_of_srgb() {
+    let image = picture();
+    let (kind, samples) = decoded(&png_file::encode(&image, &Encoding::default()).unwrap());
+    assert_eq!(kind, "Rgb Eight");
+    let expected: Vec<u8> = image.color().iter().flat_map(|rgb| color::to_srgb8(*rgb)).collect();
+    assert_eq!(samples, expected);
+}
+
+#[test]
+fn sixteen_bits_tell_apart_what_eight_do_not() {
+    let mut encoding = Encoding::default();
+    encoding.bits = Bits::Sixteen;
+    let red = LinearRgb::from_srgb8([255, 128, 1]).to_array();
+    let image = row(&[red, [0.5; 3], [0.5001; 3], [9.0, -1.0, f32::NAN]]);
+    let file = png_file::encode(&image, &encoding).unwrap();
+    assert_eq!(decoded(&file).0, "Rgb Sixteen");
+    let samples = decoded16(&file);
+    assert_eq!(samples[..3], [65535, 128 * 257, 257]);
+    assert_eq!(samples[3], 48192, "of IEC 61966-2-1, by hand");
+    assert!(samples[6] > samples[3] && samples[6] - samples[3] < 10, "{samples:?}");
+    assert_eq!(samples[9..], [65535, 0, 0]);
+}
+
+#[test]
+fn a_transparent_png_is_not_premultiplied() {
+    let image = picture();
+    for bits in [Bits::Eight, Bits::Sixteen] {
+        let mut encoding = Encoding::default();
+        (encoding.transparent, encoding.bits) = (true, bits);
+        let file = png_file::encode(&image, &encoding).unwrap();
+        let (kind, samples) = decoded(&file);
+        let size = if bits == Bits::Eight { 1 } else { 2 };
+        assert_eq!(kind, if size == 1 { "Rgba Eight" } else { "Rgba Sixteen" });
+        for (pixel, id) in samples.chunks_exact(4 * size).zip(image.id().unwrap()) {
+            let expected = match id {
+                0 => [0xff, 0, 0, 0xff],
+                1 => [0, 0x80, 0, 0xff],
+                2 => [0, 0, 0xff, 0xff],
+                _ => [0; 4],
+            };
+            let expected: Vec<u8> = expected.iter().flat_map(|byte| vec![*byte; size]).collect();
+            assert_eq!(pixel, expected, "sphere {id}");
+        }
+    }
+    let opaque = row(&[[0.5; 3]]);
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
+    let refused = png_file::encode(&opaque, &transparent);
+    assert!(refused.unwrap_err().to_string().contains("alpha"));
+}
+
+#[test]
+fn exposure_comes_before_the_tone_curve_and_both_before_srgb() {
+    let colors = [[0.05, 0.2, 0.7], [3.0, 0.0, 40.0]];
+    for tone in ToneCurve::ALL.iter().copied() {
+        let mut encoding = Encoding::default().with_exposure(-1.5).unwrap();
+        encoding.tone = tone;
+        let gain = 2_f32.powf(-1.5);
+        let (_, samples) = decoded(&png_file::encode(&row(&colors), &encoding).unwrap());
+        for (pixel, rgb) in samples.chunks_exact(3).zip(colors) {
+            let expected = color::to_srgb8(tone.apply(rgb.map(|x| x * gain)));
+            assert_eq!(pixel, expected, "{tone:?}");
+        }
+    }
+}
+
+/// A file's channels by name, and its attributes.
+struct Exr {
+    channels: Vec<(String, FlatSamples)>,
+    software: Option<String>,
+    adapter: Option<String>,
+}
+
+fn written(
+    image: &Image,
+    layers: LayerSet,
+    encoding: Encoding,
+    adapter: Option<&str>,
+) -> Result<Exr, ExrError> {
+    let mut file = Vec::new();
+    let remarks = exr_file::Remarks { adapter, ..exr_file::Remarks::default() };
+    exr_file::write(image, layers, &encoding, remarks, Cursor::new(&mut file))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(file))
+        .unwrap();
+    let layer = image.layer_data;
+    assert_eq!(layer.encoding.compression, exr::prelude::Compression::ZIP16);
+    let attributes = layer.attributes;
+    let adapter = attributes.other.get(&Text::from("adapter")).map(|value| match value {
+        exr::prelude::AttributeValue::Text(text) => text.to_string(),
+        other => panic!("{other:?}"),
+    });
+    Ok(Exr {
+        channels: layer
+            .channel_data
+            .list
+            .into_iter()
+            .map(|channel| (channel.name.to_string(), channel.sample_data))
+            .collect(),
+        software: attributes.software_name.map(|name| name.to_string()),
+        adapter,
+    })
+}
+
+impl Exr {
+    fn names(&self) -> Vec<&str> {
+        self.channels.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    fn samples(&self, name: &str) -> &FlatSamples {
+        &self.channels.iter().find(|(channel, _)| channel == name).unwrap().1
+    }
+
+    fn numbers(&self, name: &str) -> Vec<u32> {
+        match self.samples(name) {
+            FlatSamples::F32(samples) => samples.iter().map(|x| x.to_bits()).collect(),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    fn counts(&self, name: &str) -> Vec<u32> {
+        match self.samples(name) {
+            FlatSamples::U32(samples) => samples.clone(),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+fn component(values: &[[f32; 3]], place: usize) -> Vec<u32> {
+    values.iter().map(|vector| vector[place].to_bits()).collect()
+}
+
+#[test]
+fn an_exr_holds_every_number_of_every_layer() {
+    let image = picture();
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
+    let exr = written(&image, LayerSet::ALL, transparent, Some("A GPU™ (Å)")).unwrap();
+    assert_eq!(
+        exr.names(),
+        [
+            "A", "B", "G", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "R", "Z", "albedo.B",
+            "albedo.G", "albedo.R", "coverage", "id", "samples", "variance"
+        ]
+    );
+    for (place, axis) in ["X", "Y", "Z"].iter().enumerate() {
+        assert_eq!(exr.numbers(&format!("N.{axis}")), component(image.normal().unwrap(), place));
+        assert_eq!(exr.numbers(&format!("P.{axis}")), component(image.position().unwrap(), place));
+    }
+    for (place, name) in ["R", "G", "B"].iter().enumerate() {
+        assert_eq!(exr.numbers(name), component(image.color(), place));
+        let albedo = component(image.albedo().unwrap(), place);
+        assert_eq!(exr.numbers(&format!("albedo.{name}")), albedo);
+    }
+    assert_eq!(exr.numbers("A"), bits(image.alpha().unwrap()));
+    assert_eq!(exr.numbers("coverage"), bits(image.alpha().unwrap()));
+    assert_eq!(exr.numbers("Z"), bits(image.depth().unwrap()));
+    assert_eq!(exr.numbers("Z")[0], f32::INFINITY.to_bits());
+    assert_eq!(exr.numbers("variance"), bits(image.variance().unwrap()));
+    assert_eq!(exr.counts("id"), image.id().unwrap());
+    assert_eq!(exr.counts("id")[0], NO_ID);
+    assert_eq!(exr.counts("samples"), vec![1; 61 * 47]);
+    assert_eq!(exr.software.as_deref(), Some(concat!("pinhole ", env!("CARGO_PKG_VERSION"))));
+    assert_eq!(exr.adapter.as_deref(), Some("A GPU? (Å)"));
+}
+
+/// Ids beyond what f32 holds, and light beyond what half does.
+#[test]
+fn an_exr_rounds_nothing() {
+    let ids = vec![0, 16_777_217, 4_294_967_294, NO_ID];
+    let colors = vec![[1e-30, 70_000.0, 1.000_000_1]; 4];
+    let depths = vec![f32::MIN_POSITIVE, 0.1, 1e30, f32::INFINITY];
+    let normals = vec![[0.0; 3]; 4];
+    let image = Image::from_layers([4, 1], colors.clone(), depths.clone(), normals, ids.clone());
+    let exr = written(&image.unwrap(), LayerSet::DATA, Encoding::default(), None).unwrap();
+    assert_eq!(exr.counts("id"), ids);
+    assert_eq!(exr.numbers("Z"), bits(&depths));
+    for (place, name) in ["R", "G", "B"].iter().enumerate() {
+        assert_eq!(exr.numbers(name), component(&colors, place));
+    }
+    assert_eq!(exr.numbers("A"), bits(&[1.0; 4]), "it is not transparent");
+    assert_eq!(exr.adapter, None);
+}
+
+#[test]
+fn an_exr_holds_what_is_asked_for() {
+    let image = picture();
+    let exr = written(&image, LayerSet::COLOR, Encoding::default(), None).unwrap();
+    assert_eq!(exr.names(), ["A", "B", "G", "R"]);
+    let layers = LayerSet::COLOR.with(Layer::Depth);
+    let exr = written(&image, layers, Encoding::default(), None).unwrap();
+    assert_eq!(exr.names(), ["A", "B", "G", "R", "Z"]);
+
+    let without = row(&[[0.5; 3]]);
+    let layers = LayerSet::COLOR.with(Layer::Variance);
+    let refused = written(&without, layers, Encoding::default(), None);
+    assert!(matches!(refused, Err(ExrError::MissingLayer { layer: Layer::Variance })));
+    let mut transparent = Encoding::default();
+    transparent.transparent = true;
+    let refused = written(&without, LayerSet::COLOR, transparent, None);
+    assert!(matches!(refused, Err(ExrError::MissingLayer { layer: Layer::Alpha })));
+    let nothing = Image::new(0, 0, LayerSet::COLOR).unwrap();
+    assert!(written(&nothing, LayerSet::COLOR, Encoding::default(), None).is_err());
+}
+
+/// Takes so many bytes and no more.
+struct Full(Cursor<Vec<u8>>, usize);
+
+impl std::io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let end = self.0.position() as usize + bytes.len();
+        if end > self.1 {
+            return Err(std::io::ErrorKind::StorageFull.into());
+        }
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl std::io::Seek for Full {
+    fn seek(&mut self, to: std::io::SeekFrom) -> std::io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+/// Wherever it fails, with a buffer in between or without.
+#[test]
+fn a_sink_that_fails_is_an_error() {
+    let image = picture();
+    let encoding = Encoding::default();
+    let mut whole = Cursor::new(Vec::new());
+    exr_file::write(&image, LayerSet::ALL, &encoding, exr_file::Remarks::default(), &mut whole)
+        .unwrap();
+    let size = whole.into_inner().len();
+    for room in [0, 3, 100, size / 2, size - 1] {
+        let (layers, remarks) = (LayerSet::ALL, exr_file::Remarks::default());
+        let full = || Full(Cursor::new(Vec::new()), room);
+        for written in [
+            exr_file::write(&image, layers, &encoding, remarks, full()),
+            exr_file::write(&image, layers, &encoding, remarks, std::io::BufWriter::new(full())),
+        ] {
+            let kind = match written {
+                Err(ExrError::Sink(error)) => error.kind(),
+                other => panic!("{room}: {other:?}"),
+            };
+            assert_eq!(kind, std::io::ErrorKind::StorageFull, "{room}");
+        }
+    }
+}
+
+#[test]
+fn every_layer_is_an_array() {
+    let image = picture();
+    for layer in LayerSet::ALL.iter() {
+        let bytes = npy::encode(&image, layer).unwrap();
+        let file = NpyFile::new(&bytes[..]).unwrap();
+        let is_vector = layer.bytes_per_pixel() == 12;
+        let shape: &[u64] = if is_vector { &[47, 61, 3] } else { &[47, 61] };
+        assert_eq!(file.shape(), shape, "{layer}");
+        let is_count = matches!(layer, Layer::Id | Layer::Samples);
+        assert_eq!(file.dtype().descr(), if is_count { "'<u4'" } else { "'<f4'" }, "{layer}");
+    }
+    let read = |layer| {
+        let bytes = npy::encode(&image, layer).unwrap();
+        bits(&NpyFile::new(&bytes[..]).unwrap().into_vec::<f32>().unwrap())
+    };
+    assert_eq!(read(Layer::Alpha), bits(image.alpha().unwrap()));
+    assert_eq!(read(Layer::Variance), bits(image.variance().unwrap()));
+    assert_eq!(read(Layer::Position), bits(image.position().unwrap().as_flattened()));
+    assert_eq!(read(Layer::Albedo), bits(image.albedo().unwrap().as_flattened()));
+    let missing = npy::encode(&row(&[[0.0; 3]]), Layer::Samples).unwrap_err().to_string();
+    assert!(missing.contains("no layer samples"), "{missing}");
+}
+
+const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
+
+/// A picture of spheres seen from far away, in colours that tell nothing.
+fn pictured(size: [usize; 2], rng: &mut Rng) -> Image {
+    let count = size[0] * size[1];
+    let far = 20.0 + 2000.0 * rng.f32() * rng.f32();
+    let balls: Vec<[f32; 4]> = (0..rng.usize(2..40))
+        .map(|_| {
+            let [x, y] = size.map(|side| rng.f32() * side as f32);
+            [x, y, far + 40.0 * rng.f32(), 2.0 + 30.0 * rng.f32() * rng.f32()]
+        })
+        .collect();
+    let color: Vec<f32> = (0..3 * count).map(|_| 2.0 * rng.f32()).collect();
+    let mut alpha = vec![0.0; count];
+    let mut depth = vec![f32::INFINITY; count];
+    let mut normal = vec![0.0; 3 * count];
+    let mut id = vec![f32::from_bits(NO_ID); count];
+    for index in 0..count {
+        let [x, y] = [index % size[0], index / size[0]].map(|place| place as f32);
+        for (ball, [a, b, z, r]) in (0..).zip(&balls) {
+            let (dx, dy) = (x - a, y - b);
+            let height = (r * r - dx * dx - dy * dy).max(0.0).sqrt();
+            if height > 0.0 && z - height < depth[index] {
+                depth[index] = z - height;
+                normal[3 * index..][..3].copy_from_slice(&[dx / r, dy / r, -height / r]);
+                id[index] = f32::from_bits(ball);
+                alpha[index] = if rng.bool() { 1.0 } else { rng.f32() };
+            }
+        }
+    }
+    let all = [color, alpha, depth, normal, id].concat();
+    let bytes: Vec<u8> = all.iter().flat_map(|value| value.to_le_bytes()).collect();
+    Image::from_le_bytes(size.map(|side| side as u32), LAYERS, &bytes).unwrap()
+}
+
+fn strength(image: &Image, [a, b]: [usize; 2], outline: &Outline) -> f32 {
+    let (ids, depths) = (image.id().unwrap(), image.depth().unwrap());
+    let normals = image.normal().unwrap();
+    if ids[a] == ids[b] {
+        return 0.0;
+    }
+    if ids[a] == NO_ID || ids[b] == NO_ID {
+        return 1.0;
+    }
+    let [x, y, z]: [f32; 3] = std::array::from_fn(|k| normals[a][k] * normals[b][k]);
+    if x + y + z < outline.angle.cos() {
+        return 1.0;
+    }
+    let least = outline.depth * depths[a].min(depths[b]);
+    let jump = (depths[a] - depths[b]).abs();
+    if jump > least { ((jump - least) / (0.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The share of each pixel that lines cover: the middles of edges between pixels, by their places in halves of a pixel,
+/// are smoothed eight times, and joined by lines.
+fn shares(image: &Image, outline: &Outline) -> Vec<f32> {
+    let [width, height] = [image.width() as usize, image.height() as usize];
+    let mut points = BTreeMap::new();
+    for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+        for [x, y] in [[1, 0], [0, 1]] {
+            if i + x < width && j + y < height {
+                let pair = [j * width + i, (j + y) * width + i + x];
+                let strength = strength(image, pair, outline);
+                if strength > 0.0 {
+                    let place = [2 * i + x, 2 * j + y];
+                    let at = 0.5 * Vec2::new(place[0] as f32, place[1] as f32);
+                    points.insert(place, (at, strength));
+                }
+            }
+        }
+    }
+    // The two corners of an edge, and what else meets it there.
+    let places: Vec<[usize; 2]> = points.keys().copied().collect();
+    let ends = |[x, y]: [usize; 2]| -> Vec<(Vec2, Vec<[usize; 2]>)> {
+        let corners = match x % 2 {
+            1 => [[x, y.wrapping_sub(1)], [x, y + 1]],
+            _ => [[x.wrapping_sub(1), y], [x + 1, y]],
+        };
+        let is_inside = |[x, y]: &[usize; 2]| *x < 2 * width - 2 && *y < 2 * height - 2;
+        let meeting = |[i, j]: [usize; 2]| {
+            let around = [[i, j - 1], [i, j + 1], [i - 1, j], [i + 1, j]];
+            let is_there =
+                |place: &[usize; 2]| *place != [x, y] && places.binary_search(place).is_ok();
+            let corner = 0.5 * Vec2::new(i as f32, j as f32);
+            (corner, around.into_iter().filter(is_there).collect())
+        };
+        corners.into_iter().filter(is_inside).map(meeting).collect()
+    };
+    for _ in 0..8 {
+        let before = points.clone();
+        for (place, point) in &mut points {
+            let ends = ends(*place);
+            let both: Vec<_> = ends.iter().filter(|(_, others)| others.len() == 1).collect();
+            if let [(_, a), (_, b)] = both[..] {
+                let (here, a, b) = (before[place], before[&a[0]], before[&b[0]]);
+                let mean = 0.5 * here.1 + 0.25 * (a.1 + b.1);
+                *point = (0.5 * here.0 + 0.25 * (a.0 + b.0), mean);
+            }
+        }
+    }
+    let mut shares = vec![0.0_f32; width * height];
+    let reach = 0.5 * outline.width + 0.5;
+    let mut draw = |a: Vec2, b: Vec2, strength: f32| {
+        let (low, high) = (a.min(b) - reach, a.max(b) + reach);
+        let range = |low: f32, high: f32, side: usize| {
+            low.ceil().max(0.0) as usize..((high.floor() + 1.0).max(0.0) as usize).min(side)
+        };
+        for j in range(low.y, high.y, height) {
+            for i in range(low.x, high.x, width) {
+                let distance = distance(Vec2::new(i as f32, j as f32), a, b);
+                let share = &mut shares[j * width + i];
+                *share = share.max(strength * (reach - distance).clamp(0.0, 1.0));
+            }
+        }
+    };
+    for (place, (at, strength)) in &points {
+        let mut is_alone = true;
+        for (corner, others) in ends(*place) {
+            match &others[..] {
+                [] => continue,
+                [other] => draw(*at, points[other].0, strength.min(points[other].1)),
+                _ => draw(*at, corner, *strength),
+            }
+            is_alone = false;
+        }
+        if is_alone {
+            draw(*at, *at, *strength);
+        }
+    }
+    shares
+}
+
+fn distance(point: Vec2, a: Vec2, b: Vec2) -> f32 {
+    let along = b - a;
+    let squared = along.length_squared();
+    let t = match squared > 0.0 {
+        true => ((point - a).dot(along) / squared).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    point.distance(a + t * along)
+}
+
+#[test]
+fn lines_are_those_of_a_second_drawing() {
+    let mut covered = 0;
+    for seed in 0..40 {
+        let mut rng = Rng::with_seed(seed);
+        // More rows than the library draws at once.
+        let image = pictured([rng.usize(20..110), rng.usize(20..300)], &mut rng);
+        let outline = Outline {
+            width: if seed % 10 == 0 { 64.0 } else { 0.5 + 6.0 * rng.f32() },
+            color: LinearRgb::new([rng.f32(), rng.f32(), 0.0]).unwrap(),
+            depth: [0.0, 0.001, 0.01, 0.1][rng.usize(0..4)],
+            angle: [0.0, 0.3, 0.6, 1.2, std::f32::consts::PI][rng.usize(0..5)],
+        };
+        let studio = Studio { outline: Some(outline), ..Studio::default() };
+        let settings =
+            RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
+        let drawn = cpu::finish(image.clone(), &settings, LAYERS);
+        let shares = shares(&image, &outline);
+        let mixed = |from: f32, to: f32, share: f32| from + share * (to - from);
+        let line = outline.color.to_array();
+        for (index, share) in shares.iter().enumerate() {
+            let color: [f32; 3] =
+                std::array::from_fn(|k| mixed(image.color()[index][k], line[k], *share));
+            let alpha = mixed(image.alpha().unwrap()[index], 1.0, *share);
+            let found = (drawn.color()[index], drawn.alpha().unwrap()[index]);
+            assert_eq!(found, (color, alpha), "{seed}: pixel {index}, {outline:?}");
+        }
+        assert_eq!((drawn.depth(), drawn.id()), (image.depth(), image.id()));
+        covered += shares.iter().filter(|share| **share > 0.0).count();
+    }
+    assert!(covered > 50_000, "{covered}");
+}
