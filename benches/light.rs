@@ -17,7 +17,7 @@ use pinhole::light::{Light, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
 
-/// Number of times that everything is measured; the best time counts.
+/// Number of times that everything is measured. The best time counts.
 const TURNS: usize = 5;
 
 fn main() {
@@ -117,7 +117,7 @@ fn measure(headless: &Headless, standard: Standard) {
         }
     }
     let pixels = film.pixel_count() as f64;
-    // Rays that cannot meet the box of the scene are not traced.
+    // Rays that cannot hit the box of the scene are not traced.
     let primary = bare / traced as f64;
     let name = standard.name();
     let share = |count: f64| 100.0 * count / pixels;

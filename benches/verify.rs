@@ -88,7 +88,7 @@ fn main() {
     }
 }
 
-/// Checks pictures of devices that conform and round in different ways; ends at a violation.
+/// Checks pictures of devices that conform but round in different ways. Ends at a violation.
 fn adversaries(count: u64) {
     for (seed, rounding) in (1..).zip(Rounding::ALL) {
         let rewrite = Some(Adversary::new(rounding, seed).rewrite());
@@ -169,7 +169,7 @@ fn standard(headless: &Headless) {
     println!();
 }
 
-/// Returns a camera at a distance of `times` the size in a direction, which sees as much of the scene as a near one.
+/// Returns a camera at a distance of `times` the size in a direction. It sees as much of the scene as a near camera.
 fn far(center: DVec3, size: f64, away: DVec3, times: f64) -> PinholeCamera {
     let eye = center + away * times * size;
     let pose = Pose::looking_at(eye, center, [0.0, 1.0, 0.0]).unwrap();
@@ -209,7 +209,7 @@ fn cost(headless: &Headless) {
     println!();
 }
 
-/// Number of rounds of a comparison; the best time of each device counts.
+/// Number of rounds of a comparison. The best time of each device counts.
 const ROUNDS: usize = 15;
 
 fn fences(fenced: &Headless) {
@@ -224,7 +224,7 @@ fn fences(fenced: &Headless) {
         edit("math/fence.wgsl", "bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(runtime_zero()))", "v"),
     ])
     .unwrap();
-    // A zero of one uniform, which a driver might know, instead of two equal numbers: it is 0 in pictures of one tile.
+    // A zero from one uniform, which a driver might know, instead of two equal numbers. It is 0 for a single tile.
     let pair = "frame.iteration_limit ^ frame.iteration_limit_again";
     let known = open(vec![edit("scene/frame.wgsl", pair, "frame.target_origin.x")]).unwrap();
     for standard in [Standard::R1M, Standard::L1M, Standard::C200k] {
@@ -243,7 +243,7 @@ fn fences(fenced: &Headless) {
                         .measure(&buffers[which], &View::new(&camera, film))
                         .wait()
                         .unwrap();
-                    // A software device's own clock counts only what it queues.
+                    // The clock of a software device counts only the work that it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
                     // The first round is a warm-up.
@@ -265,9 +265,9 @@ fn fences(fenced: &Headless) {
     println!();
 }
 
-/// Prints how many pixels miss a sphere with smaller margins of the boxes for ray queries.
+/// Prints the number of pixels that miss a sphere if the boxes for ray queries have smaller margins.
 fn margins() {
-    // Of 0, only roundings of coordinates are left; less than 0 cuts spheres.
+    // With a margin of 0, only roundings of coordinates are left. A negative margin cuts spheres.
     const PARTS: [f32; 8] = [1.0, 0.25, 0.0625, 0.0, -0.015_625, -0.0625, -0.25, -1.0];
     let options = HeadlessOptions { ray_query: true, ..HeadlessOptions::default() };
     let headless = Headless::open(&options).wait().unwrap();
@@ -310,7 +310,7 @@ fn margins() {
 
 type NamedScene = (&'static str, Scene);
 
-/// The scenes of a round; each round has random numbers of its own.
+/// The scenes of a round. Each round has separate random numbers.
 fn campaign_scenes(round: u64) -> Vec<NamedScene> {
     let seed = 7 + 100 * round;
     let made = |kind: Kind, count| kind.spheres(count, seed).unwrap();
@@ -352,8 +352,8 @@ fn campaign_scenes(round: u64) -> Vec<NamedScene> {
     .into()
 }
 
-/// Returns views from outside, from 100 times as far away, from within, and with parallel rays; each round looks from
-/// elsewhere.
+/// Returns views from outside, from 100 times as far away, from within, and with parallel
+/// rays. Each round has other directions.
 fn campaign_views(scene: &Scene, round: u64) -> Vec<(&'static str, Box<dyn Camera>)> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());

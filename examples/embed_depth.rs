@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
     let square = host_square(&device);
 
-    // Pictures of spheres have data layers, because the host's depth is computed from theirs.
+    // Pictures of spheres have data layers, because the host's depth is computed from them.
     let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
     let renderer = Renderer::new(&device, &options).wait()?;
     let scene = Scene::new(&shared::helix())?;
@@ -53,14 +53,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let targets = textures.targets();
     let mut frame = Frame::new(&renderer, &device, &targets).wait()?;
 
-    // Once for a kind of render pass, and once for each set of targets.
+    // These are made once for a kind of render pass, and once for each set of targets.
     let compared = CompositeDepth::new(depth.format(), DepthOrder::NearIsOne);
     let composite =
         Composite::new(&device, &CompositeOptions::new(color.format(), compared)).wait()?;
     let mut picture = CompositePicture::new(&composite, &device, &targets).wait()?;
     let mut picker = Picker::new(&device, 3).wait()?;
 
-    // For every picture: the host's camera, the spheres, and the host's render pass.
+    // These are set for every picture: the host's camera, the spheres, and the host's render pass.
     let camera = HostCamera::new(to_view, projection, DepthOrder::NearIsOne)?;
     let view = View::new(&camera, Film::new(WIDTH, HEIGHT)?);
     frame.set_view(&queue, &scene, &view, &RenderSettings::default())?;
@@ -108,7 +108,7 @@ fn host_matrices() -> ([[f32; 4]; 4], [[f32; 4]; 4]) {
     (to_view, projection)
 }
 
-/// The host's pipeline of a square through the spheres. The matrices are those of `host_matrices`.
+/// The host's pipeline for a square through the spheres. The matrices are those of `host_matrices`.
 fn host_square(device: &wgpu::Device) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("the host's square"),

@@ -1,4 +1,4 @@
-//! Prints what every frame of a file has, as tables with tabs: the cell, the notes, and one line for each sphere.
+//! Prints the contents of every frame of a file as tables with tabs: the cell, the notes, and a line for each sphere.
 //!
 //! `cargo run --example frames -- FILE [TOPOLOGY]`
 

@@ -5,7 +5,7 @@
 //! cargo run --release --example live -- 4hhb.pdb 640 480
 //! ```
 //!
-//! It writes the last frame in motion, `live.png`, and the picture at rest, `still.png`, and says how long they took.
+//! Writes the last frame in motion, `live.png`, and the picture at rest, `still.png`, and prints how long they took.
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;

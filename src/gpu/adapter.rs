@@ -75,8 +75,8 @@ pub async fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
 }
 
 /// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment
-/// variable `WGPU_ADAPTER_NAME` if `name` is `None`. Upper and lower case are not distinguished. Without either, it is
-/// the first.
+/// variable `WGPU_ADAPTER_NAME` if `name` is `None`. Upper and lower case are not distinguished. Without either, the
+/// first adapter is chosen.
 ///
 /// # Errors
 /// If there is no adapter, or none with such a name.

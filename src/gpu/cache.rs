@@ -15,8 +15,8 @@ impl<K: Eq + Hash, T> Cache<K, T> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    /// Returns what was built for a key, and builds it if necessary. The lock is not held meanwhile. If two threads build
-    /// it, one of the two is dropped.
+    /// Returns the passes for a key, and builds them if necessary. The lock is not held while they are built. If two
+    /// threads build the passes for the same key, one of the two results is dropped.
     pub(super) async fn of(
         &self,
         key: K,

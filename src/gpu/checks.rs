@@ -1,7 +1,7 @@
-//! Errors of a device as values: what error scopes around the creation of things catch, so that it never reaches the
-//! error handler of the application that owns the device, and what wgpu reports by callback.
+//! Turns errors of a device into values. Error scopes catch errors around the creation of resources, so that none
+//! reaches the error handler of the application that owns the device. wgpu reports other errors by callback.
 //!
-//! Nothing here waits. A browser tells what a scope has caught only later, so a scope is popped at once, and its answer
+//! Nothing here blocks. A browser reports the error of a scope only later, so a scope is popped at once, and its answer
 //! is awaited when everything has been created. Native devices answer at once.
 
 use std::cell::RefCell;
@@ -18,7 +18,7 @@ use crate::gpu::error::GpuError;
 trait CaughtError: Future<Output = Option<GpuError>> + WasmNotSend {}
 impl<T: Future<Output = Option<GpuError>> + WasmNotSend> CaughtError for T {}
 
-/// The answer of the device, which may not be known yet, whether something was created.
+/// The result of creating something on the device, which may not be known yet.
 pub(super) struct Check(Pin<Box<dyn CaughtError>>);
 
 impl fmt::Debug for Check {
@@ -82,7 +82,7 @@ impl Checks {
         created
     }
 
-    /// Waits for the answers, and returns the error of what was created first.
+    /// Waits for the answers, and returns the first error in the order of creation.
     pub(super) async fn passed(self) -> Result<(), GpuError> {
         for check in self.pending.into_inner() {
             check.passed().await?;
@@ -90,7 +90,7 @@ impl Checks {
         Ok(())
     }
 
-    /// Returns, without waiting, whether all answers are known, or the error of what was created first.
+    /// Returns, without waiting, whether all answers are known, or the first error in the order of creation.
     pub(super) fn are_known(&mut self) -> Result<bool, GpuError> {
         let pending = self.pending.get_mut();
         while let Some(check) = pending.first_mut() {
@@ -106,7 +106,7 @@ impl Checks {
     }
 }
 
-/// Runs `create` in error scopes, and waits for what they have caught.
+/// Runs `create` in error scopes, and waits for the error that they caught, if any.
 pub(super) async fn scoped<T>(device: &Device, create: impl FnOnce() -> T) -> Result<T, GpuError> {
     let (created, check) = Check::of(device, create);
     check.passed().await?;

@@ -1,4 +1,4 @@
-//! Bounds and habits of a device: its limits, and the order and the amounts of work. Pictures do not depend on them.
+//! Limits of a device, and the order and the amounts of work that suit it. Pictures do not depend on them.
 
 use std::time::Duration;
 
@@ -8,16 +8,16 @@ use crate::accel::{AccelPlan, PlannedBuffer};
 
 /// The order and the amounts of work that suit a type of device.
 ///
-/// Those of software devices were measured with Mesa's lavapipe. Those of GPUs follow from how GPUs work: no GPU has
-/// been measured yet.
+/// The values for software devices were measured with Mesa's lavapipe. The values for GPUs follow from how GPUs work:
+/// no GPU has been measured yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DeviceShape {
     /// Whether rows of workgroups are taken in an order that spreads any run of them over the picture. Software devices
     /// give each thread a contiguous run of workgroups, and none should get only background. GPUs give workgroups one by
     /// one to whatever is free, and neighbouring workgroups read the same spheres, which caches keep.
     pub(crate) spreads_rows: bool,
-    /// Maximum number of pixels of a tile of a picture of primary rays. A tile is submitted, awaited and read back by
-    /// itself, while a GPU is idle, so that fewer are better; but the buffers and textures of 2²⁰ pixels take 48 MiB.
+    /// Maximum number of pixels of a tile of a picture of primary rays. A GPU is idle while a tile is awaited and read
+    /// back, so fewer tiles are better. However, the buffers and textures of 2²⁰ pixels take 48 MiB.
     pub(crate) max_tile_pixels: u64,
     /// Whether one pass takes whole samples of light paths, where it can. Software devices then neither read nor write the
     /// state of paths, which takes them as long as tracing. On GPUs, invocations whose paths have ended would wait for
@@ -38,7 +38,7 @@ pub(crate) struct DeviceShape {
 const FEW_PATHS: u64 = 1 << 19;
 
 impl DeviceShape {
-    /// The order and the amounts for a type of device.
+    /// Returns the order and the amounts of work for a type of device.
     pub(crate) fn of(device_type: DeviceType) -> Self {
         match device_type {
             DeviceType::Cpu => Self {
@@ -56,12 +56,12 @@ impl DeviceShape {
         }
     }
 
-    /// The same for a picture that a host program records, which needs its memory for other things.
+    /// This shape with fewer paths, for pictures that a host program records. The host needs memory for other things.
     pub(crate) fn of_host(self) -> Self {
         Self { max_paths: FEW_PATHS, ..self }
     }
 
-    /// A GPU that shares the memory of the host, or that nothing is known of. A picture of 1920×1080 is one tile.
+    /// The shape for a GPU that shares the memory of the host, or that is unknown. A picture of 1920×1080 is one tile.
     fn of_small_gpu() -> Self {
         Self {
             spreads_rows: false,
@@ -94,12 +94,12 @@ impl DeviceLimits {
         if self.device_type == DeviceType::Cpu { bytes } else { 0 }
     }
 
-    /// Number of bytes of host memory in use while one of the bricks is built. The device has those before it.
+    /// Number of bytes of host memory in use while one of the bricks is built. The device already holds earlier bricks.
     pub(crate) fn building_bytes(&self, plan: &AccelPlan, buffers: &[PlannedBuffer]) -> u64 {
         plan.host_bytes_by_brick(self.in_host(of_one_brick(buffers)), 0)
     }
 
-    /// Number of bytes of host memory in use while one of the bricks is copied, with the copy that is queued.
+    /// Number of bytes of host memory in use while one of the bricks is copied, including the queued copy.
     pub(crate) fn uploading_bytes(&self, plan: &AccelPlan, buffers: &[PlannedBuffer]) -> u64 {
         let queued = of_one_brick(buffers);
         plan.host_bytes_by_brick(self.in_host(queued), queued + self.in_host(queued))
@@ -111,8 +111,8 @@ fn of_one_brick(buffers: &[PlannedBuffer]) -> u64 {
     buffers.iter().map(|buffer| buffer.bytes_per_binding).sum()
 }
 
-/// The time that a submission should take: so long that the wait between two submissions is negligible, and short
-/// enough for a watchdog, a progress bar and Ctrl-C.
+/// Target time of a submission: long enough that the wait between two submissions is negligible, and short enough for a
+/// watchdog, a progress bar and Ctrl-C.
 const TARGET: Duration = Duration::from_millis(60);
 
 /// Number of workgroups of a submission, which adapts from one submission to the next.
@@ -145,7 +145,7 @@ impl SubmissionSize {
         }
         let ratio = TARGET.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
         let fits = (groups as f64 * ratio.min(8.0)) as u64;
-        // A remainder that is smaller than requested and was quick is no reason to submit less.
+        // A remainder that is smaller than requested and was quick does not reduce the next size.
         let is_remainder = groups < self.next && elapsed < TARGET;
         let next = if is_remainder { fits.max(self.next) } else { fits };
         self.next = next.clamp(1, self.max);

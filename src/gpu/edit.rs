@@ -15,8 +15,8 @@ pub struct ShaderEdit {
     pub replace: String,
 }
 
-/// A function that is given each composed kernel, its name and its WGSL, and returns what the device gets in its place.
-/// It is meant for tests that need another device: one that rounds otherwise, but may do so.
+/// A function that gets the name and the WGSL of each composed kernel, and returns the WGSL that the device gets
+/// instead. It is meant for tests that need a device with other roundings that WGSL also permits.
 #[derive(Clone)]
 pub struct KernelRewrite(Arc<RewriteKernel>);
 
@@ -40,13 +40,13 @@ impl fmt::Debug for KernelRewrite {
 }
 
 impl PartialEq for KernelRewrite {
-    /// Whether both are clones of one.
+    /// Whether both are clones of the same rewrite.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
-/// All edits of the kernels of a device: first the replacements, and then the rewrite of what they are composed to.
+/// All edits of the kernels of a device: first replacements in their files, then the rewrite of the composed kernels.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Edits {
     pub(crate) replacements: Vec<ShaderEdit>,

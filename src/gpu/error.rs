@@ -68,7 +68,7 @@ pub enum GpuError {
         "{what} needs {needed} bytes of host memory, but {available} are free; choose {instead}"
     )]
     HostMemory {
-        /// What needs the memory.
+        /// Description of the data or the step that needs the memory.
         what: &'static str,
         /// Number of bytes that are needed.
         needed: u64,
@@ -108,7 +108,7 @@ pub enum GpuError {
         /// The kind of the scene's bricks.
         kind: BrickKind,
     },
-    /// The device has no ray queries, was opened without them, or is a host's.
+    /// The device has no ray queries, was opened without them, or belongs to a host program.
     #[error(
         "this device has no ray queries, or was opened without them (`HeadlessOptions::ray_query`); choose another structure"
     )]
@@ -137,7 +137,7 @@ pub enum GpuError {
         /// The integrator that was requested.
         integrator: &'static str,
     },
-    /// A lit picture or a recording of one was requested for the integrator `primary`, which has no light that samples are taken of.
+    /// A lit picture, or a recording of one, was requested for the integrator `primary`, which samples no light.
     #[error(
         "lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`"
     )]
@@ -148,21 +148,21 @@ pub enum GpuError {
          `Headless::render` and its like render parts"
     )]
     PartOfFilm,
-    /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded
-    /// without.
+    /// A studio picture needs a separate structure of the spheres that cast shadows, and the
+    /// scene was uploaded without it.
     #[error(
         "some spheres of this scene are not opaque, and the scene was uploaded without the structure of the spheres \
          that cast shadows in a studio; upload the structures that `RenderPlan::build` returns for a plan with these \
          settings"
     )]
     NoOccluders,
-    /// A live picture was requested of something that it cannot show.
+    /// A live picture was requested of a scene, or with settings, that live pictures do not support.
     #[error("a live picture needs {needs}; show a `LitPicture` instead")]
     NotLive {
-        /// What is missing.
+        /// The missing condition.
         needs: &'static str,
     },
-    /// A host allowed fewer rays than the smallest part of a lit picture has.
+    /// A host allowed fewer rays than the smallest part of a lit picture needs.
     #[error(
         "a recording may trace {given} rays, too few for any part of the picture; allow {needed} or more"
     )]

@@ -21,21 +21,21 @@ pub struct HeadlessOptions {
     /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off.
     /// The picture does not depend on this option.
     pub indirect: bool,
-    /// Whether one pass takes whole samples of studios, where all spheres are opaque and in one brick. It takes less
-    /// time than several passes. Only experiments and tests turn it off. The picture is the same,
-    /// but for what a device rounds otherwise.
+    /// Whether one pass takes whole samples of studios, if all spheres are opaque and in one brick. It takes less time
+    /// than several passes. Only experiments and tests turn it off. The picture is the same except for rounding.
     pub one_pass: bool,
-    /// Whether the device is opened for ray queries, which [`AccelChoice::RayQuery`](crate::accel::AccelChoice::RayQuery)
-    /// needs. wgpu calls them an experiment, so that a mistake in it or in the driver may do anything.
+    /// Whether the device is opened for ray queries, which
+    /// [`AccelChoice::RayQuery`](crate::accel::AccelChoice::RayQuery) needs. wgpu calls them experimental: mistakes in
+    /// wgpu or in the driver can do anything.
     pub ray_query: bool,
     /// The type of device whose sizes of tiles and submissions are used; `None` is the type of the adapter. Only
     /// experiments and tests choose another. The picture does not depend on this option.
     pub device_type: Option<wgpu::DeviceType>,
-    /// A record of where time goes, which the device fills in. The picture does not depend on it.
+    /// A record of where time goes, which the device fills in. The picture does not depend on this option.
     pub profile: Option<Profile>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
-    /// What is given to the device in place of each kernel. Only tests rewrite any.
+    /// A function that returns what the device gets in place of each kernel. Only tests set it.
     pub rewrite: Option<KernelRewrite>,
 }
 
@@ -46,7 +46,7 @@ pub enum LimitChoice {
     /// The limits of the adapter.
     #[default]
     Adapter,
-    /// The default limits of WebGPU, which every browser guarantees, or those of the adapter where they are lower.
+    /// The default limits of WebGPU, which every browser guarantees, or lower limits if the adapter has lower ones.
     WebGpu,
 }
 
@@ -70,8 +70,8 @@ impl Default for HeadlessOptions {
     }
 }
 
-/// Features that are used where the adapter has them: timestamps and, where device and host share their memory, buffers
-/// that the host can map.
+/// Features that are used if the adapter has them: time stamps and, if device and host share their
+/// memory, buffers that the host can map.
 pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {
     match device_type {
         wgpu::DeviceType::Cpu | wgpu::DeviceType::IntegratedGpu => {
@@ -82,7 +82,7 @@ pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {
 }
 
 pub(super) fn required_limits(available: &Limits, choice: LimitChoice) -> Limits {
-    // The limits of WebGPU where the adapter reaches them, so that no picture depends on higher limits by accident.
+    // The limits of WebGPU if the adapter reaches them, so that no picture depends on higher limits by accident.
     let webgpu = Limits::default().or_worse_values_from(available);
     match choice {
         LimitChoice::WebGpu => webgpu,

@@ -1,4 +1,4 @@
-//! Where the time of a render goes: phases of the host and passes of the device.
+//! A profile of a render: the time of the phases of the host and of the passes of the device.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -7,14 +7,14 @@ use std::time::Duration;
 
 use crate::gpu::headless::waiting::Instant;
 
-/// A record of where time goes, which a [`Headless`](crate::gpu::Headless) fills in that was opened with it
-/// ([`HeadlessOptions::profile`](crate::gpu::HeadlessOptions::profile)). Clones share one record, and its time begins
-/// when it is created.
+/// A record of where time goes. A [`Headless`](crate::gpu::Headless) that is opened with it
+/// ([`HeadlessOptions::profile`](crate::gpu::HeadlessOptions::profile)) fills it in. Clones share one record, whose
+/// time begins when it is created.
 ///
-/// A device fills in the passes that render, denoise and recolour, and the phases of the host around them. The caller
-/// adds phases of its own with [`Profile::phase`]. Pictures do not depend on it. All times are by the host's clock: with
-/// a profile, every pass is submitted by itself, so that the time of its submission is that of the pass. This takes
-/// longer than without a profile.
+/// A device adds the passes that render, denoise and recolour, and the phases of the host around them. The caller adds
+/// other phases with [`Profile::phase`]. Pictures do not depend on the profile. All times are by the host's clock. With
+/// a profile, every pass is submitted by itself, so that the time of its submission is the time of the pass. This takes
+/// longer than rendering without a profile.
 #[derive(Clone, Debug)]
 pub struct Profile {
     start: Instant,
@@ -22,7 +22,7 @@ pub struct Profile {
     shared: Arc<Mutex<State>>,
 }
 
-/// Where time was spent.
+/// A track: a thread or a device that spends time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ProfileTrack {
@@ -40,19 +40,19 @@ pub enum ProfileTrack {
 pub struct ProfileTotal {
     /// Name of the phases or passes. A pass has the name of its shader's entry point.
     pub name: &'static str,
-    /// Where the time was spent.
+    /// The track on which the time was spent.
     pub track: ProfileTrack,
-    /// How often there was one.
+    /// Number of phases or passes with this name.
     pub calls: u64,
-    /// The sum of their lengths, without the phases within them.
+    /// Sum of their lengths, without the phases within them.
     pub own: Duration,
 }
 
-/// What clones of a profile share.
+/// The state that clones of a profile share.
 #[derive(Debug, Default)]
 struct State {
     totals: Vec<ProfileTotal>,
-    /// The phases of each thread that have begun, the outer first.
+    /// The phases of each thread that have begun, from the outermost to the innermost.
     open: HashMap<ThreadId, Vec<Open>>,
     phases: u64,
 }
@@ -61,7 +61,7 @@ struct State {
 #[derive(Debug)]
 struct Open {
     number: u64,
-    /// The time of the phases within it.
+    /// The time of the phases within this phase.
     inner: Duration,
 }
 
@@ -109,13 +109,13 @@ impl Profile {
         self.start.elapsed()
     }
 
-    /// Returns the totals by track and name, in the order in which the first of each ended.
+    /// Returns the totals by track and name, in the order in which the first phase or pass of each name ended.
     #[must_use]
     pub fn totals(&self) -> Vec<ProfileTotal> {
         self.shared().totals.clone()
     }
 
-    /// Adds a pass, or several of one submission, which took so long.
+    /// Adds a pass, or several passes of one submission, that took `duration`.
     pub(crate) fn add_pass(&self, name: &'static str, duration: Duration) {
         self.shared().add(name, ProfileTrack::Device, duration);
     }
@@ -145,7 +145,7 @@ impl Drop for ProfilePhase {
         let mut shared = self.profile.shared();
         let open = shared.open.entry(self.thread).or_default();
         let mut inner = Duration::ZERO;
-        // Futures of one thread that take turns may end their phases in another order than that of a stack.
+        // Futures that take turns on one thread may end their phases in another order than a stack would.
         if let Some(place) = open.iter().position(|open| open.number == self.number) {
             inner = open.remove(place).inner;
             if let Some(outer) = place.checked_sub(1).and_then(|outer| open.get_mut(outer)) {
@@ -156,7 +156,7 @@ impl Drop for ProfilePhase {
     }
 }
 
-/// The name of the pass of a submission: of its only one, or of the last, before which a short one counts its work.
+/// The name of a submission in a profile: its last pass. An earlier pass only counts the work of the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NotedPass(pub(crate) Option<&'static str>);
 

@@ -1,25 +1,25 @@
-//! Biases: whether results lie to one side of the middle of their bounds. Every result of a device that rounds without
-//! preference is as likely above the middle as below; a fault that is smaller than a bound moves all of them to one side.
-//! A device may prefer a side and conform all the same, so a bias is a note and not a violation.
+//! Finds biases: results that lie to one side of the middle of their bounds. If a device rounds without preference, its
+//! results are as likely above the middle as below. A fault that is smaller than a bound moves all results to one side.
+//! A conforming device may also prefer a side, so a bias is a note and not a violation.
 
 use std::fmt;
 
 use super::rounding::Interval;
 
-/// A mean deviation up to this is not a bias. Those of devices without a fault are below 0.01.
+/// Largest mean deviation that is not a bias. Devices without a fault stay below 0.01.
 pub const LARGEST_MEAN: f64 = 0.02;
 
-/// A mean must be as many of its standard errors away from 0 to count as a bias.
+/// Distance of a mean from 0, in its standard errors, from which on it counts as a bias.
 const STANDARD_ERRORS: f64 = 6.0;
 
-/// Fewer results say nothing.
+/// Minimum number of results from which a bias can be concluded.
 const FEWEST: u64 = 500;
 
-/// The widest bounds that say something, relative to the middle.
+/// Width of the widest bounds that are measured, relative to the middle.
 const WIDEST: f64 = 0.1;
 
-/// How far the results for a quantity are from the middle of their bounds. A deviation is that of the magnitude, relative
-/// to half the width: 1 at the outer bound, -1 at the inner one.
+/// The distance of the results for a quantity from the middle of their bounds. A deviation belongs to the magnitude,
+/// relative to half the width: 1 at the outer bound, -1 at the inner one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
     /// The stage that computes the quantity.
@@ -65,7 +65,7 @@ impl fmt::Display for Deviation {
 #[derive(Clone, Debug, Default)]
 pub struct Deviations {
     all: Vec<Deviation>,
-    /// Where the last quantity was found: the next is mostly the one behind it.
+    /// Index of the quantity that was found last. The next quantity is usually the one behind it.
     last: usize,
 }
 
@@ -106,7 +106,7 @@ impl Deviations {
         one.squares += deviation * deviation;
     }
 
-    /// Adds the result for a quantity, unless its bounds say nothing of it.
+    /// Adds the result for a quantity, unless its bounds are too wide or too narrow to measure a deviation.
     pub(super) fn measure(
         &mut self,
         stage: &'static str,
@@ -129,8 +129,8 @@ impl Deviations {
     }
 }
 
-/// The deviation of the magnitude of a legal number from the middle of its bounds, relative to half their width. Bounds
-/// that contain zero or are wide say nothing, nor do those of exact numbers.
+/// The deviation of the magnitude of a legal number from the middle of its bounds, relative to half their width. `None`
+/// for bounds that contain zero, are wide, or belong to exact numbers.
 pub(super) fn deviation(found: f64, Interval { low, high }: Interval) -> Option<f64> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let is_telling = half > 0.0 && half <= WIDEST * middle.abs();

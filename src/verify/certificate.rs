@@ -8,12 +8,12 @@ use crate::verify::hit::LegalHits;
 use crate::verify::recording::UploadError;
 use crate::verify::rounding::Interval;
 
-/// The largest share of answers that may stay undecided in a certificate that proves something.
+/// The largest share of undecided answers in a certificate that proves something.
 pub const MOST_UNDECIDED: f64 = 0.01;
 
-/// What a certificate says as a whole.
+/// The outcome of a whole certificate.
 ///
-/// Only [`Outcome::Proved`] means that a picture is legal. A picture of which too much stays undecided is not called
+/// Only [`Outcome::Proved`] means that a picture is legal. A picture with too many undecided answers is not called
 /// legal, even if nothing in it is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -114,11 +114,11 @@ pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
 /// The number of pixels that a thread takes at a time.
 pub(super) const CHUNK: usize = 1 << 12;
 
-/// The largest number of violations that are kept; all are counted.
+/// The largest number of violations that are kept. All are counted.
 pub(super) const KEPT: usize = 1000;
 
 impl LegalHits {
-    /// An answer in words, and the legal ones.
+    /// An answer in words, with the legal answers.
     #[must_use]
     pub fn message(&self, id: u32, t: f32) -> String {
         match id {
@@ -156,7 +156,7 @@ pub struct Violation {
     /// The stage with the illegal result: `cull`, `camera`, `hit`, `id`, `depth`, `normal`, `color`; or `render`, in the
     /// picture of [`Headless::render`](crate::gpu::Headless::render), where distances of hits are from the camera.
     pub stage: &'static str,
-    /// The result that was found, and the legal ones.
+    /// The result that was found, and the legal results.
     pub message: String,
 }
 
@@ -215,16 +215,16 @@ pub struct Certificate {
     /// The first violations, in the order of pixels.
     pub violations: Vec<Violation>,
     /// The number of pixels in which the picture of [`Headless::render`](crate::gpu::Headless::render) differs from the
-    /// recording's picture, and which are judged separately; `None` if there is no such picture.
+    /// recording's picture. They are judged separately. `None` if there is no such picture.
     pub rendered_otherwise: Option<usize>,
     /// A mismatch between the data on the device and the requested data. If there is one, no pixel is judged.
     pub upload: Option<UploadError>,
     /// The largest deviation of a hit's distance from the middle of its legal interval, relative to half the width of
     /// the interval; at most 1 if legal.
     pub worst_depth: f64,
-    /// The largest deviation of a normal from the exact one, relative to its bound; at most 1 if legal.
+    /// The largest deviation of a normal from the exact normal, relative to its bound; at most 1 if legal.
     pub worst_normal: f64,
-    /// How far the numbers of decided pixels are from the middle of their bounds.
+    /// The deviations of decided pixels from the middle of their bounds.
     pub deviations: Deviations,
 }
 
@@ -241,7 +241,7 @@ impl Certificate {
         self.count(Verdict::Decided) as f64 / self.verdicts.len().max(1) as f64
     }
 
-    /// The number of pixels for which several answers are legal, of which the device gave one.
+    /// The number of pixels for which several answers are legal. The device gave one of them.
     #[must_use]
     pub fn undecided(&self) -> usize {
         Verdict::undecided(&self.verdicts)

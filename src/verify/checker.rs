@@ -1,5 +1,5 @@
 //! The checker of recordings of a scene, pixel by pixel and stage by stage. A pixel whose ray was not recorded is legal
-//! if it is for some ray that a device may compute for it.
+//! if it is legal for some ray that a device may compute for the pixel.
 
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ pub struct Checker<'a> {
     pub(super) candidates: Candidates,
 }
 
-/// In pictures of more pixels, one in some pixels is measured for biases.
+/// Above this many pixels, only every `ONE_IN`-th pixel is measured for biases.
 const ALL_MEASURED: usize = 1 << 16;
 const ONE_IN: usize = 8;
 
@@ -36,7 +36,7 @@ impl<'a> Checker<'a> {
     /// The largest number of bytes that the checker needs for each sphere.
     pub const BYTES_PER_SPHERE: u64 = 40;
 
-    /// Prepares a scene, which takes 24 bytes for each sphere, and 8 to 16 for boxes.
+    /// Prepares a scene. This takes 24 bytes for each sphere, and 8 to 16 for boxes.
     ///
     /// # Errors
     /// Returns an error if there is not enough memory.
@@ -129,11 +129,11 @@ pub(super) struct PixelResult {
     pub(super) verdict: Verdict,
     /// The deviation of the distance from the middle of its legal interval, relative to half the width of the interval.
     pub(super) depth: f64,
-    /// The deviation of the normal from the exact one, relative to its bound.
+    /// The deviation of the normal from the exact normal, relative to its bound.
     pub(super) normal: f64,
 }
 
-/// The ray with which a hit is shaded, and how far the device's may be from it.
+/// The ray with which a hit is shaded, and the maximum difference of the device's ray.
 struct ShadingRay {
     line: Line,
     slack: Slack,
@@ -150,7 +150,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// The layers of a pixel; a picture that is judged has all of them.
+    /// The layers of a pixel. A picture that is judged has all of them.
     pub(super) fn of(image: &Image, index: usize) -> Self {
         Self {
             color: image.color()[index],
@@ -162,7 +162,7 @@ impl Layers {
 }
 
 impl PixelCheck<'_> {
-    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused. The
+    /// Judges a pixel. The error is the first stage with an illegal result. `legal` is memory that is reused. The
     /// deviations of a decided hit are added to `measured`.
     pub(super) fn judge(
         &self,
@@ -211,7 +211,7 @@ impl PixelCheck<'_> {
         let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
-        // Without the ray of shading, it is known only as well as the ray that it must have had.
+        // If the shading ray was not recorded, it is only known to be within the slack of the traced ray.
         let mut shading = ShadingRay { line, slack: entered.slack(), direction: entered.direction };
         if let Some(ray) = shading_ray {
             let line = Line::new(ray.origin, ray.direction);
@@ -254,7 +254,7 @@ impl PixelCheck<'_> {
         check_color(layers.color, background.map(exactly))
     }
 
-    /// Judges the layers of a hit. Returns the deviation of the normal from the exact one, relative to its bound.
+    /// Judges the layers of a hit. Returns the deviation of the normal from the exact normal, relative to its bound.
     fn check_hit(
         &self,
         layers: &Layers,
@@ -271,8 +271,8 @@ impl PixelCheck<'_> {
         self.check_shading(layers, shading)
     }
 
-    /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
-    /// bound.
+    /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact
+    /// normal, relative to its bound.
     fn check_shading(&self, layers: &Layers, ray: &ShadingRay) -> Result<f64, Mismatch> {
         let (scene, id) = (self.checker.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
@@ -388,8 +388,8 @@ impl PixelCheck<'_> {
         self.check_shading(layers, &ShadingRay { line, slack, direction }).map(|_| ())
     }
 
-    /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not
-    /// depend on where the ray enters the scene's box.
+    /// The legal depths of a sphere, if the ray certainly hits one particular side. These bounds are tighter, because
+    /// they do not depend on where the ray enters the scene's box.
     fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
         let sphere = *self.checker.scene.spheres().get(id as usize)?;
         let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
@@ -404,7 +404,7 @@ impl PixelCheck<'_> {
 }
 
 impl AnyRay {
-    /// Distances from the camera; the device computes them with one sum.
+    /// Distances from the camera, which the device computes with one sum.
     fn depths(&self, Interval { low, high }: Interval) -> Interval {
         let (near, far) = (low + self.distance.low, high + self.distance.high);
         Interval { low: near - PAD * U * near.abs(), high: far + PAD * U * far.abs() }

@@ -34,7 +34,7 @@ impl Choices {
         outcome
     }
 
-    /// Moves on to the next combination; false if there is none.
+    /// Moves on to the next combination. Returns `false` if there is none.
     pub(super) fn advance(&mut self) -> bool {
         self.taken.truncate(self.next);
         self.next = 0;

@@ -1,4 +1,4 @@
-//! The check of the denoiser: what its five passes may make of a picture. The WGSL twin is
+//! The check of the denoiser: the results that its five passes may have. The WGSL twin is
 //! `shaders/primary/denoise.wgsl`.
 //!
 //! Light is known as an interval for each channel. A pass makes weighted means of 25 pixels. A weight is an interval,
@@ -6,10 +6,10 @@
 //!
 //! b + Σ w (v − b) / Σ w
 //!
-//! for any b, and for the light b of the pixel in the middle the differences v − b are small where weights are. So the
-//! interval of the mean grows by the uncertainty of weights times what differs, and not times the light. To this the
-//! roundings of the sums and of the quotient are added. What intervals leave open, such as whether a miss has no noise,
-//! may go either way.
+//! for any b. If b is the light of the pixel in the middle, the differences v − b are small where weights are not. So
+//! the interval of the mean grows by the uncertainty of weights times these differences, and not times the light. The
+//! roundings of the sums and of the quotient are added. A decision that intervals leave open, such as whether a miss
+//! has no noise, may have either outcome.
 
 use super::certificate::{channel_name, pixel_at};
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
@@ -22,10 +22,10 @@ use crate::verify::certificate::Outcome;
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 10;
 
-/// The largest number of violations that are kept; all are counted.
+/// The largest number of violations that are kept. All are counted.
 const KEPT: usize = 100;
 
-/// A variance of light that is no noise, `NO_NOISE` in the kernel.
+/// The variance below which light counts as free of noise, `NO_NOISE` in the kernel.
 const NO_NOISE: f64 = 1e-8;
 
 /// Roundings of a sum of 25 products of weights and light, of the sum of weights, and of the quotient.
@@ -35,29 +35,29 @@ const OF_MEANS: u32 = 60;
 /// the quotient.
 const OF_VARIANCES: u32 = 80;
 
-/// A weight that is too small beside that of the pixel in the middle, 0.14, for its interval to be worth computing.
+/// Weights up to this are too small, beside the weight 0.14 of the pixel in the middle, to compute their intervals.
 const NO_WEIGHT: f64 = 1e-20;
 
-/// What flushing of 25 products to zero may change.
+/// Maximum change if 25 products are flushed to zero.
 const MOST_FLUSHED: f64 = 25.0 * FLUSH;
 
-/// The widest interval about which something is said, relative to the light, or to a hundredth of white if that is more.
+/// The widest interval that decides a pixel, relative to the light, or to a hundredth of white if that is more.
 const WIDEST: f64 = 0.05;
 
 /// Red, green and blue, and the variance of their luminance.
 type Light = [Interval; 4];
 
-/// A pixel that no conforming device leads to.
+/// A pixel that no conforming device may compute.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DenoiseViolation {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],
-    /// Red, green or blue, from 0 on.
+    /// Index of the channel, from 0: red, green or blue.
     pub channel: usize,
     /// The light of the denoised picture.
     pub found: f32,
-    /// What is legal.
+    /// The legal light.
     pub legal: Interval,
 }
 
@@ -68,11 +68,11 @@ pub struct DenoiseViolation {
 pub struct DenoiseCertificate {
     /// The number of pixels.
     pub pixels: u64,
-    /// The number of pixels whose bounds are so wide that they say little.
+    /// The number of pixels whose bounds are too wide to decide them.
     pub undecided: u64,
     /// The number of pixels that are not legal.
     pub violation_count: u64,
-    /// The first of them, in the order of pixels.
+    /// The first violations, in the order of pixels.
     pub violations: Vec<DenoiseViolation>,
 }
 
@@ -99,7 +99,7 @@ impl std::fmt::Display for DenoiseViolation {
     }
 }
 
-/// Judges what a device made of a noisy picture.
+/// Judges the result of a device that denoised a picture.
 ///
 /// # Errors
 /// Returns an error if the noisy picture lacks one of [the layers](crate::image::denoise::GUIDES) that denoising needs.
@@ -117,11 +117,11 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
     }
     let mut certificate = DenoiseCertificate::default();
     for (index, (light, albedo)) in lights.iter().zip(&filter.guides.albedos).enumerate() {
-        // A picture of another size is not legal where it has no pixels.
+        // If the picture has another size, pixels that it lacks are not legal.
         let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
         let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
         certificate.pixels += 1;
-        // A bound that is no number says nothing.
+        // A bound that is NaN does not decide the pixel.
         let is_vague = |Interval { low, high }: &Interval| {
             low.is_nan() || high.is_nan() || high - low > WIDEST * high.max(0.01)
         };
@@ -184,7 +184,7 @@ impl Filter {
         });
         let mut sums = [Interval { low: 0.0, high: 0.0 }; 4];
         let mut weights = Interval { low: 0.0, high: 0.0 };
-        // The sums of what is added, of which rounding may change a part.
+        // Sums of the magnitudes of all terms, of which rounding may change a part.
         let mut sizes = [0.0_f64; 3];
         for dy in -2..=2_i64 {
             for dx in -2..=2_i64 {
@@ -241,7 +241,7 @@ impl Filter {
         [red, green, blue, Interval { low: variance.low.max(0.0), ..variance }]
     }
 
-    /// The similarity of two pixels in shape and albedo, which are known exactly.
+    /// The similarity of two pixels in shape and albedo. Both are known exactly.
     fn likeness(&self, a: usize, b: usize, distance: f64) -> Interval {
         let [shape, other] = [a, b].map(|index| self.guides.shapes[index].map(f64::from));
         let products: [f64; 3] = std::array::from_fn(|i| shape[i] * other[i]);
@@ -285,7 +285,7 @@ impl Filter {
 
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
 
-/// Every similarity of lights; the exponential of zero may be 3 ULP above 1.
+/// The interval of all similarities of lights. The exponential of zero may be 3 ULP above 1.
 const ANY: Interval = Interval { low: 0.0, high: 1.0 + PAD * U * 3.0 };
 
 /// The similarity of lights, relative to their noise.

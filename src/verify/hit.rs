@@ -1,6 +1,5 @@
-//! The nearest hit of a ray: the set of answers that a conforming device may give, found with a search tree of the
-//! checker's own. The tree is in f64 and as simple as possible, because the results that it judges were found by other
-//! structures.
+//! The nearest hit of a ray: the set of answers that a conforming device may give. The checker has a separate search
+//! tree, which is in f64 and as simple as possible, because it judges results that other structures found.
 
 use glam::{DVec3, Vec3};
 
@@ -103,7 +102,7 @@ impl Candidates {
         self.visit_node(&slab, root, &mut nearest.min(f64::MAX), &mut offer);
     }
 
-    /// The calls are nested at most 32 deep, because a tree has no more levels than an id has bits.
+    /// Visits a node. Calls are nested at most 32 deep, because a tree has no more levels than an id has bits.
     fn visit_node(
         &self,
         slab: &Slab<'_>,
@@ -208,9 +207,9 @@ impl Slab<'_> {
     }
 }
 
-/// All answers to a ray that are legal: that a device which conforms to WGSL may give, however it rounds.
+/// All legal answers to a ray: the answers that a device that conforms to WGSL may give, however it rounds.
 ///
-/// A hit is legal if its sphere is listed, and its distance is one of that sphere and at most `limit`.
+/// A hit is legal if its sphere is listed, and its distance is legal for this sphere and at most `limit`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LegalHits {
     /// The spheres that may be the nearest, in no particular order.
@@ -272,20 +271,20 @@ impl LegalHits {
         t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())
     }
 
-    /// Resets to a miss; keeps the allocated memory.
+    /// Resets to a miss, and keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         self.spheres.clear();
         self.limit = f64::INFINITY;
         self.miss = true;
     }
 
-    /// Computes the legal hits of a ray; keeps the allocated memory.
+    /// Computes the legal hits of a ray, and keeps the allocated memory.
     pub(super) fn find(&mut self, candidates: &Candidates, line: &Line) {
         self.clear();
         self.find_nearer(candidates, line, Slack::default(), |_| false);
     }
 
-    /// Adds the hits that may be nearer than those already known, except of spheres for which `is_left_out` is true.
+    /// Adds the hits that may be nearer than known hits, except of spheres for which `is_left_out` is true.
     pub(super) fn find_nearer(
         &mut self,
         candidates: &Candidates,
@@ -314,8 +313,8 @@ impl LegalHits {
 
     /// Among spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
     /// equal spheres, to the bit, because they share one sphere test, and at equal distances the smaller id wins. This
-    /// is a guarantee of this crate: WGSL does not guarantee that two kernels, such as those of two bricks, compile the
-    /// test in the same way.
+    /// is a guarantee of this crate: WGSL does not guarantee that two kernels, such as the kernels of two bricks,
+    /// compile the test in the same way.
     fn drop_copies(&mut self) {
         if self.spheres.len() > 1 {
             self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));
@@ -343,7 +342,7 @@ mod tests {
 
     use super::*;
 
-    /// The reference, which tests every sphere.
+    /// The legal hits without a search tree: every sphere is tested.
     fn without_search(spheres: &[[f32; 4]], line: &Line) -> LegalHits {
         let mut legal = LegalHits::default();
         legal.clear();
@@ -397,7 +396,7 @@ mod tests {
             let spheres = spheres(&mut random, scale, 1 << (round % 10));
             let candidates = Candidates::new(&spheres).unwrap();
             for _ in 0..300 {
-                // Rays near a silhouette; half of them at the end of a box, along its side.
+                // Rays near a silhouette. Half of them are at the end of a box, along its side.
                 let [x, y, z, r] = spheres[random.usize(0..spheres.len())];
                 let mut outward = point(&mut random).normalize_or(Vec3::X);
                 if random.bool() {

@@ -24,7 +24,7 @@ use crate::verify::studio::light::Change;
 use crate::verify::studio::surface::HitKind;
 
 impl Checker<'_> {
-    /// Judges every stage of every sample. The recording must be of the scene of this checker.
+    /// Judges every stage of every sample. The recording must show the scene of this checker.
     #[must_use]
     pub fn certify_lit(&self, recording: &LitRecording) -> LitCertificate {
         let given = &recording.given;
@@ -116,7 +116,7 @@ impl LitCheck<'_> {
         part.note(LitStage::Accumulate, address, sums);
     }
 
-    /// Judges the shading of a surface, and says what a ray of a studio met, if that is known.
+    /// Judges the shading of a surface. Returns what a ray of a studio hit, if that is known.
     fn shade(
         &self,
         address: Address,
@@ -184,7 +184,7 @@ impl LitCheck<'_> {
         after
     }
 
-    /// Judges which of some lights are hidden, and the light of the others.
+    /// Judges which lights of a batch are hidden, and the light of the others.
     fn judge_light(
         &self,
         address: Address,
@@ -194,7 +194,7 @@ impl LitCheck<'_> {
         part: &mut LitCertificate,
     ) {
         match met {
-            // What the ray met is not legal, so that nothing can be said about its light.
+            // The hit is not legal, so its light cannot be judged.
             None => {}
             Some(HitKind::Nothing | HitKind::Emitter) => {
                 if let Err(mismatch) = found.unlit(state) {
@@ -249,7 +249,7 @@ impl LitCheck<'_> {
         Err(Judge::default().fail((found.kind.searches, "what is hidden"), words))
     }
 
-    /// The outcomes of a kernel for all combinations of its open decisions, joined; `None` if they are too many.
+    /// The union of a kernel's outcomes for all combinations of its open decisions; `None` if there are too many.
     fn outcomes<T>(
         &self,
         address: Address,
@@ -288,7 +288,7 @@ impl LitCheck<'_> {
         Ok(judge.into())
     }
 
-    /// The sum of all light of a batch, given which lights are hidden. Where decisions of a light are open, its part is
+    /// The sum of all light of a batch, given which lights are hidden. If decisions of a light are open, its part is
     /// everything between the outcomes.
     fn sum(
         &self,
@@ -315,7 +315,7 @@ impl LitCheck<'_> {
     }
 }
 
-/// A kind of light that a [`StudioLight`] holds.
+/// The kind of lights in a [`StudioLight`].
 struct Kind {
     is_ambient: bool,
     /// The word for one light or direction.
@@ -362,13 +362,13 @@ impl Light<'_> {
         self.light.hidden[self.index]
     }
 
-    /// Checks that a ray on which no surface is lit does not change.
+    /// Checks that a ray does not change if no surface on it is lit.
     fn unlit(&self, state: &PathState) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Illuminate, "a ray without a lit surface");
         let mut judge = Judge::default();
         let bits = state.bits(slot::NORMAL);
         let (hidden, left) = (self.bits(), self.light.left[self.index]);
-        // Without a search there are no bits.
+        // Bits are set only by a search.
         if hidden != 0 {
             judge.bits(KEPT, hidden, bits)?;
         }

@@ -1,27 +1,26 @@
-//! Whether two pictures estimate the same light: a test of means, region by region, whose error probability is stated.
+//! Tests whether two pictures estimate the same light, by their means in each region, with a stated error probability.
 //!
-//! A picture with light is an estimate by random samples. Which light is right follows from an independent picture of
-//! the same scene, which the reference makes with another seed, as many samples and the same encoding. If a device is
-//! correct, then what it found for a pixel and what the reference found are two draws from the same distribution,
-//! whatever that is. So their difference d has either sign with the same probability, given its magnitude, and the
-//! differences of pixels are independent. The sum of n such differences with random signs is bounded by Hoeffding's
-//! inequality ("Probability inequalities for sums of bounded random variables", 1963, theorem 2):
+//! A picture with light is an estimate by random samples. An independent picture of the same scene says which light is
+//! right: the reference makes it with another seed, as many samples and the same encoding. If a device is correct, its
+//! result for a pixel and the reference's result are two draws from the same distribution, whatever it is. So their
+//! difference d has either sign with the same probability, given its magnitude, and the differences of pixels are
+//! independent. The sum of n such differences with random signs is bounded by Hoeffding's inequality ("Probability
+//! inequalities for sums of bounded random variables", 1963, theorem 2):
 //!
 //! P(|Σ d| ≥ √(2 ln(2/p) Σ d²)) ≤ p
 //!
-//! The denoiser mixes pixels. Two pixels farther apart than twice its reach are independent again. So the pixels are
-//! divided into classes, of which every two members are as far apart; the bound holds for each class, and the bound of
-//! all pixels is the sum of those of the classes. It is so much wider that only the whole picture is tested then.
+//! The denoiser mixes pixels, but two pixels farther apart than twice its reach are independent. So the pixels are
+//! divided into classes whose members are that far apart. The bound holds for each class, and the bound of all pixels
+//! is the sum of the bounds of the classes. This sum is so much wider that only the whole picture is tested then.
 //!
-//! No variance is estimated and nothing is assumed about tails, so that the bound also holds for a picture with
-//! fireflies. With m regions and channels, each is tested with p/m; a correct device is accused with a probability of
-//! at most p in all.
+//! No variance is estimated and no tails are assumed, so the bound also holds for a picture with fireflies. With m
+//! regions and channels, each is tested with p/m. A correct device is accused with a probability of at most p in all.
 //!
 //! Rounding may move a mean as well: a device adds up to as many roundings as a pixel has samples, and some hundred in
 //! shading. Therefore the bound is wider by (samples + 256) 2⁻²⁴ of white, or of the brightest light.
 //!
 //! Where surfaces of several spheres coincide, rounding decides which one is seen, and no average helps. Regions with
-//! more than a hundredth of such pixels are left undecided, like those that are so noisy that the bound is above a
+//! more than a hundredth of such pixels stay undecided. So do regions with so much noise that the bound is above a
 //! twentieth of the picture's mean.
 
 use std::fmt;
@@ -41,19 +40,19 @@ const LEAST_SIDE: u32 = 8;
 /// The largest share of a region's pixels where surfaces coincide.
 const MOST_TIES: f64 = 0.01;
 
-/// The widest bound of a region about which something is said, relative to the mean of the picture.
+/// The widest bound with which a region is decided, relative to the mean of the picture.
 const WIDEST: f64 = 0.05;
 
 /// The number of roundings in shading that may move a mean, apart from one for each sample.
 const OF_SHADING: f64 = 256.0;
 
-/// What was found about one channel of a region.
+/// The comparison of one channel of a region.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RegionMean {
     /// Column and row of the region, from the top left; `None` for the whole picture.
     pub region: Option<[u32; 2]>,
-    /// Red, green or blue, from 0 on.
+    /// Index of the channel, from 0: red, green or blue.
     pub channel: usize,
     /// The mean of the picture.
     pub found: f64,
@@ -61,7 +60,7 @@ pub struct RegionMean {
     pub expected: f64,
     /// The largest difference that is legal.
     pub bound: f64,
-    /// Whether something can be said about it.
+    /// The outcome of the comparison.
     pub outcome: Outcome,
 }
 
@@ -71,7 +70,7 @@ pub struct RegionMean {
 pub struct Means {
     /// The number of regions along each side.
     pub regions: [u32; 2],
-    /// Each channel of each region, and then of the whole picture.
+    /// The means of each channel of each region, and then of the whole picture.
     pub means: Vec<RegionMean>,
 }
 
@@ -86,10 +85,10 @@ pub struct Estimates<'a> {
     pub found: &'a [[f64; 3]],
     /// The reference's picture with other random numbers.
     pub expected: &'a [[f64; 3]],
-    /// How many pixels away noise may be that was mixed into a pixel, along each axis; 0 without a
+    /// Maximum distance in pixels, along each axis, over which noise was mixed into a pixel; 0 without a
     /// [denoiser](crate::image::denoise::REACH).
     pub reach: u32,
-    /// Whether rounding decides which sphere a pixel shows; may be empty.
+    /// For each pixel, whether rounding decides which sphere it shows. It may be empty.
     pub ties: &'a [bool],
 }
 
@@ -105,7 +104,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// The sum of the roots of what each class sums up to.
+    /// The sum of the roots of the sums of all classes.
     fn deviation(&self, channel: usize) -> f64 {
         self.squares.iter().map(|of_class| of_class[channel].sqrt()).sum()
     }
@@ -179,7 +178,7 @@ impl Means {
         self.means.iter().filter(|mean| mean.outcome == outcome).count()
     }
 
-    /// The outcome of the picture: undecided if more than half of the regions are.
+    /// The outcome of the picture. It is undecided if more than half of the means are.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         let undecided = self.count(Outcome::Undecided);
@@ -190,14 +189,14 @@ impl Means {
         }
     }
 
-    /// The mean that is the farthest from the reference's, relative to its bound.
+    /// The mean that is the farthest from the mean of the reference, relative to its bound.
     #[must_use]
     pub fn worst(&self) -> Option<&RegionMean> {
         let decided = self.means.iter().filter(|mean| mean.outcome != Outcome::Undecided);
         decided.max_by(|a, b| a.fraction().total_cmp(&b.fraction()))
     }
 
-    /// The largest bound of a region that is decided: a difference of this size is found everywhere.
+    /// The largest bound of a decided region. A difference of this size would be found in every such region.
     #[must_use]
     pub fn widest(&self) -> f64 {
         let decided = self.means.iter().filter(|mean| mean.outcome != Outcome::Undecided);
@@ -269,7 +268,7 @@ mod tests {
         }
     }
 
-    /// A picture in which each pixel is the mean of those around it.
+    /// A picture in which each pixel is the mean of the pixels around it.
     fn mixed(picture: &[[f64; 3]], reach: i64) -> Vec<[f64; 3]> {
         let [width, height] = SIZE.map(i64::from);
         (0..width * height)
@@ -297,7 +296,7 @@ mod tests {
             let means = compare_mixed(&found, &expected, 3);
             assert_eq!(means.count(Outcome::Violated), 0, "{:?}", means.worst());
             assert_eq!(means.means.len(), 6);
-            // Who overlooks that they are mixed accuses a correct device.
+            // A comparison that ignores the mixing accuses a correct device.
             let means = compare(&found, &expected);
             accused += usize::from(means.outcome() == Outcome::Violated);
         }

@@ -2,12 +2,12 @@
 //!
 //! The f32 arithmetic of a GPU is not exact, and WGSL gives it freedom: a result may be rounded to either neighbour,
 //! operations may be fused, and sums may be evaluated in any order. Devices therefore differ, and comparing pictures
-//! with a tolerance proves nothing. The checker instead starts from the very numbers that the device was given. With
-//! running error bounds in f64, it computes the set of answers that a conforming implementation of the kernels may
-//! give: which spheres may be the nearest and at which distances, whether a miss is possible, and which normals, depths
-//! and colours follow. A pixel is *decided* if that set has a single element, apart from distances within their bounds.
+//! with a tolerance proves nothing. The checker instead starts from the device's exact inputs. With error bounds in
+//! f64, it computes the set of answers that a conforming implementation of the kernels may give: which spheres may be
+//! the nearest and at which distances, whether a miss is possible, and which normals, depths and colours follow. These
+//! answers are *legal*. A pixel is *decided* if only one answer is legal, apart from distances within their bounds.
 //!
-//! Stages are judged separately, each from the device's recorded result of the one before, so that errors do not
+//! Stages are judged separately, each from the device's recorded result of the previous stage, so that errors do not
 //! accumulate: the camera's ray, the nearest hit, and the shading. The checker shares no code with the twins of the
 //! kernels, and does not use the structure that found the spheres.
 //!
@@ -15,15 +15,15 @@
 //! compared with the recording's picture, value by value. A pixel that differs is judged separately, against every ray
 //! that a device may compute for that pixel.
 //!
-//! In addition to WGSL's table of accuracies, the checker assumes that `fence` in `shaders/math/fence.wgsl` stops a compiler
-//! from optimizing across it, and that the square root of zero is zero;
+//! In addition to WGSL's table of accuracies, the checker assumes that `fence` in `shaders/math/fence.wgsl` stops a
+//! compiler from optimising across it, and that the square root of zero is zero;
 //! [`Headless::self_test`](crate::gpu::Headless::self_test) checks both. It also assumes that among spheres that are
 //! equal to the bit the smallest id wins, even if they are in different bricks, because all kernels of a picture
 //! compute the same result from the same numbers.
 //!
-//! The paths of pictures with lighting are judged in the same way, dispatch by dispatch ([`Checker::certify_lit`]).
-//! There the checker also assumes that a fenced number that a kernel's text computes in two places is the same in both,
-//! and that products of sums are not expanded.
+//! The paths of pictures with lighting are judged in the same way, dispatch by dispatch ([`Checker::certify_lit`]). For
+//! them, the checker also assumes that a fenced number is the same wherever a kernel's text computes it, and that
+//! products of sums are not expanded.
 //!
 //! ```no_run
 //! # use pinhole::{RenderSettings, Scene, View, gpu::{Headless, HeadlessOptions, Wait}};

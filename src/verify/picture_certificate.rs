@@ -1,7 +1,7 @@
 //! The certificate that a picture carries in its file.
 //!
-//! It is a text of one key and value on each line, which any tool shows that shows texts of PNG files or attributes of
-//! OpenEXR files:
+//! The certificate is a text with a key and a value on each line. Any tool shows it that shows texts of PNG files or
+//! attributes of OpenEXR files:
 //!
 //! | key | value |
 //! |---|---|
@@ -17,7 +17,7 @@
 //! | `proved`, `undecided` | numbers of pixels; of means, if these were judged |
 //! | `sha256` | digest of all lines before |
 //!
-//! A digest tells what has been changed by mistake. It is no signature: who changes a picture on purpose can also
+//! A digest reveals changes by mistake. It is not a signature: a person who changes a picture on purpose can also
 //! compute digests, but cannot make the check of its samples succeed.
 
 use sha2::{Digest, Sha256};
@@ -39,10 +39,10 @@ const DIGEST: &str = "sha256";
 /// The number of bytes that are given to a digest at a time.
 const CHUNK: usize = 1 << 16;
 
-/// How a picture was judged.
+/// The method by which a picture was judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JudgedBy {
-    /// Sample by sample, by intervals of what is legal: [`written`](super::written).
+    /// Sample by sample, by the intervals of legal values: [`written`](super::written).
     Intervals,
     /// Region by region, by means of independent estimates: [`means`](super::means).
     Means,
@@ -62,11 +62,11 @@ impl JudgedBy {
 /// The certificate that a picture carries in its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureCertificate {
-    /// Version of the crate that wrote it.
+    /// Version of the crate that wrote the certificate.
     pub version: String,
     /// The adapter that rendered, or `cpu`.
     pub adapter: String,
-    /// The arguments of `pinhole render` apart from the scene and what does not change the picture.
+    /// The arguments of `pinhole render`, without the scene and without arguments that do not change the picture.
     pub arguments: Vec<String>,
     /// The digest of the scene's data.
     pub scene: String,
@@ -74,9 +74,9 @@ pub struct PictureCertificate {
     pub samples: String,
     /// The number of samples of each pixel.
     pub samples_per_pixel: u32,
-    /// How the picture was judged.
+    /// The method by which the picture was judged.
     pub judged_by: JudgedBy,
-    /// What came out of it.
+    /// The outcome of the check.
     pub outcome: Outcome,
     /// The numbers of pixels, or of means, that are proved and undecided.
     pub counts: [u64; 2],
@@ -101,7 +101,7 @@ impl PictureCertificate {
     pub fn to_text(&self) -> Result<String, CertificateError> {
         let mut text = format!("{FIRST} {VERSION}\n");
         let mut line = |key: &str, value: &str| {
-            // What is not ASCII is written as in Rust's strings, because PNG and OpenEXR have Latin-1 alone.
+            // Characters beyond ASCII are written as in Rust's strings, because PNG and OpenEXR have only Latin-1.
             text.extend([key, " "]);
             for c in value.chars() {
                 match c == '\\' || !c.is_ascii() {
@@ -188,7 +188,7 @@ impl PictureCertificate {
     }
 }
 
-/// Reverses the escapes of [`PictureCertificate::to_text`]; what is no escape stays as it is.
+/// Reverses the escapes of [`PictureCertificate::to_text`]. Other text stays as it is.
 fn unescaped(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     let mut rest = text;
@@ -238,8 +238,8 @@ pub fn scene_digest(scene: &Scene) -> String {
     hex(digest)
 }
 
-/// The digest of the samples of a picture: width and height in four bytes each, the lowest first, and the samples as
-/// they stand in the file.
+/// The digest of the samples of a picture: width and height in four bytes each, the lowest byte first,
+/// and then the samples as in the file.
 #[must_use]
 pub fn samples_digest(size: [u32; 2], samples: &[u8]) -> String {
     let mut digest = Sha256::new();

@@ -1,5 +1,5 @@
-//! Recordings: the data that a device was given, and its results; and the check whether the numbers on the device are those
-//! of the requested camera and scene.
+//! Recordings: the inputs of a device and its results. Also checks whether these inputs
+//! match the requested camera and scene.
 
 use glam::{DVec3, Vec3};
 
@@ -13,11 +13,11 @@ use crate::scene::Scene;
 use crate::verify::hit::Candidates;
 use crate::verify::rounding::{Interval, U};
 
-/// The margin of the box that is expected, relative to its diagonal; a device may have a larger or a smaller one.
+/// The expected margin of the box, relative to its diagonal. A device may have a larger or a smaller margin.
 const BOX_MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
-/// A recording: a picture as a device rendered it, the rays and hits that led to it, and the numbers that the device
-/// was given. The checker needs only this and the scene.
+/// A recording: a picture as a device rendered it, the rays and hits that led to it, and the inputs of the device. The
+/// checker needs only this and the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The requested camera.
@@ -26,7 +26,7 @@ pub struct Recording {
     pub uploaded: UploadedView,
     /// The size of the picture.
     pub film: Film,
-    /// How hits and misses become colours.
+    /// The settings by which hits and misses become colours.
     pub primary: PrimarySettings,
     /// The ray and hit of every pixel, in the order of [`Image`].
     pub pixels: Vec<TracedPixel>,
@@ -37,13 +37,13 @@ pub struct Recording {
 }
 
 /// The picture of the same view from kernels that do not record rays, as
-/// [`Headless::render`](crate::gpu::Headless::render) renders it. These are different kernels, so rounding may differ.
+/// [`Headless::render`](crate::gpu::Headless::render) renders it. Rounding may differ in these kernels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum PlainRender {
     /// There is no such picture.
     #[default]
     None,
-    /// All layers equal those of the recording's picture.
+    /// All layers equal the layers of the recording's picture.
     Same,
     /// Some value differs from the recording's picture. Holds all layers.
     Other(Box<Image>),
@@ -74,7 +74,7 @@ impl RequestedCamera {
         Self { kind: camera.kind(), vectors: camera.vectors() }
     }
 
-    /// The factor of `forward` at which the nearest corner of a box lies, if the camera has a plane; else 0.
+    /// The factor of `forward` at which the nearest corner of a box lies, if the camera has a plane; 0 otherwise.
     fn nearest(&self, origin: DVec3, [low, high]: [DVec3; 2]) -> f64 {
         let CameraVectors { right, up, forward, .. } = self.vectors;
         let across = right.cross(up);
@@ -84,7 +84,7 @@ impl RequestedCamera {
     }
 }
 
-/// The numbers of a view with which kernels compute, in the scene's frame.
+/// The numbers of a view on the device, in the scene's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UploadedView {
     /// The position of the camera, moved by `advance` times `forward`.
@@ -106,8 +106,8 @@ pub struct UploadedView {
 }
 
 impl UploadedView {
-    /// The numbers that a device is given for a camera, if the spheres lie between two corners: rays start where the
-    /// nearest corner of the scene's box lies, if the camera has a plane.
+    /// The inputs of a device for a camera, if the spheres lie between two corners. If the camera has a plane, rays
+    /// start at the depth of the nearest corner of the scene's box.
     pub(super) fn expected(
         camera: &RequestedCamera,
         scene_origin: DVec3,
@@ -142,9 +142,9 @@ pub struct TracedPixel {
     pub ray: Option<TracedRay>,
     /// Distance along the ray to the nearest sphere, or [`NO_HIT`].
     pub t: f32,
-    /// Index of that sphere in input order; [`NO_ID`](crate::image::NO_ID) for a miss.
+    /// Index of the hit sphere in input order; [`NO_ID`](crate::image::NO_ID) for a miss.
     pub id: u32,
-    /// The ray with which the hit was shaded, which another kernel made; `None` for a miss, and where it was not recorded.
+    /// The ray with which the hit was shaded, which another kernel made; `None` for a miss, or if it was not recorded.
     pub shading_ray: Option<TracedRay>,
 }
 
@@ -153,7 +153,7 @@ pub struct TracedPixel {
 pub struct TracedRay {
     /// The start of the ray.
     pub origin: [f32; 3],
-    /// The direction; unit length, up to rounding.
+    /// The direction, which has unit length up to rounding.
     pub direction: [f32; 3],
     /// The distance of the start from the camera.
     pub distance: f32,
@@ -163,7 +163,7 @@ pub struct TracedRay {
 /// the largest rounding error of a ray's entry point.
 pub(super) const LEAST_MARGIN: f64 = 16.0 * U;
 
-/// Why the data on the device are not those that were requested.
+/// Why the data on the device differ from the requested data.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize))]
@@ -201,7 +201,7 @@ fn wrong_vector(name: &str, found: [f32; 3], expected: [f32; 3]) -> UploadError 
     ))
 }
 
-/// Compares the camera and the scene's box with those on the device.
+/// Compares the camera and the scene's box with the camera and the box on the device.
 pub(super) fn check_view(
     scene: &Scene,
     candidates: &Candidates,
@@ -218,7 +218,7 @@ pub(super) fn check_view(
         ("forward", view.forward, vectors.forward),
         ("origin", view.origin, moved),
     ] {
-        // For the origin, the rounding error of f64 if large numbers cancel.
+        // The origin has the rounding error of f64 if large numbers cancel.
         let slack = match name {
             "origin" => f64::EPSILON * 4.0 * (origin.abs() + (advance * vectors.forward).abs()),
             _ => DVec3::ZERO,

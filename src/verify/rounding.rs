@@ -1,12 +1,12 @@
-//! How far a conforming WGSL implementation may be from the exact result of an operation.
+//! Bounds of the difference between a conforming WGSL implementation and the exact result of an operation.
 //!
-//! From the accuracy table of the WGSL specification ("Floating point accuracy"): sums, differences and products are
+//! The accuracy table of the WGSL specification ("Floating point accuracy") says: sums, differences and products are
 //! rounded to either neighbour; a quotient is within 2.5 ULP, an inverse square root within 2 ULP, and a square root
-//! within the error of 1 divided by an inverse square root. A quotient x/y may also be the product of x and 1/y, as
-//! compilers make it, although the table does not say so: then it has the errors of both. Subnormal numbers may be
-//! flushed to zero. Products and sums may be fused, and the terms of a sum may be added in any order. Therefore the error
-//! of an expression between two fences (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms'
-//! magnitudes, if no term passes through more than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
+//! within the error of 1 divided by an inverse square root. Compilers may also make a quotient x/y the product of x and
+//! 1/y, which the table omits; it then has both errors. Subnormal numbers may be flushed to zero. Products and sums may
+//! be fused, and the terms of a sum may be added in any order. Therefore the error of an expression between two fences
+//! (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms' magnitudes, if no term passes through
+//! more than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
 
 /// The relative error of one rounding to either neighbour: 2⁻²³. An ULP is at most this.
 pub(super) const U: f64 = 1.0 / (1 << 23) as f64;
@@ -14,12 +14,12 @@ pub(super) const U: f64 = 1.0 / (1 << 23) as f64;
 /// The largest error if a subnormal number is flushed to zero: 2⁻¹²⁶.
 pub(super) const FLUSH: f64 = f32::MIN_POSITIVE as f64;
 
-/// The error of a quotient, in units of 2⁻²³ of it: 2.5 ULP of 1/y and one rounding of the product x · (1/y). That is
-/// not the same number of ULP, because an ULP of 1/y may be twice as large, relative to it, as one of the quotient.
+/// The error of a quotient, in units of 2⁻²³ of it: 2.5 ULP of 1/y and one rounding of the product x · (1/y). In ULP
+/// the number would be larger, because an ULP of 1/y may be twice as large, relative to 1/y, as an ULP of the quotient.
 pub(crate) const DIVIDE_UNITS: f64 = 3.5;
 
-/// The error of a square root, in ULP: 2 of an inverse square root, 2.5 of 1 divided by it, and the remainder of their
-/// product.
+/// The error of a square root, in ULP: 2 for an inverse square root, 2.5 for 1 divided by it,
+/// and the remainder of their product.
 pub(crate) const SQRT_ULP: f64 = 5.0;
 
 /// The relative error of a quotient, with the product of both errors.
@@ -28,8 +28,8 @@ pub(super) const DIVIDE: f64 = DIVIDE_UNITS * U * (1.0 + U);
 /// The relative error of a square root.
 pub(super) const SQRT: f64 = SQRT_ULP * U;
 
-/// A factor for the error of the bounds themselves, which are computed in f64: its roundings are 2⁻²⁹ of those that
-/// they bound.
+/// A factor for the error of the bounds themselves, which are computed in f64. Roundings of f64 are 2⁻²⁹ of the
+/// roundings that they bound.
 pub(super) const PAD: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// The relative error of `k` roundings in sequence.
@@ -40,7 +40,7 @@ pub(crate) const fn gamma(k: u32) -> f64 {
 
 /// The error of the length of a fenced vector, which is the root of a sum of three squares.
 pub(super) fn error_of_length(length: f64) -> f64 {
-    // Each of 8 operations may flush a square to zero; the root halves the effect.
+    // Each of 8 operations may flush a square to zero. The root halves the effect.
     PAD * ((gamma(3) + SQRT) * length + 4.0 * FLUSH / length)
 }
 
@@ -64,7 +64,7 @@ impl Interval {
         Self { low: value - error, high: value + error }
     }
 
-    /// The numbers between two, of which either may be the larger, and within `error` of them.
+    /// The numbers between `a` and `b`, either of which may be the larger, and within `error` of them.
     pub(super) fn between(a: f64, b: f64, error: f64) -> Self {
         Self { low: a.min(b) - error, high: a.max(b) + error }
     }
@@ -80,7 +80,7 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    /// The numbers in both intervals; `low` is above `high` if there are none.
+    /// The numbers in both intervals. `low` is above `high` if there are none.
     pub(super) fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
@@ -110,7 +110,7 @@ impl std::fmt::Display for Interval {
     }
 }
 
-/// Whether a number on the device is within two roundings of the one that was asked for.
+/// Whether a number on the device is within two roundings of the requested number.
 pub(crate) fn is_near(found: f32, asked: f64) -> bool {
     (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH
 }

@@ -1,11 +1,11 @@
-//! The check of the sphere test and of shading: every result of `intersect_sphere` in `shaders/scene/sphere.wgsl` that is
-//! legal, and the layers that `shaders/primary/shade.wgsl` may write for a hit. The shader computes the ray and the sphere
-//! test again, so both may differ slightly from those of the trace.
+//! The check of the sphere test and of shading: every legal result of `intersect_sphere` in
+//! `shaders/scene/sphere.wgsl`, and the layers that `shaders/primary/shade.wgsl` may write for a hit. The shader
+//! computes the ray and the sphere test again, so both may differ slightly from the ray and the test of the trace.
 //!
 //! The four lines of the kernel that end in a fence are evaluated in f64, each with a bound of the error of its f32
-//! value. With the vector l to the centre, b = l·d and the foot vector f = l − b d, the rounding errors of l and of f
-//! itself are an error δ of f, and that of b is an error along d, which is nearly perpendicular to f. It changes |f|²
-//! by 2 Δb f·d = 2 Δb b (1 − d²), which is of second order, so that the result is still reliable for a ray that starts
+//! value. Let l be the vector to the centre, b = l·d, and f = l − b d the foot vector. The rounding errors of l and of
+//! f itself are an error δ of f. The error Δb of b is an error along d, which is nearly perpendicular to f: it changes
+//! |f|² by 2 Δb f·d = 2 Δb b (1 − d²), which is of second order. So the result is reliable even for a ray that starts
 //! far from a small sphere.
 
 use glam::DVec3;
@@ -14,7 +14,7 @@ use crate::geometry::math::wide;
 use crate::render::Shading;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma, unit_error};
 
-/// The smallest magnitude of a component; smaller ones are replaced by it, so that the distance to a plane is finite.
+/// The smallest magnitude of a component. It replaces smaller ones, so that the distance to a plane is finite.
 const SMALLEST_COMPONENT: f64 = 1e-60;
 
 /// A ray with exactly the numbers that a kernel used.
@@ -37,7 +37,7 @@ impl Line {
         Self { origin, direction, bend }
     }
 
-    /// How far beside the silhouette of a sphere the ray is, as a fraction of its radius.
+    /// Distance of the ray from the silhouette of a sphere, as a fraction of the sphere's radius.
     pub(super) fn beside_silhouette(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
         let to_center = wide([x, y, z]) - self.origin;
         let foot = to_center.cross(self.direction).length() / self.direction.length();
@@ -52,7 +52,7 @@ impl Line {
     }
 }
 
-/// How far a ray may be from the one that is checked, because another kernel computed it again.
+/// Maximum difference between a ray and the checked ray, because another kernel computed it again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slack {
     pub(super) across: f64,
@@ -68,7 +68,7 @@ pub(super) struct SphereTest {
     b_error: f64,
     /// The vector from the foot point to the centre.
     pub(super) foot: DVec3,
-    /// A bound of the length of its error.
+    /// A bound of the length of the foot vector's error.
     pub(super) foot_error: f64,
     /// The square of half the chord.
     discriminant: f64,
@@ -86,7 +86,7 @@ pub(super) struct SphereTest {
 pub(super) struct Roots {
     /// Legal distances to the near side.
     pub(super) near: Option<Interval>,
-    /// Legal distances to the far side, from inside.
+    /// Legal distances to the far side, for a ray from inside.
     pub(super) far: Option<Interval>,
     pub(super) may_miss: bool,
 }
@@ -106,7 +106,7 @@ impl SphereTest {
         let b_terms = l.abs().dot(d);
         let b_rounding = l_error.dot(d);
         let b_error = b_rounding + gamma(3) * (b_terms + b_rounding) + 8.0 * FLUSH;
-        // The two roundings of f itself, after those of l and b.
+        // The two roundings of f itself, after the roundings of l and b.
         let product = U * (b.abs() + b_error) * d;
         let difference = U * (1.0 + U) * (foot.abs() + l_error + (b_error + U * b.abs()) * d);
         let across = l_error + product + difference + 3.0 * FLUSH;
@@ -116,7 +116,7 @@ impl SphereTest {
             + 2.0 * b_error * b.abs() * line.bend
             + foot_errors.length_squared()
             + (2.0 * (foot2.sqrt() + foot_errors.length()) + beside) * beside;
-        // The last term: an exact answer need not assume, as the kernel does, that the direction has unit length.
+        // The last term is for exact answers, which, unlike the kernel, need not assume a direction of unit length.
         let error = PAD
             * (square_error
                 + gamma(4) * (r2 + foot2 + square_error)
@@ -163,8 +163,8 @@ impl SphereTest {
         self.c - self.c_error <= 0.0
     }
 
-    /// The same test without the additional slack for exact answers, which do not assume that the direction has unit
-    /// length.
+    /// Returns the test without the additional slack for exact answers, which do not assume
+    /// that the direction has unit length.
     pub(super) fn as_the_kernel(self) -> Self {
         Self { bend: 0.0, ..self }
     }
@@ -200,7 +200,7 @@ impl SphereTest {
             low: c_low / (b.high + h.high) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c + self.c_error) / (b_low + h.low) * (1.0 + DIVIDE + 2.0 * U),
         };
-        // The kernel tests whether −b h is negative; a product that is flushed to zero is not.
+        // The kernel tests whether −b h is negative. A product that is flushed to zero is not negative.
         let may_be_sum = b_low * h.low <= FLUSH;
         let sum = Interval { low: b_low * (1.0 - U), high: b.high * (1.0 + U) };
         Some(if may_be_sum { quotient.union(sum) } else { quotient })
@@ -217,14 +217,14 @@ impl SphereTest {
             low: (-self.c - self.c_error).max(0.0) / (h.high - b.low) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c_error - self.c) / (h.low + (-b.high).max(0.0)) * (1.0 + DIVIDE + 2.0 * U),
         });
-        // The product b h may be flushed to zero only if both or one of them are tiny.
+        // The product b h can be flushed to zero only if one or both of them are tiny.
         let flushed = (b.high < 0.0 && h.low * -b.high <= FLUSH)
             .then(|| Interval { low: 0.0, high: h.high.min(FLUSH.sqrt()) });
         [sum, quotient, flushed].into_iter().flatten().reduce(Interval::union)
     }
 
-    /// Widens a distance so that exact answers, which do not assume that the direction has unit length, are legal as
-    /// well. Only positive distances are hits.
+    /// Widens a distance so that exact answers are legal too, which do not assume that the direction has unit length.
+    /// Only positive distances are hits.
     fn root(&self, root: Option<Interval>, may_miss: &mut bool) -> Option<Interval> {
         let Some(Interval { low, high }) = root else {
             *may_miss = true;
@@ -242,7 +242,7 @@ impl SphereTest {
     }
 }
 
-/// The unit normals that a device may write: those within a distance of one of these.
+/// The unit normals that a device may write: all normals within a distance of one of these two.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LegalNormals {
     sides: [Option<(DVec3, f64)>; 2],
@@ -266,7 +266,7 @@ impl LegalNormals {
         }
     }
 
-    /// The distance of a normal from the nearest exact one, relative to its bound; above 1 it is not legal.
+    /// The distance of a normal from the nearest exact normal, relative to its bound. Above 1 it is not legal.
     pub(super) fn fraction(&self, normal: DVec3) -> f64 {
         let fractions =
             self.sides.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);

@@ -1,4 +1,4 @@
-//! Tests that pictures of scenes in several bricks are those of one brick, to the bit, wherever the bricks are seen.
+//! Tests that scenes in several bricks have the pictures of one brick, to the bit, wherever the bricks are seen.
 
 use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan};
@@ -31,7 +31,7 @@ fn scene() -> Scene {
     Scene::from_f32(spheres::random(3_000, 7, |_| 0.02), LinearRgb::WHITE).unwrap()
 }
 
-/// The scene in trees: in one brick, and in bricks for a binding of some bytes.
+/// The scene in trees: in one brick, and in bricks for a binding of `bytes` bytes.
 fn trees(scene: &Scene, bytes: u64) -> [Accel; 2] {
     [1 << 27, bytes].map(|bytes| {
         AccelPlan::new(scene.spheres(), AccelChoice::Tree, bytes).build(scene.spheres())
@@ -128,7 +128,7 @@ fn bands(_: &'static Headless) {
     }
 }
 
-/// A plan with bricks for a binding of some bytes.
+/// A plan with bricks for a binding of `bytes` bytes.
 fn planned(headless: &Headless, view: &View, choice: AccelChoice, bytes: u64) -> RenderPlan {
     let request = PictureRequest {
         scene: &view.scene,
@@ -142,7 +142,7 @@ fn planned(headless: &Headless, view: &View, choice: AccelChoice, bytes: u64) ->
     RenderPlan::new(&request, structures, &headless.device_limits())
 }
 
-/// Renders without keeping bricks, and returns the picture and how many bricks were built.
+/// Renders without keeping bricks, and returns the picture and the number of bricks that were built.
 fn dropped(headless: &Headless, view: &View, plan: &RenderPlan) -> (Image, usize) {
     let mut built = 0;
     let count = &mut |progress: &UploadProgress| {
@@ -163,7 +163,7 @@ fn dropped(headless: &Headless, view: &View, plan: &RenderPlan) -> (Image, usize
 }
 
 fn one_picture(headless: &'static Headless) {
-    // Some bricks have nested grids, and some have not.
+    // Some bricks have nested grids, and others do not.
     let mut clusters = spheres::clusters(10, 200);
     clusters.extend(spheres::random(2_000, 2, |_| 0.02));
     let scenes = [spheres::random(3_000, 7, |_| 0.05), clusters, vec![[0.5, 0.5, 0.5, 0.2]; 900]];
@@ -187,7 +187,7 @@ fn one_picture(headless: &'static Headless) {
     }
 }
 
-/// A slab of spheres hides what is behind it, and a narrow view leaves out what is beside it.
+/// A slab of spheres hides the spheres behind it, and a narrow view leaves out the spheres beside it.
 fn built(headless: &'static Headless) {
     let mut all = spheres::random(4_000, 7, |_| 0.02);
     // Large spheres before all others.

@@ -1,5 +1,5 @@
-//! Tests of choosing a device, of its properties and failures, of plans and profiles, and that pictures do not depend on what
-//! is chosen by the type of device: the order of rows, and the sizes of tiles and submissions.
+//! Tests of choosing a device, of its properties and failures, of plans and profiles, and that pictures do not depend
+//! on the choices for its type: the order of rows, and the sizes of tiles and submissions.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -107,7 +107,7 @@ fn lost_midway(_: &'static Headless) {
     });
     assert!(told > 0, "the picture is too small for more than one submission");
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
-    // The device stays lost, for pictures in one submission as well.
+    // The device stays lost, even for pictures in one submission.
     let result = render_watched(&headless, go_on);
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
     let view = View::three_spheres();
@@ -119,7 +119,7 @@ fn too_slow(_: &'static Headless) {
     let timeout = Duration::ZERO;
     let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
     let headless = Headless::open(&options).wait().unwrap();
-    // The work of an upload may finish at once, but that of a picture does not.
+    // The work of an upload may finish at once, but the work of a picture does not.
     let result = render_watched(&headless, go_on);
     assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
 }
@@ -136,8 +136,8 @@ fn stopped(headless: &'static Headless) {
     assert_eq!(whole, render_watched(headless, go_on).unwrap());
 }
 
-/// A picture takes at least twelve bytes of host memory for each pixel, which for the largest film is more than the
-/// host can address.
+/// A picture takes at least twelve bytes of host memory for each pixel. For the largest film, this
+/// is more than the host can address.
 fn no_memory(headless: &'static Headless) {
     let film = Film::new(Film::MAX_SIDE, Film::MAX_SIDE).unwrap();
     let view = View { film, ..View::three_spheres() };
@@ -145,7 +145,7 @@ fn no_memory(headless: &'static Headless) {
     assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
 }
 
-/// A device that is treated as one of this type.
+/// A device that is treated as if it had this type.
 fn treated_as(device_type: DeviceType, options: HeadlessOptions) -> Headless {
     let options = HeadlessOptions { device_type: Some(device_type), ..options };
     let headless = Headless::open(&options).wait().unwrap();
@@ -153,7 +153,7 @@ fn treated_as(device_type: DeviceType, options: HeadlessOptions) -> Headless {
     headless
 }
 
-/// However a device is opened, it makes the same pictures.
+/// A device makes the same pictures, regardless of the options with which it was opened.
 fn opened_otherwise(headless: &'static Headless) {
     let mut types = vec![DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::DiscreteGpu];
     types.retain(|kind| *kind != headless.adapter_info().device_type);
@@ -174,7 +174,7 @@ fn opened_otherwise(headless: &'static Headless) {
     }
 }
 
-/// Numbers of tiles on devices that are treated as software and as a GPU, whose pictures must be the same.
+/// Numbers of tiles on devices that are treated as software and as a GPU. Their pictures must be the same.
 fn tiles(mut view: View, size: [u32; 2], layers: LayerSet) -> [u64; 2] {
     view.film = Film::new(size[0], size[1]).unwrap();
     let pictures = [DeviceType::Cpu, DeviceType::DiscreteGpu].map(|device_type| {
@@ -214,7 +214,7 @@ fn fences_in_trace(headless: &Headless) -> TestedProperty {
     report.properties().iter().find(|property| property.name == "fence_in_trace").unwrap().clone()
 }
 
-/// A driver that knows that the zero of fences is one, in kernels that trace rays only.
+/// A driver that assumes that the zero of fences is constant, only in kernels that trace rays.
 fn seen_through(headless: &'static Headless) {
     let sound = fences_in_trace(headless);
     println!("{sound}");
@@ -262,7 +262,7 @@ fn profiled() -> (Headless, Profile) {
     (Headless::open(&options).wait().unwrap(), profile)
 }
 
-/// How often each pass ran, or each phase, by its name.
+/// Number of runs of each pass, or of each phase, by its name.
 fn calls(profile: &Profile, track: ProfileTrack) -> BTreeMap<&'static str, u64> {
     let totals = profile.totals().into_iter().filter(|total| total.track == track);
     totals.map(|total| (total.name, total.calls)).collect()

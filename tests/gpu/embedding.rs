@@ -1,5 +1,5 @@
-//! Tests of recording into the encoder and the textures of another application's device, and of the async forms, which make
-//! the pictures of the blocking forms and return while the device works.
+//! Tests of recording into the encoder and the textures of another application's device, and of the async forms. These
+//! make the same pictures as the blocking forms, and return while the device works.
 
 use std::pin::{Pin, pin};
 use std::sync::{Arc, Mutex};
@@ -39,7 +39,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// With the default limits of WebGPU.
+/// A host whose device has the default limits of WebGPU.
 impl Host {
     pub(crate) fn new() -> Self {
         Self::with_limits(wgpu::Limits::default())
@@ -58,7 +58,7 @@ pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
     [film.width(), film.height()]
 }
 
-/// The expected bytes, computed from the ids of the CPU reference, so that no rounding is involved.
+/// The expected bytes. They are computed from the ids of the CPU reference, so that no rounding is involved.
 pub(crate) fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
     let background = view.settings.background;
@@ -305,7 +305,7 @@ fn same_pictures(headless: &'static Headless) {
         let expected =
             headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
         let seen = view.seen();
-        // How often it returned unfinished depends on how fast the device is.
+        // The speed of the device determines how often it returned unfinished.
         let (_, found) = run(headless.render(&view.scene, &seen, &settings, LayerSet::ALL));
         assert!(found.unwrap() == expected, "{}", settings.integrator.name());
     }
@@ -336,8 +336,8 @@ fn turns(headless: &'static Headless) {
     assert!(found == expected.map(Some));
 }
 
-/// A render that was begun and dropped, while it waited for any of its submissions, neither holds the device nor lets
-/// the next render fail.
+/// A render that was begun and dropped, while it waited for any of its submissions, neither holds the
+/// device nor makes the next render fail.
 fn dropped(headless: &'static Headless) {
     let view = View::three_spheres();
     let seen = view.seen();

@@ -1,5 +1,5 @@
-//! Tests that the checker accepts the paths and the studios of this device, and finds faults that are inserted. What it
-//! judges is also written into a run file and read again, as on a machine without a device.
+//! Tests that the checker accepts the paths and the studios of this device, and finds faults that are inserted.
+//! Recordings are also written into a run file and read again, as on a machine without a device.
 
 use std::io::Cursor;
 
@@ -26,7 +26,7 @@ use crate::{headless, lit_scenes, planted, trial};
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
 
-/// The suites, and how many random scenes each has if all run, with one test for each. For more scenes, run
+/// The suites, and the number of random scenes of each if all run, with one test for each scene. For more scenes, run
 /// `cargo bench --bench verify -- lit-campaign 500`, or `studio-campaign 500`.
 const SUITES: [(&str, u32); 2] = [("paths", 36), ("studio", 48)];
 
@@ -78,7 +78,7 @@ fn chosen(device: &Headless, view: &View) -> Structures {
     view.planned(device, AccelChoice::Auto)
 }
 
-/// Records some samples: of studios the first, one in between, and the last of a picture of many.
+/// Records some samples. In studios, they are the first, one in between, and the last sample of a picture with many.
 fn record(
     device: &Headless,
     view: &View,
@@ -144,7 +144,7 @@ fn legal_in(suite: &str, choice: AccelChoice, binding_bytes: u64) -> Result<(), 
     is_legal(&certify(&view, &record(headless()?, &view, &accel.into())?))
 }
 
-/// Several bricks between which equal spheres are divided.
+/// Several bricks. Equal spheres are in different bricks.
 fn in_bricks(view: &View, choice: AccelChoice) -> Accel {
     let spheres = view.scene.spheres();
     let accel = AccelPlan::new(spheres, choice, SMALL_BINDING).build(spheres);
@@ -167,7 +167,7 @@ fn random(suite: &str, seed: u64) -> Result<(), Failed> {
     println!("seed {seed}: {name}: {certificate}");
     let said = stages.decided + stages.open;
     let is_good = match suite {
-        // The checks of some scenes, such as those with mirrors, say little, but not those of most scenes.
+        // In some scenes, such as scenes with mirrors, many stages are undecided, but not in most scenes.
         "paths" => certificate.outcome() != Outcome::Violated && said > stages.checked / 2,
         _ => certificate.is_legal() && said > stages.checked / 10 * 9,
     };
@@ -205,7 +205,7 @@ fn is_violated(certificate: &LitCertificate) -> Result<(), Failed> {
     }
 }
 
-/// The device was given other inputs than the requested ones, or the recording is damaged.
+/// The inputs of the device differ from the requested ones, or the recording is damaged.
 fn input_fault_is_found(suite: &str, change: Change) -> Result<(), Failed> {
     let view = view_to_change(suite);
     let mut given = view_to_change(suite);
@@ -220,7 +220,7 @@ fn input_fault_is_found(suite: &str, change: Change) -> Result<(), Failed> {
     is_violated(&certify(&view, &samples))
 }
 
-/// For a large film the rectangle in the middle is recorded. Its paths are not legal for another rectangle.
+/// For a large film, the rectangle in the middle is recorded. Its paths are not legal for another rectangle.
 fn part_of_a_large_film() -> Result<(), Failed> {
     let pose = pinhole::camera::Pose::looking_at([0.5, 1.5, 7.0], [0.0; 3], [0.1, 1.0, 0.0])?;
     let camera = Box::new(OrthographicCamera::new(pose, [5.0, 4.5])?);
@@ -246,7 +246,7 @@ fn stops_when_told(headless: &'static Headless) {
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }
 
-/// A recording of the same view by one ray for each pixel, which hits nothing.
+/// A recording of the same view by one ray for each pixel that hits nothing.
 fn nothing(given: &LitInputs) -> Recording {
     let size = [given.film.width(), given.film.height()];
     let pixel = TracedPixel { ray: None, t: NO_HIT, id: NO_ID, shading_ray: None };
@@ -279,15 +279,15 @@ fn replay(scene: &Scene, recording: &LitRecording, certificate: &LitCertificate)
     let checker = Checker::new(&run.scene).unwrap();
     let mut again = LitCertificate::default();
     assert!(file.light(&run, &mut |one| again.join(checker.certify_lit(one))).unwrap());
-    // Every number and text; no number is NaN.
+    // Every number and text must be equal. No number is NaN.
     assert_eq!(&again, certificate);
 }
 
 #[derive(Clone, Copy)]
 enum Change {
-    /// Before the device renders the scene.
+    /// A change before the device renders the scene.
     View(fn(&mut View)),
-    /// After the recording.
+    /// A change after the recording.
     Recording(fn(&mut LitRecording)),
 }
 
@@ -306,7 +306,7 @@ fn of_studio(name: &'static str, change: fn(&mut LitRecording)) -> Input {
     ("studio", name, Change::Recording(change))
 }
 
-/// A scene with all kinds of inputs that can be changed.
+/// A scene that has all kinds of inputs that can be changed.
 fn view_to_change(suite: &str) -> View {
     lit_scenes::view(suite, if suite == "paths" { "everything" } else { "translucent" })
 }

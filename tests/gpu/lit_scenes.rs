@@ -1,6 +1,6 @@
-//! Small lit scenes. Most are files in `tests/gpu/scenes`: those in `light` use every material, light, sky and kernel,
-//! each of those in `paths` and `studio` contains something that makes one kind of fault visible. A scene file can say
-//! neither random spheres nor colours of each sphere.
+//! Small lit scenes. Most are files in `tests/gpu/scenes`. Scenes in `light` use every material, light, sky and
+//! kernel. Each scene in `paths` and `studio` makes one kind of fault visible. A scene file cannot contain
+//! random spheres or colours of each sphere.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ fn file(of: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/gpu/scenes").join(of).join(name)
 }
 
-/// The names of the scene files in a folder that start with some letters.
+/// The names of the scene files in a folder that start with `start`.
 pub(crate) fn names_of_files(of: &str, start: &str) -> Vec<String> {
     let files = std::fs::read_dir(file(of, "")).unwrap().map(|file| file.unwrap().file_name());
     let names = files.map(|name| name.into_string().unwrap());
@@ -50,19 +50,19 @@ pub(crate) fn sampled(name: &str, samples: u32) -> View {
     view
 }
 
-/// The names of the scenes of which every sample is judged: of `paths` or `studio`.
+/// The names of the scenes in `paths` or `studio` of which every sample is judged.
 pub(crate) fn judged(suite: &str) -> Vec<String> {
     let more = match suite {
         "paths" => vec!["many".to_owned(), "own_colors".to_owned()],
         _ => names_of_files("light", "studio_"),
     };
     let mut names = names_of_files(suite, "");
-    // It is for faults; a little more than a twentieth of its stages is open.
+    // This scene is for faults. A little more than a twentieth of its stages is open.
     names.retain(|name| name != "image_over_ground");
     [names, more].concat()
 }
 
-/// A scene of [`judged`], or one that is built of those.
+/// A scene of [`judged`], or one that is built from such scenes.
 pub(crate) fn view(suite: &str, name: &str) -> View {
     match (suite, name) {
         ("paths", "many") => many_for_paths(),
@@ -81,7 +81,7 @@ pub(crate) fn text(of: &str, name: &str) -> String {
     text.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The spheres of a scene file, and what it shows.
+/// The spheres of a scene file, and its view.
 pub(crate) fn read(of: &str, name: &str) -> (Vec<Sphere>, View) {
     let file = SceneFile::parse(&text(of, name)).unwrap();
     let scene = file.scene(&[]).unwrap();
@@ -127,7 +127,7 @@ fn own_colors() -> View {
     View { scene, ..view }
 }
 
-/// So many spheres that a structure is built.
+/// Enough spheres that a structure is built.
 fn many_for_paths() -> View {
     let mut random = fastrand::Rng::with_seed(5);
     let spheres: Vec<_> = (0..300)
@@ -170,7 +170,7 @@ fn thrice() -> View {
     View { scene: Scene::new(&spheres).unwrap(), ..view }
 }
 
-/// So many spheres that there is a structure.
+/// Enough spheres that a structure is built.
 fn many_for_studio() -> View {
     let spheres: Vec<Sphere> = (0..300)
         .map(|i| {

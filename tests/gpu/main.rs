@@ -54,7 +54,7 @@ fn main() {
             verify::trials(),
             written::trials(),
         ];
-        // One of each group by turns: tests beside each other need the same kernels, and a device compiles one at a time.
+        // Groups take turns: tests that follow each other need the same kernels, and a device compiles one at a time.
         let mut trials: Vec<_> =
             groups.into_iter().flat_map(|group| group.into_iter().enumerate()).collect();
         trials.sort_by_key(|(index, _)| *index);

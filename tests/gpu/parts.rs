@@ -38,11 +38,11 @@ const ENVIRONMENT: &str = include_str!("../../shaders/scene/environment.wgsl");
 /// The source of zero that `FENCE` needs: the last word of each question, which is zero.
 const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";
 
-/// Words at which something may overflow, be truncated or be interpreted as signed.
+/// Words that may overflow, be truncated or be interpreted as signed.
 const EXTREMES: [u32; 8] =
     [0, 1, 0x00ff_ffff, 0x0100_0000, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, u32::MAX];
 
-/// All combinations of extreme words, and random words: small ones, as they occur in pictures, and arbitrary ones.
+/// All combinations of extreme words, and random words: small words, as in pictures, and arbitrary ones.
 fn questions(count: usize) -> Vec<[u32; 4]> {
     let mut random = fastrand::Rng::with_seed(7);
     let at = |i: usize, digit: u32| EXTREMES[i / EXTREMES.len().pow(digit) % EXTREMES.len()];
@@ -88,8 +88,8 @@ fn unit_numbers(headless: &'static Headless) {
     });
 }
 
-/// The allowed error is a few ULP: if each result may be either neighbour of the exact one, the relative errors of the
-/// difference, the product and the sum are at most 2⁻²³ each.
+/// The allowed error is a few ULP: if each result may be either neighbour of the exact result, the relative errors of
+/// the difference, the product and the sum are at most 2⁻²³ each.
 fn filter_offsets(headless: &'static Headless) {
     let questions = questions(1 << 16);
     for &filter in PixelFilter::ALL {
@@ -219,7 +219,7 @@ fn rotations() -> [[f32; 2]; 3] {
 }
 
 /// Distance from the edge of a texel, in turns, within which a device may assign a direction to the neighbouring texel.
-/// It is the error of the angles and of the rounding of their arguments.
+/// It includes the error of the angles and of the rounding of their arguments.
 const EDGE: f64 = 1.0 / (1 << 21) as f64;
 
 fn environment_lookup(headless: &'static Headless) {
@@ -309,7 +309,7 @@ fn black_environment(headless: &'static Headless) {
     }
 }
 
-/// The WGSL before the parts, which declares the buffers of questions and answers.
+/// The WGSL before the parts. It declares the buffers of questions and answers.
 const BINDINGS: &str = "
 @group(0) @binding(0) var<storage, read> questions: array<vec4u>;
 @group(0) @binding(1) var<storage, read_write> answers: array<vec4u>;

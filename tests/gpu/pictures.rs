@@ -1,5 +1,5 @@
-//! Pictures of a device: those in which every byte is known, their agreement with the CPU reference, and parts
-//! of a film, which have the pixels of the whole, to the bit.
+//! Tests of pictures of a device: pictures in which every byte is known, agreement with the CPU reference, and parts of
+//! a film, which have the same pixels as the whole, to the bit.
 
 use glam::DVec3;
 use libtest_mimic::Trial;
@@ -48,7 +48,7 @@ fn every_layer_alone(headless: &'static Headless) {
 
 /// If the eye is on the sphere up to rounding and looks along the surface, nearly all terms cancel. Such a ray may hit
 /// or miss. It deviates from the middle plane by at most 10⁻⁵ of its length, so its chord in the sphere is shorter than
-/// 10⁻³, also after some roundings of f32: √(8 · 2⁻²⁴) is 7 · 10⁻⁴.
+/// 10⁻³, even after some roundings of f32: √(8 · 2⁻²⁴) is 7 · 10⁻⁴.
 fn on_the_wall(headless: &'static Headless) {
     let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(64, 64).unwrap();
@@ -80,7 +80,7 @@ fn very_tall(headless: &'static Headless) {
     assert!(image.id().unwrap() == view.reference().id().unwrap());
 }
 
-/// Goes on to the end.
+/// A callback that always continues.
 pub(crate) fn go_on(_: &Progress) -> Decision {
     Decision::GoOn
 }
@@ -90,19 +90,19 @@ impl View {
         device.render(&self.scene, &self.seen(), &self.settings, layers).wait().unwrap()
     }
 
-    /// All layers of a picture of the scene in a structure.
+    /// All layers of a picture of the scene, which is traced in a structure.
     pub(crate) fn traced(&self, device: &Headless, accel: &Accel) -> Result<Image, GpuError> {
         let scene = device.upload(&self.scene, &accel.clone().into()).wait()?;
         Ok(self.watched(device, &scene, LayerSet::ALL, &mut go_on)?.image)
     }
 
-    /// The scene in a structure, without one for occluders.
+    /// The uploaded scene with one structure, without a structure for occluders.
     pub(crate) fn uploaded(&self, device: &Headless, choice: AccelChoice) -> SceneBuffers {
         let accel = device.plan_accel(&self.scene, choice).build(self.scene.spheres());
         device.upload(&self.scene, &accel.into()).wait().unwrap()
     }
 
-    /// The structures that a device plans, with one for occluders if that is needed.
+    /// The structures that a device plans, including a structure for occluders if it is needed.
     pub(crate) fn planned(&self, device: &Headless, choice: AccelChoice) -> Structures {
         let (scene, seen) = (&self.scene, self.seen());
         let request = PictureRequest::new(scene, &seen, &self.settings, LayerSet::COLOR);
@@ -177,7 +177,7 @@ fn parts_of_films() -> Vec<Trial> {
     lit.chain(others).collect()
 }
 
-/// Compares the whole with parts that are no multiples of workgroups.
+/// Compares the whole with parts whose sizes are not multiples of workgroups.
 fn check_parts(device: &Headless, view: &View, settings: &RenderSettings) {
     let (scene, view) = (&view.scene, view.seen());
     let wanted = LayerSet::ALL;

@@ -1,4 +1,4 @@
-//! Faults that are planted into shaders: the list of them, and devices that have one.
+//! Faults that are planted into shaders: their list, and devices with one of them.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -32,13 +32,13 @@ static LIST: LazyLock<Result<Vec<Fault>, String>> =
 pub(crate) struct Fault {
     suite: &'static str,
     pub(crate) name: &'static str,
-    /// What else its suite must know, such as the scene in which the fault is visible.
+    /// Other words that its suite needs, such as the scene in which the fault is visible.
     pub(crate) setup: Vec<&'static str>,
     pub(crate) edit: ShaderEdit,
 }
 
 impl Fault {
-    /// Its setup, of which there is this much.
+    /// Returns its setup, which must have `COUNT` words.
     pub(crate) fn setup<const COUNT: usize>(&self) -> [&'static str; COUNT] {
         let setup = self.setup.as_slice().try_into();
         setup.unwrap_or_else(|_| panic!("{}: {:?} are not {COUNT} words", self.name, self.setup))
@@ -57,13 +57,13 @@ pub(crate) fn planted(suite: &str) -> impl Iterator<Item = Fault> {
     all.iter().filter(move |fault| fault.suite == suite).cloned()
 }
 
-/// What has a name in a table.
+/// The value with this name in a table.
 pub(crate) fn named<T: Copy>(table: &[(&str, T)], name: &str) -> T {
     let found = table.iter().find(|(other, _)| *other == name);
     found.unwrap_or_else(|| panic!("nothing is named {name}")).1
 }
 
-/// Tests for some faults, an eighth of which runs by default: each opens a device and renders.
+/// Tests for some faults, an eighth of which runs by default. Each test opens a device and renders.
 pub(crate) fn trials(
     group: &str,
     faults: impl Iterator<Item = Fault>,
@@ -73,7 +73,7 @@ pub(crate) fn trials(
         .map(move |fault| Trial::test(format!("{group}{}", fault.name), move || is_found(&fault)))
 }
 
-/// Opens a device one part of whose shaders is edited. `file` may name a variant: `file.wgsl#variant`.
+/// Opens a device with an edit of one part of its shaders. `file` may name a variant: `file.wgsl#variant`.
 pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
     check_text(file, find)?;
     let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
@@ -81,7 +81,7 @@ pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, 
         .wait()?)
 }
 
-/// Refuses a text to edit that is not in its file.
+/// Returns an error if a text to edit is not in its file.
 fn check_text(file: &str, text: &str) -> Result<(), Failed> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("shaders")
@@ -135,7 +135,7 @@ fn parse_fault(suite: &'static str, line: &'static str) -> Option<Fault> {
     })
 }
 
-/// No fault is lost unseen: all can be planted, also those that do not run, and the parser refuses what is not a list.
+/// Tests that all faults can be planted, including those that do not run, and that the parser refuses malformed lists.
 pub(crate) fn checks() -> Vec<Trial> {
     let fit = Trial::test("planted::every_fault_can_be_planted", || {
         let mut all = SUITES.into_iter().flat_map(planted);

@@ -1,5 +1,5 @@
-//! Tests that ray queries find what the other structures find, where the adapter has them; otherwise these tests count
-//! as ignored. Debian's Mesa 22.3 has none; `tests/drivers/run.sh` runs them with other drivers.
+//! Tests that ray queries find the same hits as other structures. If the adapter has no ray queries, these tests count
+//! as ignored. Debian's Mesa 22.3 has none. `tests/drivers/run.sh` runs the tests with other drivers.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ static DEVICE: LazyLock<Result<Headless, GpuError>> = LazyLock::new(|| {
     Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() }).wait()
 });
 
-/// The margins of boxes that must not suffice, as multiples of the one that is used: they cut spheres.
+/// Margins of boxes that are too small, as a multiple of the margin in use: the boxes cut spheres.
 const TOO_SMALL: f32 = -60.0;
 
 fn device() -> Result<&'static Headless, Failed> {
@@ -54,7 +54,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Ray queries choose which spheres are tested; the tests have the same bits.
+/// Ray queries choose which spheres are tested. The results of the tests have the same bits.
 fn finds_the_same() -> Result<(), Failed> {
     for (name, spheres) in [
         ("small", spheres::random(6000, 5, |_| 1e-3)),
@@ -79,7 +79,7 @@ fn cut_spheres_are_found() -> Result<(), Failed> {
     })
 }
 
-/// A device that was opened without ray queries, or that has none, refuses them by name.
+/// A device that was opened without ray queries, or that has none, returns an error that names them.
 fn refused() -> Result<(), Failed> {
     let webgpu = HeadlessOptions { limits: LimitChoice::WebGpu, ..HeadlessOptions::default() };
     let scene = Scene::from_f32(spheres::random(300, 6, |_| 0.03), LinearRgb::WHITE)?;

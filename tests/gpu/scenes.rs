@@ -1,4 +1,4 @@
-//! Scenes for which all back ends must render the same picture. Those that need no random spheres are files in
+//! Scenes for which all back ends must render the same picture. Scenes without random spheres are files in
 //! `tests/gpu/scenes/primary`.
 
 use pinhole::camera::film::YAxis;
@@ -120,7 +120,7 @@ fn tiny_radii() -> View {
     view(&spheres, pinhole(eye, center, 30.0, 1.0), [96, 96])
 }
 
-/// Pebbles on a ground that is a sphere of radius 10⁶.
+/// Pebbles on a ground, which is a sphere of radius 10⁶.
 fn huge_radius() -> View {
     let mut spheres = vec![sphere([0.0, -1e6, 0.0], 1e6)];
     spheres.extend((0..25).map(|i| sphere([f64::from(i % 5) - 2.0, 0.3, -f64::from(i / 5)], 0.3)));
@@ -162,7 +162,7 @@ fn random_with_size(width: u32, height: u32) -> View {
     view(&random_spheres(7, 60, 0.4), camera, [width, height])
 }
 
-/// There are more spheres than one dispatch tests, and the nearest are among the last.
+/// A scene with more spheres than one dispatch tests. The nearest are among the last.
 fn more_than_one_slice() -> View {
     let mut spheres = random_spheres(8, 120_000, 0.01);
     spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
@@ -187,7 +187,7 @@ fn wide_pinhole(pose: Pose) -> PinholeCamera {
     PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap()
 }
 
-/// The distance between the eyes is unrealistically large, so that rays are shifted far.
+/// A stereo pair. The distance between the eyes is unrealistically large, so that rays are shifted far.
 fn eyes(pose: Pose) -> [PinholeCamera; 2] {
     wide_pinhole(pose).stereo_pair(1.0, 4.0).unwrap()
 }

@@ -1,9 +1,9 @@
 //! Tests that every structure gives the same picture as testing all spheres: the same spheres at the same distances, to
 //! the bit, in one brick or in several.
 //!
-//! The division of a picture into slices depends on the clock, and no option fixes it. But slices are small at first
-//! and adapt to the measured times, so two renders of a large film are rarely divided in the same way; `slices`
-//! compares some.
+//! The division of a picture into slices depends on the clock, and no option fixes it. But slices are small
+//! at first and adapt to the measured times, so two renders of a large film are rarely divided in the same
+//! way. The test `slices` compares some.
 
 use std::sync::LazyLock;
 
@@ -28,7 +28,7 @@ use crate::support::compare::{Picture, compare};
 use crate::support::spheres::{self, Spheres};
 use crate::trial;
 
-/// Maximum sizes of a binding in bytes, for one brick and for several.
+/// Maximum sizes of a binding in bytes, for one brick and for several bricks.
 const ROOMY: u64 = 1 << 27;
 const TINY: u64 = 16 * 600;
 const TINY_FOR_BALLS: u64 = (1 << 20) + 68 * 600;
@@ -56,7 +56,7 @@ fn all_scenes() -> Vec<NamedSpheres> {
         ("clusters", || spheres::clusters(10, 200)),
         ("crowd", || spheres::crowd(1_500)),
         ("far", || {
-            // Some spheres are too small to be visible, and some are not.
+            // Some spheres are too small to be visible, and others are not.
             let mut spheres = spheres::far(800);
             spheres.extend(spheres::scaled(&spheres::random(200, 24, |_| 0.03), 1e7));
             spheres
@@ -190,7 +190,7 @@ fn outliers(headless: &'static Headless) {
     }
 }
 
-/// A tree whose boxes are not wider for rays that start far from the crowd loses spheres.
+/// A tree loses spheres if its boxes are not widened for rays that start far from the crowd.
 fn unwidened(headless: &'static Headless) {
     let scene = white(spheres::crowd_and_outliers(3_000, 3, 1e5, false));
     let widening = "max(0x1p-17 * farthest - brick.crowd_margin, 0.0)";
@@ -222,15 +222,15 @@ fn slices(headless: &'static Headless) {
         };
         let image = view.watched(headless, &buffers, LayerSet::ALL, watch).unwrap().image;
         assert!(told.is_sorted(), "{told:?}");
-        // There are two tiles, and all of both is traced.
+        // There are two tiles, and both are traced completely.
         assert!(told.len() >= 2 && told.last() == Some(&1.0), "{told:?}");
         let expected = first.get_or_insert_with(|| image.clone());
         assert_same(&choice.to_string(), &[image], std::slice::from_ref(expected));
     }
 }
 
-/// For every structure, in one brick and in several, the search for any hit reports one exactly where the picture of the
-/// list has a sphere, and that picture agrees with the reference.
+/// For every structure, in one brick and in several, the search for any hit reports a hit exactly where the picture of
+/// the list has a sphere. This picture agrees with the reference.
 fn any(headless: &'static Headless) {
     let host = Host::new();
     let mut met = Vec::new();
@@ -256,11 +256,11 @@ fn any(headless: &'static Headless) {
     assert!(Structure::ALL.iter().all(|structure| met.contains(structure)), "{met:?}");
 }
 
-/// What `trace` does once for each brick: it finds the nearest sphere.
+/// The statement of `trace` that runs once for each brick: it finds the nearest sphere.
 const NEAREST: &str =
     "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
 
-/// What it does instead here: it looks for any sphere, and records one by the distance 0 and no id.
+/// The statement that replaces it: it looks for any sphere, and records a hit as distance 0 without an id.
 const ANY: &str = "
     let is_known = hit_before(index).t < NO_HIT;
     var t = select(NO_HIT, 0.0, is_known);
@@ -270,7 +270,7 @@ const ANY: &str = "
     store_hit(index, Hit(t, NO_ID, 0u, 0.0));
 ";
 
-/// For each pixel, whether its ray hits anything, which is the case where the depth layer has no miss.
+/// For each pixel, whether its ray hits a sphere: the depth layer then has no miss.
 fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
     let View { scene, camera, film, settings } = view;
     let options = RendererOptions {
@@ -326,7 +326,7 @@ fn long_list(headless: &'static Headless) {
 }
 
 /// A ray must test 30,000 spheres that are in one cell, and in all nodes. This exceeds the iteration limit of a
-/// software device; all other devices must render the same picture as the list.
+/// software device. All other devices must render the same picture as the list.
 fn too_many_steps(headless: &'static Headless) {
     let scene = white(spheres::nearly_coincident(30_000));
     let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();

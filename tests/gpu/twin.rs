@@ -1,6 +1,6 @@
-//! Tests that kernels compute the same as plain f32, to the bit, on versions of lavapipe that round to nearest and fuse
-//! no operations; on these drivers this is stricter than legality. And tests of rays through points of the lens other than
-//! its centre: pictures with one ray for each pixel have no such rays, so the kernel is edited to use another point.
+//! Tests that kernels give the results of plain f32, to the bit, on versions of lavapipe that round to nearest and fuse
+//! no operations. On these drivers, this is stricter than legality. Also tests rays through points of the lens beside
+//! its centre. Pictures with one ray for each pixel lack them, so the kernel is edited to use another point.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
@@ -18,7 +18,7 @@ use crate::support::View;
 use crate::support::legal_device::{Habit, LegalDevice};
 use crate::{scenes, verify};
 
-/// The versions of lavapipe that are known to round to nearest and fuse nothing. Mesa 26.2 is known to differ.
+/// The versions of lavapipe that are known to round to nearest and fuse no operations. Mesa 26.2 is known to differ.
 const PLAIN: [&str; 2] = ["Mesa 22.3", "Mesa 25.0"];
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -33,8 +33,8 @@ pub(crate) fn trials() -> Vec<Trial> {
     twins.chain(lens).collect()
 }
 
-/// Whether the driver computes exactly like plain f32. Other drivers are legal although they differ, see
-/// docs/drivers.md.
+/// The reason if the driver does not compute exactly like plain f32. Such drivers are legal
+/// although they differ, see docs/drivers.md.
 fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
     let info = headless.adapter_info();
     let is_plain = PLAIN.iter().any(|version| info.driver_info.starts_with(version));
@@ -102,7 +102,7 @@ fn bits(v: [f32; 3]) -> [u32; 3] {
 const POINTS: [[f32; 2]; 7] =
     [[0.5, 0.5], [0.9, 0.6], [0.4, 0.1], [0.1, 0.45], [0.3, 0.95], [0.75, 0.75], [0.0, 0.5]];
 
-/// Maximum distance between a unit direction and that of the reference: twenty roundings of f32.
+/// Maximum distance between a unit direction and the direction of the reference: twenty roundings of f32.
 const NEAR: f64 = 20.0 / (1 << 24) as f64;
 
 fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {

@@ -1,5 +1,5 @@
-//! Tests that pictures of every kind of colours are identical to those of spheres with individual colours, and those of an
-//! updated scene to those of a scene that was created with the new values.
+//! Tests that pictures of every kind of colours are identical to pictures of spheres with individual colours. The same
+//! for an updated scene and a scene that was created with the new values.
 
 use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
@@ -78,7 +78,7 @@ fn updated(mut scene: Scene) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A brick may contain copies of a sphere that is also in other bricks, or not contain it.
+/// A brick may lack a sphere, or contain copies of a sphere that is also in other bricks.
 fn in_bricks(headless: &'static Headless) {
     let [_, _, rgba8] = [0, 4, 8].map(|kind| kinds().swap_remove(kind));
     let mut scene = rgba8.scene;

@@ -62,11 +62,11 @@ const STRUCTURES: &[(&str, How)] = &[
     ("list", LIST),
     ("grid", how(AccelChoice::Grid)),
     ("tree", how(AccelChoice::Tree)),
-    // A size of bindings so small that there are several bricks.
+    // Bindings are so small that there are several bricks.
     ("bricks", How { binding_bytes: 16 * 100, ..LIST }),
 ];
 
-/// Scenes in which rounding decides what many pixels show: cameras on a surface, and rays along surfaces.
+/// Scenes in which rounding decides which sphere many pixels show: cameras on a surface, and rays along surfaces.
 const UNDECIDED: [&str; 4] =
     ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
 
@@ -82,7 +82,7 @@ fn legal(name: &str, view: &View) -> Result<(), Failed> {
     }
 }
 
-/// By exact rays, as the answers of any renderer are judged.
+/// Judges a picture by exact rays, like the answers of any renderer.
 fn certified(view: &View) -> Result<(), Failed> {
     let image = view.picture(headless()?, LayerSet::DATA);
     let depths: Vec<f64> =
@@ -121,7 +121,7 @@ fn view_of(fault: &Fault) -> (View, How) {
     (named(VIEWS, view)(), named(STRUCTURES, how))
 }
 
-/// The views in which faults are inserted are legal without them.
+/// Tests that the views in which faults are inserted are legal without them.
 fn none_without_one() -> Result<(), Failed> {
     let mut seen = Vec::new();
     for fault in planted("primary") {
@@ -154,7 +154,7 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A fault that only affects pictures without a recording.
+/// Tests a fault that only affects pictures without a recording.
 fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
     let faulty = fault.device()?;
     let [view] = fault.setup();
@@ -172,11 +172,11 @@ fn fault_of_render_is_found(fault: &Fault) -> Result<(), Failed> {
     }
 }
 
-/// Changes the input of the device, or the recorded input. The index of a visible sphere is given to change that
-/// sphere.
+/// Changes the input of the device, or the recorded input. The last argument is the index of a
+/// visible sphere, which may be changed.
 type Spoil = fn(&mut View, &mut dyn FnMut(&View) -> Recording, usize) -> Recording;
 
-/// The recording is of a different view than the requested one.
+/// Faults with which the recording shows a different view than the requested one.
 const INPUT_FAULTS: &[(&str, Spoil)] = &[
     ("radius_off_by_a_thousandth", |view, record, seen| {
         with_spheres(view, record, |spheres| spheres[seen].radius *= 1.0 + 2_f64.powi(-10))
@@ -234,7 +234,7 @@ const INPUT_FAULTS: &[(&str, Spoil)] = &[
     }),
 ];
 
-/// Records a picture of different spheres than those of the view.
+/// Records a picture of spheres that differ from the spheres of the view.
 fn with_spheres(
     view: &mut View,
     record: &mut dyn FnMut(&View) -> Recording,
@@ -259,7 +259,7 @@ fn input_fault_is_found(spoil: Spoil) -> Result<(), Failed> {
     found(&certify(&view, &recording))
 }
 
-/// Makes a view.
+/// A function that makes a view.
 type Make = fn() -> View;
 
 pub(crate) const VIEWS: &[(&str, Make)] = &[
@@ -340,7 +340,7 @@ pub(crate) fn disk() -> View {
     view(&spheres, camera, [96, 80])
 }
 
-/// A view from inside a large sphere, with others inside and around it.
+/// A view from inside a large sphere, with other spheres inside and around it.
 pub(crate) fn inside() -> View {
     let mut spheres = random(60, 32);
     spheres.push(colored([0.0; 3], 5.0, 3));
@@ -386,7 +386,7 @@ pub(crate) fn clusters() -> View {
     view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0, 1.2), [96, 80])
 }
 
-/// The same spheres, but small in a large box.
+/// The spheres of [`clusters`], but small in a large box.
 pub(crate) fn far_clusters() -> View {
     let mut spheres = in_clusters();
     spheres.push(colored([40.0, 60.0, 120.0], 0.5, 5));

@@ -1,4 +1,4 @@
-//! Pictures as they stand in files: those of this device are never accused, and faults of what renders them are found.
+//! Tests that pictures in files are never accused if this device rendered them, and that faults of rendering are found.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
@@ -23,7 +23,7 @@ const OF_LAYERS: [&str; 5] = [
     "distance_forgotten",
 ];
 
-/// Faults below the bounds of all rays together that a device may compute. With the recorded rays they are found.
+/// Faults below the bounds of all rays together that a device may compute. They are found if rays are recorded.
 const TOO_SMALL: [&str; 3] = [
     "origin_off_by_a_hundred_thousandth",
     "normal_turned_by_a_thirty_thousandth",
@@ -61,7 +61,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Judges light as it is, and samples of 16 bits.
+/// Judges light without encoding, and samples of 16 bits.
 fn certified(view: &View, image: &Image) -> Result<[WrittenCertificate; 2], Failed> {
     let View { scene, settings, .. } = view;
     let size = [image.width(), image.height()];
@@ -95,7 +95,7 @@ fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
     }
 }
 
-/// Compares with the reference, which has another seed.
+/// Compares a picture with the reference, which has another seed.
 fn means(device: &Headless, view: &View) -> Result<Means, Failed> {
     let View { scene, settings, .. } = view;
     let mut settings = settings.clone();

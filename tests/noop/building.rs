@@ -1,5 +1,5 @@
-//! Renderers that are built on another thread, one pipeline at a time, or by async forms, which never wait for one another
-//! on a native device.
+//! Tests of renderers that are built on another thread, one pipeline at a time, or by async forms. On a native device
+//! these never wait for one another.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
@@ -66,7 +66,7 @@ fn a_renderer_is_built_piece_by_piece() {
     assert_eq!(renderer.build_next(&host.device), Ok(0));
 }
 
-/// The pipelines of a frame are built before the others, whatever the order of the options.
+/// The pipelines of a frame are built before the others, regardless of the order of the options.
 #[test]
 fn the_pipelines_of_a_frame_are_built_first() {
     let host = Host::new();
@@ -140,7 +140,7 @@ fn everything_is_made_without_waiting() {
     at_once(Recolor::new(&host.device)).unwrap();
 }
 
-/// What wgpu refuses is a value, in the async form as in the blocking one, and names file and line.
+/// A call that wgpu refuses gives an error that names file and line, in async and blocking forms.
 #[test]
 fn what_wgpu_refuses_is_a_value() {
     let host = Host::new();
@@ -160,7 +160,7 @@ fn broken() -> ShaderEdit {
     }
 }
 
-/// The futures of adapter choice can be sent as well. They are not polled, because they would look for drivers.
+/// The futures of adapter choice can be sent too. They are not polled, because they would look for drivers.
 #[test]
 fn adapters_are_found_by_futures_that_can_be_sent() {
     fn can_be_sent<T: Send>(_: &T) {}

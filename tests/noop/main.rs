@@ -1,5 +1,5 @@
-//! What a host program relies on, tested on wgpu's `noop` device. It has WebGPU's default limits and no features, checks
-//! every call as any device does, and executes nothing. No driver is needed.
+//! Tests of the guarantees for host programs on wgpu's `noop` device. It has WebGPU's default limits and no features,
+//! checks every call as any device does, and executes nothing. No driver is needed.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 mod building;
@@ -20,7 +20,7 @@ use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use host_program::Host;
 
-/// With WebGPU's default limits and features.
+/// A host whose device has WebGPU's default limits and features.
 impl Host {
     fn new() -> Self {
         let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
@@ -44,7 +44,7 @@ impl Host {
         self.with_targets(options, size, frame)
     }
 
-    /// Runs `work` and returns what the device refuses of it.
+    /// Runs `work` and returns the error of the device, if it refuses a call.
     fn refused(&self, work: impl FnOnce()) -> Option<String> {
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         work();
@@ -89,7 +89,7 @@ fn film() -> Film {
     Film::new(SIZE[0], SIZE[1]).unwrap()
 }
 
-/// A frame of a scene whose view is set, and that is ready to be recorded.
+/// A scene, and a frame of it whose view is set, so that it can be recorded.
 fn ready(host: &Host, renderer: &Renderer, options: &RendererOptions) -> (SceneBuffers, Frame) {
     let buffers = host.scene(renderer, &scene(), AccelChoice::Auto, 1 << 27);
     let mut frame = host.frame(renderer, options, SIZE);
@@ -103,7 +103,7 @@ fn file(path: &str) -> String {
     std::fs::read_to_string(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
-/// Every requirement of wgpu in the manifest is of the version that the library and its documentation name.
+/// Tests that every requirement of wgpu in the manifests has the version that the library and its documentation name.
 #[test]
 fn the_documented_version_of_wgpu_is_that_of_the_manifest() {
     let manifest = file("Cargo.toml");

@@ -1,4 +1,4 @@
-//! Every kind of pass, recorded and submitted on a device with WebGPU's default limits and no features.
+//! Tests that record and submit every kind of pass on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
 use pinhole::gpu::{

@@ -1,5 +1,5 @@
-//! The cost of recording a frame: nothing is created, submitted, awaited or read back, by what wgpu logs of the calls
-//! that a thread makes.
+//! Tests that recording a frame creates, submits, awaits and reads back nothing. They count the
+//! calls of a thread that wgpu logs.
 
 use std::cell::RefCell;
 use std::sync::Once;
@@ -20,7 +20,7 @@ use crate::{SIZE, film, pinhole_camera, ready, scene};
 pub(crate) struct Calls {
     /// Resources of any kind that were created.
     pub(crate) created: u32,
-    /// Writes that were queued. wgpu copies what is written to memory of its own.
+    /// Writes that were queued. wgpu copies the written data to its own memory.
     pub(crate) writes: u32,
     pub(crate) submitted: u32,
     /// Calls that wait for the device or ask whether it is done.
@@ -82,7 +82,7 @@ pub(crate) fn calls_of<T>(work: impl FnOnce() -> T) -> (Calls, T) {
     (CALLS.take(), result)
 }
 
-/// The counts below mean something: each kind of call is seen.
+/// The counts below are meaningful: each kind of call is seen.
 #[test]
 fn every_kind_of_call_is_counted() {
     let host = Host::new();
@@ -121,7 +121,7 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
             let settings = RenderSettings::default();
             let (set, done) = calls_of(|| frame.set_view(&host.queue, &scene, &view, &settings));
             done.unwrap();
-            // One write of less than a kilobyte.
+            // A single write of less than a kilobyte.
             assert_eq!(set, Calls { writes: 1, all: set.all, ..Calls::default() });
             let mut encoder = host.encoder();
             let (recorded, done) = calls_of(|| renderer.record(&mut encoder, &scene, &frame));
@@ -139,8 +139,8 @@ fn lit_renderer(host: &Host) -> (RendererOptions, SceneBuffers, LitRenderer) {
     (options, scene, LitRenderer::new(renderer))
 }
 
-/// Lit pictures allocate nothing while the camera moves and while samples accumulate. Each recording asks for a few
-/// bytes to be mapped when it is submitted, and reads those of an earlier one.
+/// Lit pictures allocate nothing while the camera moves and while samples accumulate. When a recording is submitted, it
+/// asks for a few bytes to be mapped, and it reads the bytes of an earlier recording.
 #[test]
 fn lit_pictures_create_submit_and_await_nothing() {
     let host = Host::new();

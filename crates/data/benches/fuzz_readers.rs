@@ -33,12 +33,12 @@ mod seeds;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// The most memory that reading a file may take: so many bytes for each of its bytes, and some more. Zlib expands a byte
-/// to 1032 at most; text of one digit becomes a number of eight bytes in a list that has doubled.
+/// Maximum memory for reading a file: bytes for each of its bytes, and additional bytes. Zlib expands a byte to 1032 at
+/// most. A digit of text becomes a number of eight bytes in a list that has doubled.
 const BYTES_PER_BYTE: usize = 64;
 const MORE_BYTES: usize = 1 << 22;
 
-/// How many failures of each format are written.
+/// Number of failures of each format that are written.
 const SHOWN: u64 = 3;
 
 fn main() {
@@ -58,7 +58,7 @@ fn main() {
     assert_eq!(failed, 0, "so many files failed");
 }
 
-/// Reads damaged files of one format, and returns how many failed.
+/// Reads damaged files of one format, and returns the number of failures.
 fn run(format: &'static Format, count: u64, first: u64) -> u64 {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");

@@ -17,7 +17,7 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 /// Callback after every submission. An error that it returns ends the work.
 pub(crate) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
 
-/// The passes of a lit picture, and what they are given.
+/// The passes of a lit picture, and their inputs.
 #[derive(Clone, Copy)]
 pub(crate) struct LitWork<'a> {
     pub(crate) headless: &'a Headless,
@@ -57,7 +57,7 @@ pub(crate) struct Flow<'a> {
     encoder: Option<CommandEncoder>,
     /// Number of workgroups of searches in the encoder.
     gathered: u64,
-    /// Tiles that the encoder accumulates samples of, each with its number of samples after that.
+    /// Tiles for which the encoder accumulates samples, each with its number of samples afterwards.
     accumulated: Vec<(usize, u32)>,
     /// The submission that the device is executing.
     submitted: Option<Submission>,
@@ -151,7 +151,7 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Notes how many samples the tile has after a dispatch, if it completes some.
+    /// Notes the number of samples that the tile has after a dispatch, if the dispatch completes some.
     fn note_samples(&mut self, step: &Step<'a>) {
         if step.moment == Some(Moment::Accumulated) {
             self.accumulated.push((self.recorder.tile, step.samples_after()));
@@ -164,8 +164,8 @@ impl<'a> Flow<'a> {
         self.recorder.record(encoder, step, slice);
     }
 
-    /// Submits the recorded commands, and waits until the previous submission has finished. Where the host's clock
-    /// measures passes, it waits for this one too, so that the time of a pass never includes that of the next.
+    /// Submits the recorded commands, and waits until the previous submission has finished. If the host's clock
+    /// measures passes, waits for this submission too, so that the time of a pass never includes that of the next.
     async fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         self.hand_over(after).await?;
         if !self.headless.submits_one_by_one() {

@@ -26,9 +26,9 @@ pub type EachSample<'a> = dyn FnMut(&LitRecording) + 'a;
 impl Headless {
     /// Takes some samples of a lit picture one by one and records the state of every path, or of every ray of a studio,
     /// after every pass, from which [`Checker::certify_lit`](crate::verify::Checker::certify_lit) judges the device.
-    /// `each` is called with the recording of each sample; the sums of pixels go on from one to the next. If a side of
-    /// the film has more than 256 pixels, only a rectangle in the middle of the film is recorded, and in a studio with
-    /// many lights or directions of ambient light a smaller one. The passes are those that take samples step by step.
+    /// `each` is called with the recording of each sample. The sums of pixels continue from one sample to the next. If
+    /// a side of the film has more than 256 pixels, only a rectangle in the middle of the film is recorded, and in a
+    /// studio with many lights or directions of ambient light a smaller one. The passes take samples step by step.
     ///
     /// # Errors
     /// [`GpuError::NotLit`] if the integrator is `primary`; the same errors as for [`Headless::render_uploaded`];
@@ -52,7 +52,7 @@ impl Headless {
         let side = if is_studio { longest_side(lighting) } else { LONGEST_SIDE };
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
         let mut keeper = Keeper::new(inputs(&scenes, lighting, tile));
-        // What is recorded lies between the passes.
+        // Recorded states exist only between passes, so the samples are taken step by step.
         let mut attempt = Attempt::Steps;
         let key = attempt.key(scenes.key(lighting, &self.device.limits()));
         self.with_lit_passes(key, async |passes: &LitPasses| {
@@ -120,12 +120,12 @@ impl LitWork<'_> {
     }
 }
 
-/// What [`Headless::record_lit`] records.
+/// The part and the samples of a picture that [`Headless::record_lit`] records.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRequest<'a> {
     /// The part of the picture.
     pub part: LitPart,
-    /// The numbers of the samples, which are counted from 0.
+    /// Indices of the samples, from 0.
     pub samples: &'a [u32],
 }
 
@@ -137,20 +137,20 @@ impl<'a> SampleRequest<'a> {
     }
 }
 
-/// The part of a lit picture of which samples are recorded.
+/// The recorded part of a lit picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LitPart {
     /// A rectangle in the middle.
     Middle,
-    /// A rectangle with half the sides, at a place that follows from this seed; nothing if [`LitPart::Middle`] is the whole
-    /// picture. Every pixel has about the same chance, those at the edges a larger one.
+    /// A rectangle with half the sides, at a place that follows from this seed; nothing if [`LitPart::Middle`] is the
+    /// whole picture. Every pixel has about the same chance, and pixels at edges a larger one.
     Random(u32),
 }
 
 impl LitPart {
-    /// The rectangle of a film of which one with sides of at most `longest_side` is recorded whole. Of a larger film, both
-    /// rectangles together have no more pixels than a square with that side.
+    /// The rectangle for a film, which is recorded whole if its sides are at most `longest_side`. For a larger film,
+    /// both rectangles together have no more pixels than a square with that side.
     fn tile(self, film: &Film, longest_side: u32) -> Option<Tile> {
         let film = [film.width(), film.height()];
         let is_larger = film.iter().any(|side| *side > longest_side);
@@ -162,7 +162,7 @@ impl LitPart {
             Self::Random(seed) => {
                 let size = middle.map(|side| side.div_ceil(2));
                 let first = |axis: usize| {
-                    // As if the rectangle could stick out, so that it covers edges as often as the middle.
+                    // Moved inside if it sticks out, so that it covers edges as often as the middle.
                     let places = u64::from(film[axis]) + u64::from(size[axis]) - 1;
                     let random = u64::from(pcg(seed.wrapping_mul(2).wrapping_add(axis as u32)));
                     let end = (random * places) >> 32;
@@ -193,7 +193,7 @@ pub(super) fn inputs(
     inputs_in([&all.space, &occluders.space], view, settings, lighting, [origin, size])
 }
 
-/// The numbers for scenes in these spaces: that of all spheres, and that of those that cast shadows.
+/// The inputs for the space of all spheres and the space of the spheres that cast shadows.
 fn inputs_in(
     [space, occluders]: [&SceneSpace; 2],
     view: &View<'_>,
@@ -220,7 +220,7 @@ fn inputs_in(
 
 fn uploaded_lighting(lighting: &LightingParameters) -> UploadedLighting {
     let mut filter_table: Vec<f32> = lighting.filter_table.iter().flatten().copied().collect();
-    // The table has rows of four numbers; the last row has a single one.
+    // The table has rows of four numbers. The last row has a single number.
     filter_table.truncate(257);
     UploadedLighting {
         background: lighting.background,

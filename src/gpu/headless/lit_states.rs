@@ -1,4 +1,4 @@
-//! Reading the states of paths and the sums of pixels between two dispatches, and what is kept of them for the checker.
+//! Reading the states of paths and the sums of pixels between two dispatches, and keeping some for the checker.
 
 use wgpu::Device;
 
@@ -29,7 +29,7 @@ impl States<'_> {
         (0..self.pixels).map(of).collect()
     }
 
-    /// What the rays hit.
+    /// The hit of each state.
     fn hits(&self) -> Vec<[u32; 4]> {
         self.from(SlotSource::Device(HIT)).collect()
     }
@@ -89,7 +89,7 @@ fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
     })
 }
 
-/// Reads what passes have changed.
+/// Reads the states and sums that passes have changed.
 pub(super) struct Reader<'a> {
     frame: &'a LitFrame,
     paths: ReadableBuffer,
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
     }
 
-    /// Reads what is kept of the states after a pass, and calls `keep` with them.
+    /// Reads the states that are kept after a pass, and calls `keep` with them.
     pub(super) async fn states(
         &self,
         flow: &mut Flow<'_>,
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         self.paths.read(|vectors: &[[u32; 4]]| keep(&States { vectors, pixels, slots }))
     }
 
-    /// The slot from which all comes that [`Keeper::keep`] needs after a pass; `None` if it needs several.
+    /// The only slot that [`Keeper::keep`] reads after a pass; `None` if it reads several.
     fn only_slot(&self, moment: Moment) -> Option<SlotSource> {
         match moment {
             Moment::Extended => Some(SlotSource::Device(HIT)),
@@ -149,13 +149,13 @@ impl<'a> Reader<'a> {
 /// Maximum number of bytes of host memory that a sample takes.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// Maximum number of rays that are checked of a sample, which takes a processor some 20 seconds.
+/// Maximum number of checked rays of a sample. Checking them takes a processor some 20 seconds.
 const MAX_RAYS: u64 = 1 << 21;
 
-/// Number of surfaces behind each other at which rays are counted. Few rays pass through more.
+/// Number of surfaces behind each other whose rays are counted. Few rays pass through more.
 const FEW_SURFACES: u64 = 4;
 
-/// The longest side in pixels of a rectangle with no more than so many bytes and rays.
+/// The longest side in pixels of a rectangle that stays within [`MAX_BYTES`] and [`MAX_RAYS`].
 pub(super) fn longest_side(lighting: &LightingData) -> u32 {
     let [lights, directions] =
         [lighting.parameters.light_count, lighting.parameters.occlusion_samples].map(u64::from);
@@ -172,11 +172,11 @@ pub(super) fn longest_side(lighting: &LightingData) -> u32 {
 /// Flag of a ray that passes on, `PATH_ALIVE` in `shaders/path/state.wgsl`.
 const ALIVE: u32 = crate::light::codes::path::ALIVE;
 
-/// Keeps what is recorded of a sample.
+/// Collects the recording of a sample.
 pub(super) struct Keeper {
     recording: LitRecording,
     sample: RecordedSample,
-    /// Whether all surfaces of a studio were recorded that rays pass through.
+    /// Whether all surfaces of a studio that rays pass through were recorded.
     is_over: bool,
     /// The hidden lights or directions of a studio that are not yet added up.
     hidden: Option<Vec<u32>>,

@@ -85,7 +85,7 @@ impl Stamps {
         self.readable.record_copy(encoder, &self.resolved);
     }
 
-    /// The time of the pass, of which the copy must be mapped.
+    /// The time of the pass. The copy of its time stamps must be mapped.
     fn elapsed(&self) -> Result<Duration, GpuError> {
         let ticks = self.readable.read(|ticks: &[u64]| ticks[1].saturating_sub(ticks[0]))?;
         Ok(Duration::from_nanos((ticks as f64 * self.nanoseconds_per_tick) as u64))
@@ -112,7 +112,7 @@ impl Headless {
             let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
             let period = f64::from(queue.get_timestamp_period());
             let stamps = scoped(device, || has_clock.then(|| Stamps::new(device, period))).await?;
-            // wgpu clears a buffer when it is first used; this must not be measured.
+            // wgpu clears a buffer when it is first used. This must not be measured.
             let mut encoder = self.encoder();
             frame.record_clear(&mut encoder);
             self.run(encoder, &[]).await?;

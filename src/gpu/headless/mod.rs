@@ -56,7 +56,7 @@ pub struct Headless {
     info: AdapterInfo,
     device: Device,
     queue: Queue,
-    /// The options that the device was opened with, indirect dispatches only if it has them.
+    /// The options that the device was opened with. Indirect dispatches are on only if the device has them.
     options: HeadlessOptions,
     faults: Arc<Faults>,
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
@@ -72,7 +72,7 @@ impl Headless {
     /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
     ///
     /// # Errors
-    /// If there is no such adapter, or if none can open a device; the error is then that of the first.
+    /// If there is no such adapter, or none can open a device. The error is then the error of the first adapter.
     pub async fn open(options: &HeadlessOptions) -> Result<Self, GpuError> {
         // The error of the best adapter, which is returned if all fail.
         let mut refusal = GpuError::NoAdapter;
@@ -174,7 +174,7 @@ impl Headless {
     /// Tests whether the arithmetic of the device has the properties that the error bounds of the checker assume.
     ///
     /// # Errors
-    /// If the device fails. A property that the device lacks is not an error; the report contains it.
+    /// If the device fails. A property that the device lacks is not an error, but part of the report.
     pub async fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
         let report = self
             .alone(async |_: &mut Renderers| {
@@ -194,8 +194,8 @@ impl Headless {
     /// Renders a picture.
     ///
     /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
-    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data,
-    /// another structure is built. A device renders one picture at a time; other threads wait.
+    /// bricks. The picture depends on neither. If rays need too many steps in the structure that suits the data,
+    /// another structure is built. A device renders one picture at a time. Other threads wait.
     ///
     /// # Errors
     /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
@@ -338,7 +338,7 @@ impl Headless {
         self.faults.check()?;
         done?;
         for answer in answers {
-            // Native devices map buffers before they report the end of the submission; browsers promise no order.
+            // Native devices map buffers before they report the end of the submission. Browsers promise no order.
             let mapped = match cfg!(target_arch = "wasm32") {
                 true => Some(answer.await),
                 false => answer.known(),
@@ -351,8 +351,8 @@ impl Headless {
     }
 }
 
-/// Calls `work` with a plan for the structures that suit a scene. If rays need too many steps in them, this is repeated
-/// with others.
+/// Calls `work` with a plan for the structures that suit a scene. If rays need too many steps in these structures,
+/// calls it again with others.
 async fn retried<T>(
     plan: impl Fn(AccelChoice) -> RenderPlan,
     work: impl AsyncFn(&RenderPlan) -> Result<T, GpuError>,

@@ -1,5 +1,5 @@
 //! Rendering one picture of a scene in several bricks. Each brick is built, copied to the device, traced and dropped
-//! before the next, and what the picture does not show is never built.
+//! before the next. Bricks that the picture does not show are never built.
 
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::View;
@@ -29,7 +29,7 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 use crate::render::{Nearest, RenderSettings};
 
-/// Is told the hit of each pixel that was traced, by its index in the picture.
+/// Callback with the index in the picture and the hit of each pixel that was traced.
 pub(crate) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
 
 impl Headless {
@@ -64,8 +64,8 @@ impl Headless {
         self.render_uploaded(&buffers, &view, settings, layers, watch).await
     }
 
-    /// Whether the hits of the whole picture are in one buffer, so that no brick is needed twice, and there is a choice
-    /// of bricks.
+    /// Whether bricks may be dropped after they are traced: one buffer holds the hits of the whole picture, so that no
+    /// brick is needed twice, and there are bricks to choose from.
     fn drops_bricks(&self, plan: &RenderPlan, view: &View<'_>, settings: &RenderSettings) -> bool {
         let size = [view.film.width(), view.film.height()];
         settings.integrator.is_primary()
@@ -96,7 +96,7 @@ impl Headless {
             BrickSource::from(plan.accel.bricks(scene.spheres()));
         let boxes = bricks.boxes();
         drop(phase);
-        // The nearest of equal spheres has the smallest id in every brick, so the ids of the input do.
+        // In every brick, the nearest of equal spheres has the smallest id, so the ids of the input suffice.
         let ids = ShapeIds::of_all(scene, false);
         let summary = SceneSummary::of(scene);
         let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
@@ -165,7 +165,7 @@ impl Headless {
                     self.submit_slice(encoder, noted, groups, &scene, &[]).await?;
                     done.add(groups, watch)?;
                 }
-                // What a later brick hides will be shaded again.
+                // Pixels whose sphere a later brick hides will be shaded again.
                 let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
                 let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
                 renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
@@ -193,7 +193,7 @@ impl Headless {
             let mut image = Image::new(film.width(), film.height(), layers)?;
             let derived = DerivedLayers { view: *view, appearance: scene.appearance() };
             textures.read_into(&mut image, tile, &derived)?;
-            // Where nothing is traced, the picture is complete only now.
+            // If nothing was traced, the picture is complete only now.
             done.add(Groups::NONE, watch)?;
             Ok(image)
         })
@@ -202,9 +202,9 @@ impl Headless {
 }
 
 impl Headless {
-    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::Scene::part)), with what is needed
-    /// to put it together with those of the other parts. Each planned brick is built, traced and dropped before the next.
-    /// A large picture is rendered in tiles, for each of which the bricks are built again.
+    /// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::Scene::part)), with the data that
+    /// merging it with the other parts needs. Each planned brick is built, traced and dropped before the next. A large
+    /// picture is rendered in tiles, for each of which the bricks are built again.
     ///
     /// # Errors
     /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
@@ -245,7 +245,7 @@ impl Headless {
     }
 }
 
-/// The distances of what the pixels of a film show so far.
+/// The distance of the nearest hit so far in each pixel of a film.
 #[derive(Debug)]
 pub(crate) struct SeenPixels {
     size: [u32; 2],
@@ -253,7 +253,7 @@ pub(crate) struct SeenPixels {
     distances: Vec<f32>,
 }
 
-/// How much farther a box must be than a hit, as a part of its distance: more than the rounding of distances in f32.
+/// Relative distance by which a box must be farther than a hit. It is more than the rounding of distances in f32.
 const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 
 impl SeenPixels {
@@ -266,7 +266,7 @@ impl SeenPixels {
         Self { size, distances: hits.iter().map(distance).collect() }
     }
 
-    /// Whether the ray of every pixel of some workgroups misses a box or hits something before it. It is never known for
+    /// Whether the ray of every pixel of some workgroups misses a box or hits something before it. Always false for
     /// cameras whose rays start far from the scene, because kernels round them by more than the margin of boxes.
     pub(crate) fn hide(&self, view: &View<'_>, space: &SceneSpace, groups: Groups) -> bool {
         if !view.camera.kind().is_linear() {
@@ -325,7 +325,7 @@ mod tests {
             }
         }
         assert!(hides(&hits, all));
-        // As far as the box, and behind it.
+        // Hits at the distance of the box, and behind it.
         for t in [6.5, 7.0] {
             hits[16 * 10 + 4] = hit(t);
             assert!(!hides(&hits, all), "{t}");

@@ -26,7 +26,7 @@ pub struct RenderPlan {
     /// The structure of the spheres that cast shadows, if a studio needs a separate one because some spheres are not
     /// opaque.
     pub occluders: Option<AccelPlan>,
-    /// Buffers of the scene: those of the structures and of the colours.
+    /// Buffers of the scene: the buffers of the structures and of the colours.
     pub scene_buffers: Vec<PlannedBuffer>,
     /// Buffers that kernels write for one tile.
     pub tile_buffers: Vec<PlannedBuffer>,
@@ -44,7 +44,7 @@ pub struct RenderPlan {
     pub host_peak: &'static str,
 }
 
-/// The steps of which one needs the most host memory.
+/// Names of steps, one of which needs the most host memory.
 pub(crate) const BUILDING: &str = "building the structure";
 pub(crate) const UPLOADING: &str = "copying the scene to the device";
 pub(crate) const PICTURE: &str = "the picture";
@@ -67,7 +67,7 @@ pub struct PictureRequest<'a> {
 }
 
 impl<'a> PictureRequest<'a> {
-    /// A picture for which the caller needs no host memory but that of the image.
+    /// A picture for which the caller needs no host memory beyond the image.
     #[must_use]
     pub fn new(
         scene: &'a Scene,
@@ -109,8 +109,8 @@ impl RenderPlan {
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| device.in_host(bytes);
-        // Rays, hits and verdicts, of which a second copy exists while parts are joined; and the picture of the second
-        // render.
+        // Rays, hits and verdicts, and the picture of the second render. A second copy of the
+        // verdicts exists while parts are joined.
         let judged =
             (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
         let per_pixel = layers
@@ -197,7 +197,7 @@ impl RenderPlan {
     }
 }
 
-/// The buffers of the structure, and those that shading reads.
+/// The buffers of the structure, and the buffers that shading reads.
 pub(crate) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
     let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();

@@ -1,5 +1,5 @@
 //! Planning renders on a device, for every integrator. Drivers that are known to compute wrong results get another
-//! structure; `docs/drivers.md` contains the evidence.
+//! structure. `docs/drivers.md` contains the evidence.
 
 use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::camera::View;
@@ -61,9 +61,9 @@ impl Headless {
         let binding = binding_limit(&self.device().limits());
         let planned = |choice| AccelPlan::new(scene.spheres(), choice, binding);
         let mut plan = planned(choice);
-        // `SwiftShader` of Chromium 156 has this defect: where invocations that run together leave a loop by `break` at
-        // different times, those that left first lose the values that they assigned in the loop. Grids are traversed in
-        // such loops; trees are not.
+        // `SwiftShader` of Chromium 156 has this defect: if invocations that run together leave a loop by `break` at
+        // different times, the first to leave lose the values that they assigned in the loop. Grids are traversed in
+        // such loops. Trees are not.
         let is_grid = matches!(plan.structure, Structure::Grid | Structure::NestedGrid);
         if choice == AccelChoice::Auto && is_grid && self.info.name.starts_with("SwiftShader") {
             plan = planned(AccelChoice::Tree);

@@ -35,8 +35,8 @@ impl Headless {
         self.options_of(&scene.kinds(), scene.bricks.len() > 1, camera)
     }
 
-    /// The options of a renderer for pictures without data layers, of bricks of these kinds, of which there may be
-    /// several.
+    /// The options of a renderer for pictures without data layers, of one brick or of several bricks.
+    /// `kinds` are the kinds of the bricks.
     pub(crate) fn options_of(
         &self,
         kinds: &[BrickKind],
@@ -45,7 +45,7 @@ impl Headless {
     ) -> RendererOptions {
         let mut structures: Vec<_> = kinds.iter().map(|kind| kind.structure).collect();
         let mut primitives: Vec<_> = kinds.iter().map(|kind| kind.primitive).collect();
-        // Equal options have equal lists.
+        // Lists are sorted, so that equal options have equal lists.
         structures.sort_by_key(|structure| structure.name());
         structures.dedup();
         primitives.sort_by_key(|primitive| primitive.name());

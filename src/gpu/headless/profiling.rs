@@ -1,4 +1,4 @@
-//! What a device notes for its profile, and submissions whose pass it notes.
+//! Recording passes and phases in the profile of a device.
 
 use std::time::Duration;
 
@@ -17,8 +17,8 @@ impl Headless {
         self.options.profile.is_some()
     }
 
-    /// Adds the pass of a submission to the profile, which has just finished. The device may have begun with it at
-    /// `began`.
+    /// Adds the pass of a submission that has just finished to the profile. The device did
+    /// not begin the pass before `began`.
     pub(crate) fn note_pass(&self, noted: NotedPass, began: Instant) {
         if let (Some(profile), Some(name)) = (&self.options.profile, noted.0) {
             profile.add_pass(name, began.elapsed());

@@ -1,5 +1,5 @@
-//! The progress of copying scenes to a device, and of tracing primary rays. That of lit pictures is in
-//! `render/progress.rs`.
+//! The progress of copying scenes to a device, and of tracing primary rays. The progress of lit
+//! pictures is in `render/progress.rs`.
 
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::tiles::Groups;
@@ -9,11 +9,11 @@ pub use crate::render::{Decision, Picture, Progress, Watch};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UploadProgress {
-    /// What is done next.
+    /// The next step.
     pub step: UploadStep,
-    /// The number of the brick, from 0 on.
+    /// Index of the brick, from 0.
     pub brick: usize,
-    /// How many bricks there are.
+    /// Number of bricks.
     pub bricks: usize,
 }
 
@@ -27,8 +27,8 @@ pub enum UploadStep {
     Copying,
 }
 
-/// Callback that is called before each step of copying a scene, and decides whether it goes on: [`Decision::Finish`]
-/// and [`Decision::Stop`] end it with an error.
+/// Callback that is called before each step of copying a scene, and decides whether copying goes on.
+/// [`Decision::Finish`] and [`Decision::Stop`] end it with an error.
 pub type UploadWatch<'a> = dyn FnMut(&UploadProgress) -> Decision + 'a;
 
 impl UploadProgress {
@@ -54,7 +54,7 @@ pub(crate) fn go_on<T>(_: &T) -> Decision {
 /// Number of pixels for which primary rays were traced, in whole workgroups. A pixel counts once for every brick.
 pub(crate) struct TracedPixels {
     done: u64,
-    /// Number of pixels to be traced: those in which the scene's box may be visible.
+    /// Number of pixels to be traced: all pixels in which the scene's box may be visible.
     total: u64,
 }
 

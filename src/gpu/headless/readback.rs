@@ -126,7 +126,7 @@ fn padded_row(width: u32, bytes_per_pixel: u32) -> u32 {
     (width * bytes_per_pixel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// The data, besides the pixels of a tile, that derived layers are computed from.
+/// The inputs of derived layers besides the pixels of a tile.
 pub(crate) struct DerivedLayers<'a> {
     pub(crate) view: View<'a>,
     pub(crate) appearance: &'a SceneAppearance,
@@ -175,7 +175,7 @@ pub(crate) struct TileTextures {
     color: ReadableTexture,
     /// Depth, normal and id.
     data: Option<[ReadableTexture; 3]>,
-    /// Through which the host reads the status word of the kernels.
+    /// The buffer through which the host reads the status word of the kernels.
     pub(crate) status: ReadableBuffer,
 }
 

@@ -1,5 +1,4 @@
-//! Recording primary rays for the checker: the rays and hits that the device computed, and the numbers that it was
-//! given.
+//! Recording primary rays for the checker: the rays and hits that the device computed, and its inputs.
 
 use crate::accel::{AccelChoice, AccelPlan};
 use crate::camera::film::Film;
@@ -24,7 +23,7 @@ use crate::verify::{
     UploadedView,
 };
 
-/// Returns a camera together with the numbers that are uploaded for it and for the scene's box.
+/// Returns a camera together with the numbers that are uploaded for it and for the scene's bounds.
 pub(crate) fn requested_view(
     space: &SceneSpace,
     camera: &dyn Camera,
@@ -84,7 +83,7 @@ impl Headless {
         self.recorded(scene, view, scene.primary_settings(settings)?, None, watch).await
     }
 
-    /// A recording by kernels with one more edit.
+    /// A recording by kernels with an additional edit.
     async fn recorded(
         &self,
         scene: &SceneBuffers,
@@ -125,8 +124,8 @@ impl Headless {
         Ok(recording)
     }
 
-    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels
-    /// of [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
+    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Checks the
+    /// kernels of [`Headless::render`] and the kernels of [`Headless::record`], the latter stage by stage.
     ///
     /// # Errors
     /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
@@ -152,7 +151,7 @@ impl Headless {
 /// Side of the picture in pixels.
 const SIDE: u32 = 64;
 
-/// The number of spheres along each side of a cube, for which a grid is worth its while.
+/// Number of spheres along each side of a cube. A grid suits this many.
 const ALONG: u16 = 6;
 
 impl Headless {
@@ -165,7 +164,7 @@ impl Headless {
             [x, y, z, 0.3 / f32::from(ALONG)]
         };
         let spheres = (0..ALONG * ALONG * ALONG).map(sphere).collect();
-        // The scene and the view are good by construction.
+        // The scene and the view are valid by construction.
         let scene = Scene::from_f32(spheres, LinearRgb::WHITE)?;
         let film = Film::new(SIDE, SIDE)?;
         let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())

@@ -25,9 +25,9 @@ pub(crate) struct Renderers {
 }
 
 impl Renderers {
-    /// Begins to build a renderer on a thread of its own, if there is none and a thread can be started. It is taken by
-    /// [`Renderers::of`], which also returns the error of building it. Browsers build pipelines beside other work by
-    /// themselves.
+    /// Begins to build a renderer on a separate thread, unless it exists already or no thread can be
+    /// started. [`Renderers::of`] returns the renderer, or the error of building it. Browsers build
+    /// pipelines beside other work by themselves.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn begin(
         &mut self,
@@ -51,7 +51,7 @@ impl Renderers {
         }
     }
 
-    /// Waits for the renderer that a thread builds with these options, if one does.
+    /// Waits for the thread that builds the renderer with these options, if there is one.
     #[cfg(not(target_arch = "wasm32"))]
     fn take_ahead(&mut self, options: &RendererOptions) -> Result<(), GpuError> {
         if let Some(place) = self.ahead.iter().position(|(of, _)| of == options) {

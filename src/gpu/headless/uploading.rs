@@ -19,10 +19,10 @@ use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
 use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
-/// The options of the renderer that a picture needs for bricks of a kind, of which there may be several.
+/// Returns the options of the renderer that a picture needs for bricks of a kind, and for several bricks if `true`.
 pub(crate) type OptionsOf<'a> = dyn Fn(BrickKind, bool) -> RendererOptions + 'a;
 
-/// Is told the structure of bricks that have been built, and whether there are several.
+/// Callback with the structure of bricks that have been built, and whether there are several.
 type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
 
 impl RenderPlan {
@@ -79,8 +79,8 @@ impl Headless {
         self.upload_ahead_of(scene, plans, watch, None).await
     }
 
-    /// Like [`Headless::upload_planned`]. `options_of` returns what the picture that follows will need for the bricks:
-    /// it is built on a thread while the last brick is copied, which leaves other cores idle.
+    /// Like [`Headless::upload_planned`], but also builds the renderer of the picture that follows. `options_of`
+    /// returns its options. A thread builds it while the last brick is copied, because copying leaves other cores idle.
     pub(crate) async fn upload_ahead_of(
         &self,
         scene: &Scene,
@@ -119,10 +119,10 @@ impl Headless {
     /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with
     /// [`Scene::apply`].
     ///
-    /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a new
-    /// structure of the same kind is built on the host and copied to the device; the views of frames that show the
-    /// scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` lists
-    /// the cost of both.
+    /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a
+    /// new structure of the same kind is built on the host and copied to the device. The views of frames that show
+    /// the scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view).
+    /// `docs/performance.md` lists the cost of both.
     ///
     /// # Errors
     /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.
@@ -179,8 +179,8 @@ impl Headless {
         let _ = (renderers, options);
     }
 
-    /// Copies bricks of all spheres, or of those that cast shadows, one after the other, and waits for the copy of each, so
-    /// that its memory is free for the next. Calls `built` once all are built, before the last is copied.
+    /// Copies bricks of all spheres, or of the spheres that cast shadows, one after the other. Waits for the copy of
+    /// each, so that its memory is free for the next. Calls `built` once all are built, before the last is copied.
     async fn upload_bricks<B: Borrow<Brick>>(
         &self,
         renderer: &Renderer,

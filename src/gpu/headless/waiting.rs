@@ -25,8 +25,8 @@ thread_local! {
 
 /// Whether this thread is in a call of wgpu whose panics are caught and become errors.
 ///
-/// Wgpu panics when a device is lost while the library waits for it; the library then returns
-/// [`GpuError::DeviceLost`]. A program whose panic hook prints nothing while this is true says so only once.
+/// Wgpu panics when a device is lost while the library waits for it; the library then returns [`GpuError::DeviceLost`].
+/// A program whose panic hook prints nothing while this is true reports the loss only once.
 #[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn catches_panics() -> bool {
@@ -58,8 +58,8 @@ fn poll(device: &Device, how: wgpu::PollType, timeout: Duration) -> Result<(), G
 /// Blocking until a future is done. Browsers cannot block, so this does not exist for `wasm32`.
 #[cfg(not(target_arch = "wasm32"))]
 pub trait Wait: Future + Sized {
-    /// Blocks the thread until the future is done, and returns its result. Waiting for a device blocks the thread as
-    /// well then; elsewhere, the future returns to its caller meanwhile.
+    /// Blocks the thread until the future is done, and returns its result. Only here does waiting for a device block
+    /// the thread; elsewhere, the future returns to its caller meanwhile.
     fn wait(self) -> Self::Output {
         /// Restores the previous value, also if the future panics.
         struct Before(bool);
@@ -76,7 +76,7 @@ pub trait Wait: Future + Sized {
 #[cfg(not(target_arch = "wasm32"))]
 impl<T: Future> Wait for T {}
 
-/// Lets the device call callbacks of what has happened already.
+/// Lets the device call the callbacks of events that have already happened.
 pub(crate) fn call_back(device: &Device) {
     #[cfg(not(target_arch = "wasm32"))]
     let _ = poll(device, wgpu::PollType::Poll, Duration::ZERO);
@@ -86,7 +86,7 @@ pub(crate) fn call_back(device: &Device) {
 
 /// Waits until the device has finished a submission.
 ///
-/// A native device tells nothing unless some thread waits for it. If this one must not, another one does.
+/// A native device calls no callback unless some thread waits for it. If this thread must not block, another one waits.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) async fn until_done(
     device: &Device,
@@ -103,7 +103,7 @@ pub(crate) async fn until_done(
     let thread = std::thread::Builder::new().name("pinhole: wait".to_owned());
     match thread.spawn(move || to_answer.give(poll(&waiting, how, timeout))) {
         Ok(_) => answer.await,
-        // The system has no thread left.
+        // The system cannot start another thread.
         Err(_) => poll(device, wait, timeout),
     }
 }

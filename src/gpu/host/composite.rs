@@ -1,4 +1,4 @@
-//! Drawing pictures into a host's render pass, with the host's depth, and what the pass is like.
+//! Drawing pictures into a host's render pass, with the host's depth, and the options of that pass.
 
 use wgpu::{
     BindGroup, BindGroupLayout, BlendState, Buffer, CompareFunction, Device, Queue, RenderPass,
@@ -34,18 +34,18 @@ pub struct CompositePicture {
     has_camera: bool,
 }
 
-/// How the colour of a picture is turned into that of the host's target: the values of `ENCODING` in
-/// `host/host_color.wgsl`.
+/// Conversions from the colour of a picture to that of the host's target: the values of
+/// `ENCODING` in `host/host_color.wgsl`.
 pub(crate) const AS_STORED: u32 = 0;
 pub(crate) const TO_LINEAR: u32 = 1;
 pub(crate) const TO_SRGB: u32 = 2;
 
-/// The kernel of the vertices.
+/// The vertex kernel.
 pub(crate) fn cover_kernel() -> Kernel {
     Kernel::new("cover", &[])
 }
 
-/// The kernel of the pixels, for colours stored as `source`; without a coverage, for a pass without depth.
+/// The fragment kernel for colours stored as `source`. Without a coverage, it is for a pass without depth.
 pub(crate) fn composite_kernel(
     source: ColorTarget,
     encoding: TargetEncoding,
@@ -167,11 +167,11 @@ impl Composite {
     }
 
     /// Draws the picture into the host's render pass, over the viewport that is set there. Spheres are drawn where the
-    /// depth test lets them, with the depth that the host's camera gives their points; misses, and hits behind the far
+    /// depth test lets them, with the depth that the host's camera gives their points. Misses, and hits behind the far
     /// plane, leave the pixel as it is. Hits in front of the near plane get its depth. In a pass without depth, every
     /// pixel of the picture is drawn.
     ///
-    /// The pipeline and bind group 0 of the pass are then those of the picture. Its viewport, scissor rectangle and
+    /// Afterwards, the pass has the pipeline and bind group 0 of the picture. Its viewport, scissor rectangle and
     /// stencil reference stay as they are.
     ///
     /// # Errors
@@ -261,16 +261,16 @@ pub struct CompositeOptions {
     pub source: ColorTarget,
     /// Format of the colour attachment, which may be any that can be rendered to and takes floats.
     pub format: TextureFormat,
-    /// Which numbers the attachment takes. The device encodes those that are written to a format with sRGB in its name,
-    /// so these take linear light.
+    /// The encoding of the numbers that the attachment takes. The device itself encodes numbers that are written to a
+    /// format with sRGB in its name, so such a format takes linear light.
     pub encoding: TargetEncoding,
-    /// How colours are joined with what the attachment contains. Colours have alpha multiplied in. Pictures of primary
-    /// rays are opaque where spheres are, so `None` gives the same for them.
+    /// How colours are blended with the colours in the attachment. Colours are premultiplied by alpha. Pictures of
+    /// primary rays are opaque where spheres are, so `None` gives the same for them.
     pub blend: Option<BlendState>,
-    /// Which pixels are drawn, if there is a depth attachment.
+    /// The pixels that are drawn, if there is a depth attachment.
     pub coverage: Coverage,
-    /// The depth attachment, if there is one. Without it every pixel of the picture is drawn, also where there is no
-    /// sphere.
+    /// The depth attachment, if there is one. Without it, every pixel of the picture is
+    /// drawn, even if it shows no sphere.
     pub depth: Option<CompositeDepth>,
     /// Number of samples of each pixel of the attachments: 1 or 4. All samples of a pixel get the same colour and depth.
     pub sample_count: u32,
@@ -282,26 +282,26 @@ pub struct CompositeOptions {
 pub struct CompositeDepth {
     /// Format of the depth attachment.
     pub format: TextureFormat,
-    /// When a sphere is drawn: by its depth, compared with the depth that is there.
+    /// The test that a sphere passes to be drawn: compares its depth with the depth in the attachment.
     pub compare: CompareFunction,
     /// Whether the depth of spheres is written.
     pub write: bool,
 }
 
-/// Which pixels of a picture are drawn, and with which depth.
+/// The pixels of a picture that are drawn, and their depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Coverage {
-    /// Those whose ray through the centre hits a sphere, with the depth of the hit.
+    /// Pixels whose ray through the centre hits a sphere, with the depth of the hit.
     #[default]
     Hits,
-    /// Those whose alpha is greater than 0. Their depth is that of the hit of the ray through their centre. If it misses,
-    /// the depth is the nearest one of the hits of the eight pixels around, as beside a silhouette; and if these miss as
-    /// well, it is the far end of the range, as in the shadow on a ground that is not itself seen.
+    /// Pixels whose alpha is greater than 0, with the depth of the hit of the ray through the centre. If this ray
+    /// misses, as beside a silhouette, the depth is the nearest hit of the eight pixels around it. If these miss too,
+    /// as in a shadow on an unseen ground, it is the far end of the range.
     Alpha,
 }
 
-/// How numbers in a colour attachment stand for light.
+/// The light that the numbers in a colour attachment represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TargetEncoding {
     /// Linear light.
@@ -318,8 +318,8 @@ impl CompositeOptions {
         Self { depth: Some(depth), ..Self::without_depth(format) }
     }
 
-    /// A render pass like that of [`CompositeOptions::new`] without a depth attachment, such as that of a window or of a
-    /// toolkit.
+    /// A render pass like that of [`CompositeOptions::new`] but without a depth attachment, such as the pass of a
+    /// window or of a toolkit.
     #[must_use]
     pub fn without_depth(format: TextureFormat) -> Self {
         let is_encoded = matches!(format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm);
@@ -334,8 +334,8 @@ impl CompositeOptions {
         }
     }
 
-    /// A render pass like that of [`CompositeOptions::new`] for lit pictures, which are transparent in parts: beside
-    /// silhouettes, which are smooth, and where a shadow falls. They are blended with what the attachment contains.
+    /// A render pass like that of [`CompositeOptions::new`] for lit pictures, which are transparent beside smooth
+    /// silhouettes and where a shadow falls. They are blended with the contents of the attachment.
     #[must_use]
     pub fn lit(format: TextureFormat, depth: CompositeDepth) -> Self {
         Self {
@@ -347,7 +347,7 @@ impl CompositeOptions {
 }
 
 impl CompositeDepth {
-    /// A depth attachment that spheres are tested against, the nearer one winning, and written to.
+    /// A depth attachment that spheres are tested against and written to. The nearer depth wins.
     #[must_use]
     pub fn new(format: TextureFormat, order: DepthOrder) -> Self {
         let compare = match order {

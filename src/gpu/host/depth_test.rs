@@ -1,4 +1,4 @@
-//! The depth of a host ends primary rays, so that what is hidden by the host's geometry is neither searched nor shaded.
+//! Ends primary rays at the depth of a host, so that hidden spheres are neither searched nor shaded.
 
 use wgpu::{BindGroup, BindGroupLayout, Buffer, ComputePass, ComputePipeline, Device, Queue};
 
@@ -73,7 +73,7 @@ impl DepthTest {
         Ok(Self { layout, limit, hide })
     }
 
-    /// The pipeline that ends the rays of a camera, if the renderer can trace them then.
+    /// The pipeline that ends the rays of a camera, if the renderer can trace shortened rays.
     fn limit(&self, renderer: &Renderer, camera: CameraKind) -> Option<&ComputePipeline> {
         let found = self.limit.iter().find(|(of, _)| *of == camera);
         found.filter(|_| renderer.continues_hits(camera)).map(|(_, pipeline)| pipeline)
@@ -105,7 +105,7 @@ impl HostDepth {
     /// must show the depth aspect alone.
     ///
     /// # Errors
-    /// If the texture cannot be bound, for one of these reasons.
+    /// If the texture does not meet these conditions.
     pub async fn new(
         test: &DepthTest,
         device: &Device,
@@ -158,7 +158,7 @@ impl HostDepth {
     }
 }
 
-/// The part, traced with the kernel that continues from the hits that are there.
+/// The part, traced with the kernel that continues from existing hits.
 fn continued(part: BandBrick) -> BandBrick {
     BandBrick { is_first_of_band: false, ..part }
 }
@@ -168,11 +168,11 @@ impl Renderer {
     /// misses before they are shaded: they have the background's colour, and neither depth nor id. A hit at the very
     /// depth of the host stays.
     ///
-    /// Rays end a little behind the host's depth, so what is hidden takes little time. This needs the pipelines of
-    /// `several_bricks`; without them, or with `keeps_rays`, rays are traced to their ends, and the picture is the same.
+    /// Rays end a little behind the host's depth, so hidden spheres take little time. This needs the pipelines of
+    /// `several_bricks`. Without them, or with `keeps_rays`, rays are traced to their ends with the same picture.
     ///
-    /// The comparison is that of a depth test, between depths that are computed in f32; it may be wrong only where the
-    /// two differ by less than rounding, a few units of 2⁻²⁴ of the numbers that are subtracted.
+    /// The comparison is a depth test between depths that are computed in f32. It may be wrong only where the two
+    /// differ by less than rounding, a few units of 2⁻²⁴ of the numbers that are subtracted.
     ///
     /// # Errors
     /// The errors of [`Renderer::record`]; [`GpuError::NoView`] if the depth has no camera yet, or that of a frame of

@@ -39,7 +39,7 @@ impl HostView {
             },
             film_depth: narrow(depth.film / DVec3::new(columns, -rows, 1.0)),
             zero: 0.0,
-            // Textures are not so large that these are rounded.
+            // Textures are so small that these numbers are exact.
             size: size.map(|n| n as f32),
             first_pixel: first_pixel.map(|n| n as f32),
         }
@@ -59,7 +59,7 @@ impl HostView {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: true,
         });
-        // The device reports what goes wrong here in the caller's error scope.
+        // If this fails, the device reports it in the caller's error scope.
         if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
             bytes.copy_from_slice(bytemuck::bytes_of(record));
         }

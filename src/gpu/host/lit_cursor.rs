@@ -1,4 +1,4 @@
-//! What is left to record of a lit picture, in pieces that fit into a budget of rays.
+//! The rest of a lit picture that is left to record, in pieces that fit into a budget of rays.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 /// Number of rays of a workgroup if each of its invocations traces one.
 pub(super) const RAYS_PER_GROUP: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 
-/// The number of rays that a recording may trace at most, and those that it has.
+/// Maximum number of rays that a recording may trace, and the number that it traces so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     pub(super) rays: u64,
@@ -23,7 +23,7 @@ impl Budget {
         Self { rays: 0, max }
     }
 
-    /// Number of workgroups that are left, if each of their invocations traces so many rays.
+    /// Number of workgroups that are left, if each of their invocations traces `rays` rays.
     pub(super) fn groups(&self, rays: u64) -> u64 {
         (self.max - self.rays) / (RAYS_PER_GROUP * rays)
     }
@@ -32,7 +32,7 @@ impl Budget {
         self.rays += groups * rays * RAYS_PER_GROUP;
     }
 
-    /// The error of a budget that is too small for a workgroup with so many rays in each invocation.
+    /// The error of a budget that is too small for a workgroup with `rays` rays in each invocation.
     pub(super) fn too_small(&self, rays: u64) -> GpuError {
         GpuError::Budget { needed: RAYS_PER_GROUP * rays, given: self.max }
     }
@@ -43,11 +43,11 @@ impl Budget {
 pub(super) struct Cursor {
     /// Number of samples that all pixels have.
     pub(super) samples: u32,
-    /// The samples that are being taken, the tile in which, and the step of the round there.
+    /// The samples that are being taken, the current tile, and the current step of its round.
     batch: Range<u32>,
     tile: usize,
     step: usize,
-    /// The workgroups of the step that are left, if some have been recorded.
+    /// The remaining workgroups of the step, if some have been recorded.
     left: Option<Vec<Groups>>,
 }
 
@@ -66,7 +66,7 @@ impl Cursor {
         let frame = recorder.frame;
         while self.samples < total {
             if self.batch.is_empty() {
-                // The first samples one by one, so that there is a picture soon.
+                // The first samples are taken one by one, so that there is a picture soon.
                 let count = self.samples.clamp(1, frame.sizes.in_flight).min(total - self.samples);
                 self.batch = self.samples..self.samples + count;
             }
@@ -91,7 +91,7 @@ impl Cursor {
         Ok(())
     }
 
-    /// Records what is left of a step. Returns whether all of it fitted into the budget.
+    /// Records the rest of a step. Returns whether all of it fitted into the budget.
     fn record_step<'a>(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -106,7 +106,7 @@ impl Cursor {
             recorder.frame.record_clear_lists(encoder);
         }
         let mut left = self.left.take().unwrap_or_else(|| vec![whole]);
-        // A slice of a list takes two dispatches, and the caller may add one to those of a step.
+        // A slice of a list takes two dispatches, and the caller may add one to the dispatches of a step.
         while recorder.dispatches() + 3 <= MAX_DISPATCHES {
             let room = if rays == 0 { u64::MAX } else { budget.groups(rays) };
             if room == 0 {

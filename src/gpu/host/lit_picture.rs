@@ -22,11 +22,11 @@ use crate::gpu::resources::Make;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneLook};
 use crate::render::{PrimarySettings, RenderSettings};
 
-/// A studio or a picture of paths that a host shows while samples accumulate: some with each of its frames, until the
+/// A picture of a studio or of light paths that a host shows while it accumulates some samples in each frame, until the
 /// camera, the light or the scene changes.
 ///
-/// The textures first get the picture by primary rays, with depth, normals and ids, and then the mean of the samples so
-/// far in the colour. It is premultiplied by alpha, and alpha is 0 where nothing is if the settings are transparent.
+/// The textures first get the picture by primary rays, with depth, normals and ids. Then the colour becomes the mean of
+/// the samples so far, premultiplied by alpha. If the settings are transparent, alpha is 0 where nothing is hit.
 #[derive(Debug)]
 pub struct LitPicture {
     passes: Arc<LitPasses>,
@@ -34,7 +34,7 @@ pub struct LitPicture {
     key: LitKey,
     lighting: LightingData,
     frame: LitFrame,
-    /// The picture by primary rays, and what is left of it to record.
+    /// The picture by primary rays, and the rest of it that is left to record.
     data: Frame,
     data_cursor: DataCursor,
     primary: PrimarySettings,
@@ -47,18 +47,18 @@ pub struct LitPicture {
     is_indirect: bool,
 }
 
-/// The place that the recording of the picture by primary rays has reached.
+/// Progress of recording the picture by primary rays.
 #[derive(Debug, Default)]
 struct DataCursor {
     /// Number of bricks of bands that are complete.
     parts: usize,
-    /// The workgroups of the next one that are left, if some are recorded.
+    /// The remaining workgroups of the next brick of a band, if some have been recorded.
     left: Vec<Groups>,
 }
 
 impl LitPicture {
-    /// Creates the buffers of a picture in the targets, which must be those of the renderer's options, as large as the
-    /// film, and with the usage `STORAGE_BINDING`. Pipelines are built if [`LitRenderer::build`] has not built them.
+    /// Creates the buffers of a picture in the targets. These must have the formats of the renderer's options, the size
+    /// of the film, and the usage `STORAGE_BINDING`. Pipelines are built if [`LitRenderer::build`] has not built them.
     ///
     /// # Errors
     /// [`GpuError::NotLit`] for the integrator `primary`; the errors of [`RenderSettings::check`];
@@ -100,11 +100,11 @@ impl LitPicture {
         })
     }
 
-    /// Sets the scene, the view and the light that the next recording shows. If nothing of the picture changes, the
-    /// samples so far are kept; a larger number of samples continues the picture. Returns whether it begins again.
+    /// Sets the scene, the view and the light that the next recording shows. If nothing changes, the samples so far are
+    /// kept. A larger number of samples continues the picture. Returns whether the picture begins again.
     ///
     /// The new values are queued on `queue` and take effect with its next submission. Buffers are created only for
-    /// another number of lights or materials, another kind of light or camera, and images of the sky; pipelines are
+    /// another number of lights or materials, another kind of light or camera, and images of the sky. Pipelines are
     /// built if [`LitRenderer::is_built`] says that some are missing.
     ///
     /// # Errors
@@ -167,8 +167,8 @@ impl LitPicture {
     /// [`GpuError::OtherScene`] if the scene is not the one that was set, or has changed since;
     /// [`GpuError::OtherRenderer`]; [`GpuError::NotReady`] if a pipeline of primary rays is still being built;
     /// [`GpuError::Budget`] if `max_rays` is too small for any work. Nothing is recorded then. [`GpuError::Steps`] if
-    /// searches of an earlier recording were abandoned: after [`LitPicture::set`], passes are used that take fewer
-    /// iterations, and if it is returned again, the structure `list` always stays within the limit.
+    /// searches of an earlier recording were abandoned: call [`LitPicture::set`], which chooses passes with fewer
+    /// iterations. If the error returns, the structure `list` always stays within the limit.
     pub fn record(
         &mut self,
         renderer: &LitRenderer,
@@ -222,8 +222,8 @@ impl LitPicture {
         Ok(progress(self, &budget, if is_done { LitState::Done } else { LitState::Refining }))
     }
 
-    /// The place of a recording that can be made now. A slice of the picture by primary rays has a record that is
-    /// queued, so it must be alone.
+    /// Index of a free slot for a recording. A slice of the picture by primary rays has a queued record, so no other
+    /// recording may be under way.
     fn free_place(&self, max_rays: u64) -> Option<usize> {
         let DataCursor { parts, left } = &self.data_cursor;
         let is_begun = *parts > 0 || !left.is_empty();
@@ -288,7 +288,7 @@ impl LitPicture {
         Ok(())
     }
 
-    /// Records samples, and writes the means of the tiles that have more of them.
+    /// Records samples, and writes the means of the tiles whose number of samples grows.
     fn record_samples(
         &mut self,
         queue: &Queue,
@@ -343,18 +343,18 @@ async fn new_frame(
     LitFrame::new(make, passes, sizes, lighting, by, records).await
 }
 
-/// What a recording has done for a lit picture.
+/// The progress that a recording has made with a lit picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LitProgress {
-    /// Number of samples that every pixel has when the recording has been executed. Some may have more. With 0, the
-    /// colours may be those of primary rays, or of the view before.
+    /// Number of samples that every pixel has when the recording has been executed. Some pixels may have more. If it is
+    /// 0, the colours may be those of primary rays, or of the previous view.
     pub samples: u32,
     /// Number of samples that the picture will have.
     pub total: u32,
     /// Number of rays that the recorded commands trace at most.
     pub rays: u64,
-    /// What the next recording will do.
+    /// The state of the picture after this recording.
     pub state: LitState,
     /// Whether commands of an earlier recording were not executed, or not in order, so that the samples accumulate from
     /// the first one again.
@@ -368,7 +368,7 @@ pub enum LitState {
     Refining,
     /// All samples are recorded, and nothing remains to do until something changes.
     Done,
-    /// The device has not finished the recordings before, so nothing was recorded.
+    /// The device has not finished earlier recordings, so nothing was recorded.
     Waiting,
 }
 

@@ -50,9 +50,9 @@ impl LitRenderer {
         &mut self.renderer
     }
 
-    /// Builds the pipelines for lit pictures of a scene, unless they are built already. [`LitPicture::new`] and
-    /// [`LitPicture::set`] do the same when they need them; calling this on another thread before keeps them from
-    /// holding up a frame.
+    /// Builds the pipelines for lit pictures of a scene, unless they are built already.
+    /// [`LitPicture::new`] and [`LitPicture::set`] do the same when they need them. If another thread
+    /// calls this before, they do not hold up a frame.
     ///
     /// # Errors
     /// The errors of [`RenderSettings::check`]; [`GpuError::NoOccluders`]; an error if the device rejects a kernel,

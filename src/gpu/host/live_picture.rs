@@ -28,14 +28,14 @@ use crate::render::{Integrator, RenderSettings};
 const OCCLUSION_RAYS: u32 = 2;
 /// Maximum number of frames over which visible shares of light are averaged.
 const MOST: u32 = 64;
-/// The same for lamps that move with the camera, whose shadows change from frame to frame.
+/// Maximum number of these frames if lamps move with the camera, because their shadows change from frame to frame.
 const MOST_MOVING: u32 = 4;
 
 /// A studio that looks finished while the camera, the light or the spheres move.
 ///
 /// Each frame traces one ray of the camera through the centre of each pixel, one shadow ray and a few rays of ambient
-/// occlusion. How much of the light is hidden is averaged over the frames before, wherever they show the same sphere,
-/// and over neighbouring pixels, the less the more frames there are. The colours of surfaces and lamps are never mixed.
+/// occlusion. The hidden share of the light is averaged over earlier frames, where they show the same sphere, and over
+/// neighbouring pixels, which count less as frames add up. The colours of surfaces and lamps are never mixed.
 #[derive(Debug)]
 pub struct LivePicture {
     passes: Arc<LivePasses>,
@@ -43,11 +43,11 @@ pub struct LivePicture {
     lighting: LightingData,
     lit: LightingBuffers,
     buffers: Buffers,
-    /// Holds the targets.
+    /// The frame that holds the targets.
     targets: Frame,
     frames: [FrameParameters; 2],
     scene: SceneId,
-    /// The camera, and the camera and the scene of the frame before.
+    /// The current camera. `before` has the camera and the scene of the previous frame.
     seen_from: SeenFrom,
     film: Film,
     before: Option<(SeenFrom, SceneId)>,
@@ -62,16 +62,16 @@ struct Buffers {
     frame: Buffer,
     dispatches: Buffer,
     views: Buffer,
-    /// Distance in bytes of the records of recordings.
+    /// Distances in bytes between the records of successive recordings.
     strides: [usize; 2],
-    /// The status word, and what the lists of paths would be.
+    /// The status word, and a stand-in for the lists of paths.
     status: Buffer,
     group: BindGroup,
     /// Bind groups of the passes after the first, for even and for odd frames.
     known: [BindGroup; 2],
 }
 
-/// What a recording has done for a live picture.
+/// The progress that a recording has made with a live picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LiveProgress {
@@ -85,8 +85,8 @@ pub struct LiveProgress {
 }
 
 impl LivePicture {
-    /// Creates the buffers of a picture in the targets, which must be those of the renderer's options, as large as the
-    /// film, and with the usage `STORAGE_BINDING`. Missing pipelines are built.
+    /// Creates the buffers of a picture in the targets. These must have the formats of the renderer's options, the size
+    /// of the film, and the usage `STORAGE_BINDING`. Missing pipelines are built.
     ///
     /// # Errors
     /// [`GpuError::NotLive`] unless the settings are a studio, all spheres are opaque and the scene is not divided into
@@ -157,7 +157,7 @@ impl LivePicture {
         } else if !lighting.is_same(&self.lighting) {
             self.lit.set(make, &self.passes.lit, &lighting, false).await?;
         }
-        // Lamps move with the camera, or because the host moves them. Whatever else changes, changes what is hidden.
+        // Lamps move with the camera, or because the host moves them. Any other change changes which light is hidden.
         let has_other_rays = lighting.rays_differ(&self.lighting);
         self.has_moving_lamps |= lighting.tables != self.lighting.tables;
         if has_other_rays {
@@ -170,8 +170,8 @@ impl LivePicture {
         Ok(())
     }
 
-    /// Records a frame into the host's encoder: colours, and depth, normals and ids if the renderer has data layers. The
-    /// depth is that of the ground where it is seen. Nothing is submitted, awaited or created.
+    /// Records a frame into the host's encoder: colours, and depth, normals and ids if the renderer has data layers.
+    /// Where the ground is seen, the depth is that of the ground. Nothing is submitted, awaited or created.
     ///
     /// The encoder must be submitted to `queue` before the next frame is set.
     ///
@@ -196,7 +196,7 @@ impl LivePicture {
             self.before = None;
         }
         let [_, visible] = &self.frames;
-        // Those of a pixel are to the surface, to a lamp and for ambient light.
+        // Each pixel has rays to its surface, to a lamp and for ambient light.
         let rays = Groups { first: [0, 0], size: visible.traced_size }.pixels()
             * u64::from(2 + self.lighting.parameters.occlusion_samples);
         let Some(place) = self.tickets.free() else {
@@ -256,7 +256,7 @@ impl LivePicture {
         pass.set_bind_group(0, &buffers.known[number], &[offsets[1]]);
         pass.dispatch_workgroups(width, height, 1);
         pass.set_pipeline(&passes.show);
-        // What this frame knows is what the next one finds before.
+        // This frame writes the history that the next one reads.
         pass.set_bind_group(0, &buffers.known[1 - number], &[offsets[1]]);
         pass.set_bind_group(2, self.targets.target_group(), &[]);
         pass.dispatch_workgroups(width, height, 1);
@@ -312,7 +312,7 @@ impl Buffers {
     }
 }
 
-/// A picture with few rays, its light, and the key of its passes.
+/// A scene with a view for a live picture, its light, and the key of its passes.
 fn live_key<'a>(
     device: &Device,
     scene: &'a SceneBuffers,
@@ -334,7 +334,7 @@ fn live_key<'a>(
     Ok((scenes, lighting, key))
 }
 
-/// The records of the whole picture, for all its workgroups and for those in which the scene may be visible.
+/// The records of the whole picture: for all workgroups, and for the workgroups in which the scene may be visible.
 fn frames_of(device: &Device, scenes: LitScene<'_>) -> [FrameParameters; 2] {
     let film = &scenes.view.film;
     let tile = Tile { origin: [0, 0], size: [film.width(), film.height()], in_target: [0, 0] };
@@ -342,11 +342,11 @@ fn frames_of(device: &Device, scenes: LitScene<'_>) -> [FrameParameters; 2] {
     [all, visible]
 }
 
-/// The value of `has_before` for a frame before with another view, and with the same view.
+/// Values of `has_before` for a previous frame with another view, and with the same view.
 const OTHER_VIEW: u32 = 1;
 const SAME_VIEW: u32 = 2;
 
-/// A camera whose points can be found in pictures.
+/// A camera that a frame was seen from. The points of the next frame are found in its picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SeenFrom {
     kind: CameraKind,
@@ -358,14 +358,14 @@ impl SeenFrom {
         Self { kind: camera.kind(), vectors: camera.vectors() }
     }
 
-    /// Whether the place of a point on the film is a linear map, divided by one.
+    /// Whether a projection maps points to the film: a linear map, divided by another.
     fn is_linear(self) -> bool {
         matches!(self.kind, CameraKind::Pinhole | CameraKind::ThinLens | CameraKind::Orthographic)
     }
 }
 
-/// The record of a frame seen by the camera `now`. `before` is the camera of a frame before that shows the same surfaces; `most` are the maximum
-/// numbers of frames over which the shares of lamps and of ambient light are averaged.
+/// The record of a frame seen by the camera `now`. `before` is the camera of an earlier frame that shows the same
+/// surfaces. `most` are the maximum numbers of frames over which the shares of lamps and of ambient light are averaged.
 pub(super) fn record(
     now: SeenFrom,
     film: &Film,

@@ -12,7 +12,7 @@ pub(crate) mod live_picture;
 pub(crate) mod pick;
 mod tickets;
 
-/// The kernels of everything here.
+/// All kernels for host programs.
 pub(crate) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     use crate::gpu::shader::formats::ColorTarget;
     use composite::{Coverage, TargetEncoding};

@@ -1,4 +1,4 @@
-//! What is at a pixel, read back without waiting.
+//! Picking: the sphere at a pixel, read back without waiting.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,16 +14,16 @@ use crate::gpu::resources::buffer;
 use crate::image::NO_ID;
 use crate::verify::NO_HIT;
 
-/// A ring of small buffers into which the id and depth of a pixel are copied. The result is there some frames later.
+/// A ring of small buffers into which the id and depth of a pixel are copied. The result arrives some frames later.
 #[derive(Debug)]
 pub struct Picker {
     slots: Vec<Slot>,
-    /// The slot of the next request, and that of the oldest one that has not been taken.
+    /// The slot of the next request, and the slot of the oldest request whose result was not taken.
     next: usize,
     oldest: usize,
 }
 
-/// What is at a pixel of a frame.
+/// The content of a pixel of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PickedPixel {
     /// Column and row of the pixel.
@@ -43,7 +43,7 @@ pub struct PickedHit {
     pub place: DVec3,
 }
 
-/// Why a pixel cannot be picked, or was not.
+/// Why a pixel cannot be picked, or a pick failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PickError {
@@ -96,7 +96,7 @@ struct Slot {
 }
 
 impl Picker {
-    /// A ring of `capacity` buffers, at least one, for as many picks at a time. Three are enough for one in each frame.
+    /// Creates a ring of `capacity` buffers, at least one, for as many picks at a time. One pick per frame needs three.
     ///
     /// # Errors
     /// If the device has no memory left.
@@ -169,8 +169,8 @@ impl Picker {
         Ok(())
     }
 
-    /// Takes the oldest result, if it is there. This never waits: results arrive when the program submits or polls its
-    /// device, after the device has executed the copies.
+    /// Takes the oldest result, if it has arrived. This never waits. Results arrive when the program submits to its
+    /// device or polls it, after the device has executed the copies.
     ///
     /// # Errors
     /// [`PickError::Lost`], once for each pick whose commands were not executed.

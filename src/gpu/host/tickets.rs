@@ -1,7 +1,7 @@
-//! Which of a host's recordings were executed, and in which order, without asking the device.
+//! Finds out which of a host's recordings were executed, and in which order, without asking the device.
 //!
 //! Each recording ends with a copy of its status words into a small buffer, and asks for the buffer to be mapped when
-//! the encoder is submitted. The callback tells that the commands were executed; if it is dropped, they never will be.
+//! the encoder is submitted. The callback says that the commands were executed. If it is dropped, they never will be.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -9,7 +9,7 @@ use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 
 use crate::gpu::resources::buffer;
 
-/// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next.
+/// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next one.
 pub(super) const AT_ONCE: usize = 3;
 
 /// The recordings under way.
@@ -24,15 +24,15 @@ pub(super) struct Tickets {
 #[derive(Debug)]
 struct Slot {
     buffer: Buffer,
-    /// Number of the recording under way, and what is set when its commands were executed, by a callback that shares it
-    /// until it is called or dropped.
+    /// Number of the recording under way, and a flag that is set when its commands were executed. A callback shares the
+    /// flag until it is called or dropped.
     under_way: Option<(u64, Arc<OnceLock<()>>)>,
 }
 
-/// What is known of the order in which recordings were executed.
+/// The order in which recordings were executed, as far as it is known.
 #[derive(Debug, Default)]
 struct Order {
-    /// The recordings before this one do not matter: the first command of this one clears what they made.
+    /// Earlier recordings do not matter, because the first command of this one clears their results.
     first: u64,
     /// The recording that must be executed next.
     expected: u64,
@@ -53,7 +53,7 @@ impl Order {
     }
 }
 
-/// What has become known since the last question.
+/// Results that have arrived since the last call of [`Tickets::news`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct News {
     /// Commands were dropped, or executed in another order than they were recorded in.
@@ -91,7 +91,7 @@ impl Tickets {
         news
     }
 
-    /// The place of a recording that can be made now.
+    /// Index of a free slot for a recording.
     pub(super) fn free(&self) -> Option<usize> {
         self.slots.iter().position(|slot| slot.under_way.is_none())
     }
@@ -101,12 +101,12 @@ impl Tickets {
         self.slots.iter().all(|slot| slot.under_way.is_none())
     }
 
-    /// Notes that the next recording begins with clearing what all earlier ones made.
+    /// Notes that the next recording begins by clearing the results of all earlier ones.
     pub(super) fn begin_again(&mut self) {
         *locked(&self.order) = Order { first: self.next, expected: self.next, is_broken: false };
     }
 
-    /// Records the copies of two status words, whose recording takes this place.
+    /// Records the copies of two status words for a recording that takes the slot `place`.
     pub(super) fn record(
         &mut self,
         encoder: &mut CommandEncoder,

@@ -98,7 +98,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         .collect()
 }
 
-/// Constants that only kernels use, and the shadings, which a test of `records.rs` compares.
+/// Constants that only kernels use, and the shadings, which a test in `records.rs` compares.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_SHAPE",
     "WIDE_ROOT",
@@ -113,7 +113,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "NOTHING",
     "SAME_VIEW",
     "SMALLEST_SPOT",
-    // The reference has it in f64.
+    // The reference has this constant in f64.
     "NO_NOISE",
     // Slots of a path's state, and flags in it.
     "ORIGIN",

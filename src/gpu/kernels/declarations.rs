@@ -1,8 +1,8 @@
-//! The names that a part declares and uses. They are read from its text, because WGSL is simple enough for that.
+//! The names that a part of a kernel declares and uses. WGSL is simple enough to read them from the text.
 
 use std::collections::BTreeSet;
 
-/// The names in a part.
+/// The names in a part of a kernel.
 #[derive(Debug, Default)]
 pub(super) struct Declarations {
     /// Names that the part declares for the whole kernel: functions, structs, constants, bindings and variables.

@@ -25,13 +25,13 @@ pub struct ComposedKernel {
     pub name: String,
     /// WGSL of all parts. A comment before each part names its file in the folder `shaders`.
     pub source: String,
-    /// The values of its `override` constants by their names, for each pipeline that is made of it. Those of the type
-    /// `bool` are 0 or 1.
+    /// The values of the `override` constants by name, for each pipeline made from this source.
+    /// Values of the type `bool` are 0 or 1.
     pub pipelines: BTreeSet<Vec<(&'static str, u32)>>,
 }
 
-/// Returns all kernels of this crate that need nothing but WGSL, ordered by name, for readers and for other compilers:
-/// those with ray queries, which are an extension of wgpu, are left out.
+/// Returns all kernels of this crate that need nothing but WGSL, ordered by name, for readers and for other compilers.
+/// Kernels with ray queries, which are an extension of wgpu, are left out.
 pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
     let core = all_kernels().into_iter().filter(|kernel| !kernel.has_ray_queries());
     let mut composed = BTreeMap::new();

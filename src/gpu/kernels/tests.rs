@@ -22,7 +22,7 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
 }
 
 fn validator(has_ray_queries: bool) -> Validator {
-    // All others may use only the core features of WebGPU.
+    // Kernels without ray queries may use only the core features of WebGPU.
     let capabilities = match has_ray_queries {
         true => Capabilities::RAY_QUERY,
         false => Capabilities::empty(),
@@ -30,8 +30,8 @@ fn validator(has_ray_queries: bool) -> Validator {
     Validator::new(ValidationFlags::all(), capabilities)
 }
 
-/// The most sources that there may be. A change may lower it: what kernels differ in is an `override` constant, unless it
-/// is a type, a directive or a binding.
+/// Maximum number of kernel sources. A change may lower it: kernels differ in `override` constants, unless the
+/// difference is a type, a directive or a binding.
 const MOST_SOURCES: usize = 85;
 
 /// The parts with entry points of render passes.
@@ -46,7 +46,7 @@ fn every_kernel_composes_and_validates() {
         let entry = &module.entry_points[0];
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name());
         assert_eq!(entry.name, kernel.entry_point);
-        // Those of render passes have no workgroups.
+        // Kernels of render passes have no workgroups.
         let is_compute = entry.stage == naga::ShaderStage::Compute;
         assert!(is_compute != kernel.parts.iter().any(|part| RENDERED.contains(&part.name)));
         let size = entry.workgroup_size.iter().product::<u32>();
@@ -54,8 +54,8 @@ fn every_kernel_composes_and_validates() {
     }
 }
 
-/// wgpu refuses a value for a constant that a source does not declare, and a constant without a value. It puts the
-/// values in when a driver needs the pipeline, so that the `noop` device does not show whether what results is valid.
+/// wgpu refuses a value for a constant that a source does not declare, and a constant without a value. It inserts
+/// values only when a driver needs the pipeline, so the `noop` device does not show whether the result is valid.
 #[test]
 fn every_pipeline_has_the_constants_that_its_source_declares() {
     let mut sources = BTreeMap::new();
@@ -70,7 +70,7 @@ fn every_pipeline_has_the_constants_that_its_source_declares() {
         let given: BTreeSet<&str> = kernel.constants.iter().map(|(name, _)| *name).collect();
         let name = kernel.name();
         assert_eq!((&given, given.len()), (&declared, kernel.constants.len()), "{name}");
-        // Those of render passes have none.
+        // Kernels of render passes have no constants.
         if module.entry_points[0].stage == naga::ShaderStage::Compute {
             let values = kernel.values_of_constants();
             let folded = folded_module(module, info, kernel.entry_point, &values);
@@ -93,7 +93,7 @@ fn no_two_kernels_have_the_same_name() {
     }
 }
 
-/// Every kernel must call `start_fences`, because a compiler knows the value of a zero that was never set.
+/// Tests that every kernel calls `start_fences`, because a compiler knows the value of a zero that was never set.
 #[test]
 fn every_kernel_sets_what_fences_need() {
     let uses_frame =

@@ -1,5 +1,5 @@
-//! Dividing pictures of primary rays into bands, and the sizes of the buffers that a band needs. Both plans and frames
-//! use these sizes.
+//! Dividing pictures of primary rays into bands of rows, and the sizes of the buffers that a band needs.
+//! Both plans and frames use these sizes.
 
 use wgpu::Limits;
 
@@ -50,7 +50,7 @@ impl BandBuffers {
 pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
     let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
     let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_BAND_PIXELS);
-    // This is at most MAX_BAND_PIXELS, so it fits into u32.
+    // Not more than MAX_BAND_PIXELS, so it fits into u32.
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 

@@ -11,22 +11,22 @@ use crate::accel::PlannedBuffer;
 use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
 use crate::scene::material::Material;
 
-/// Width of the texture; the twin of `EMITTER_COLUMNS` in `shaders/scene/emitter.wgsl`. Every device has textures of
-/// this size.
+/// Width of the texture, the twin of `EMITTER_COLUMNS` in `shaders/scene/emitter.wgsl`. Every
+/// device has textures of this size.
 pub(crate) const COLUMNS: usize = 1 << 11;
 
-/// Rows of a layer, unless a single one needs fewer; the twin of `EMITTER_ROWS`.
+/// Maximum number of rows of a layer, the twin of `EMITTER_ROWS`.
 pub(crate) const ROWS: usize = 1 << 11;
 
 const LAYER: usize = COLUMNS * ROWS;
 
-/// What a plan calls the table.
+/// The name of the table in plans.
 pub(crate) const NAME: &str = "emitters";
 
-/// What errors call the table.
+/// The name of the table in errors.
 pub(crate) const WHAT: &str = "the table of emissive spheres";
 
-/// Width, height and layers of the texture for a table of so many texels.
+/// Width, height and number of layers of the texture for a table with this number of texels.
 fn extent(texels: usize) -> Extent3d {
     let texels = texels.max(1);
     Extent3d {
@@ -36,7 +36,7 @@ fn extent(texels: usize) -> Extent3d {
     }
 }
 
-/// The size of the table, without the texture of one texel that stands for an empty one. It is uploaded layer by layer.
+/// The planned buffer of the table; `None` if it is empty. It is uploaded layer by layer.
 pub(crate) fn planned(texels: usize) -> Option<PlannedBuffer> {
     let Extent3d { width, height, depth_or_array_layers } = extent(texels);
     let layer = 16 * u64::from(width) * u64::from(height);
@@ -87,7 +87,7 @@ pub(crate) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> Text
         );
     };
     for (layer, texels) in table.chunks(LAYER).enumerate() {
-        // Rows that are full, and the rest of the last one.
+        // The full rows, and the rest of the last one.
         let full = texels.len() / COLUMNS * COLUMNS;
         let (rows, rest) = texels.split_at(full);
         if !rows.is_empty() {
@@ -132,7 +132,7 @@ mod tests {
         for texels in [0, 1, 2047, 2048, 2049, LAYER - 1, LAYER, LAYER + 1, 15_000_000] {
             let Extent3d { width, height, depth_or_array_layers } = extent(texels);
             let last = texels.max(1) - 1;
-            // As the shader has it.
+            // The same computation as in the shader.
             assert!(((last / LAYER) as u32) < depth_or_array_layers, "{texels}");
             assert!(((last / COLUMNS % ROWS) as u32) < height, "{texels}");
             assert!(((last % COLUMNS) as u32) < width && width <= 2048, "{texels}");

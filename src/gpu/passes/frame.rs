@@ -55,17 +55,17 @@ pub(crate) struct SetView {
     parts: Vec<BandBrick>,
 }
 
-/// The place of a record of a frame. Slot 0 of a band is the record of the region in which the scene may be visible, in
-/// which the first brick is traced and all are shaded. The next bricks of the band have the other slots, as many as
-/// there are, and then slot 0 again.
+/// Index of a record of a frame. Slot 0 of a band is the record of the region in which the scene may be visible. The
+/// first brick is traced there, and all bricks are shaded there. Later bricks of the band have the other slots, as long
+/// as there are any, and then slot 0 again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Slot {
     pub(crate) band: usize,
     number: usize,
 }
 
-/// Number of bricks that have a record of their own in each band of a frame. All have up to 260 million spheres, in
-/// bindings of 128 MiB.
+/// Number of bricks that have a separate record in each band of a frame. Together they hold up to 260
+/// million spheres, in bindings of 128 MiB.
 const SLOTS: usize = 32;
 
 /// The tracing of one brick for one band.
@@ -203,7 +203,7 @@ impl Frame {
         Ok(())
     }
 
-    /// Sets a view like [`Frame::set_view`], of a tile that is not larger than the targets.
+    /// Sets a view like [`Frame::set_view`], for a tile that is not larger than the targets.
     pub(crate) fn set_tile(
         &mut self,
         queue: &Queue,
@@ -269,7 +269,7 @@ impl Frame {
         self.view = Some(SetView { camera, scene, bands, records, parts });
     }
 
-    /// The number of a record in the buffer of records.
+    /// Index of a record in the buffer of records.
     fn place(&self, Slot { band, number }: Slot) -> usize {
         number * self.bands + band
     }
@@ -305,11 +305,11 @@ impl Frame {
     }
 
     /// Returns a buffer of one `u32`, which kernels set if the search of a ray was abandoned because it reached the
-    /// iteration limit; some pixels are then wrong. It is 0 after creation and is never reset: read it after a
-    /// submission has finished, and clear it.
+    /// iteration limit. Some pixels are then wrong. The buffer contains 0 after creation and is never reset: read it
+    /// after a submission has finished, and clear it.
     ///
     /// Its usages are `COPY_SRC` and `COPY_DST`. On software devices the limit is 8,000 spheres and cells, because old
-    /// ones leave long loops silently.
+    /// software devices leave long loops silently.
     #[must_use]
     pub fn status(&self) -> &Buffer {
         &self.status
@@ -372,8 +372,8 @@ impl Frame {
 /// Maximum number of loop iterations of an invocation.
 ///
 /// The lavapipe of Mesa 22.3 leaves all loops silently after 65,535 iterations of the invocations that it runs
-/// together. These are eight by default, so an eighth of that number is safe; the nested loops of the self-test check
-/// this. On other devices the limit only bounds the run time of a kernel with a defect.
+/// together. It runs eight together by default, so an eighth of that number is safe. The nested loops of the self-test
+/// check this. On other devices the limit only bounds the run time of a kernel with a defect.
 pub(crate) fn iteration_limit(device: &Device) -> u32 {
     let info = device.adapter_info();
     match info.device_type {

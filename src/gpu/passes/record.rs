@@ -44,9 +44,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Moves the pipelines with which [`Renderer::record`] records the frame to the front of those that
-    /// [`Renderer::build_next`] builds, and returns how many of them are not ready. On a native device, the frame can be
-    /// recorded after as many calls.
+    /// Moves the pipelines that [`Renderer::record`] needs for the frame to the front of the pipelines that
+    /// [`Renderer::build_next`] builds. Returns the number of them that are not ready. On a native device, the frame
+    /// can be recorded after this number of calls.
     ///
     /// # Errors
     /// If the frame has no view of this scene, or was made for other targets.
@@ -61,7 +61,7 @@ impl Renderer {
         Ok(self.put_first(&needed))
     }
 
-    /// Returns an error if a pipeline that the frame needs is missing, for the tracing of its parts after a change.
+    /// Returns an error if the frame needs a pipeline that is missing, after `traced` has changed its parts.
     pub(crate) fn check_pipelines(
         &self,
         scene: &SceneBuffers,

@@ -30,18 +30,18 @@ pub struct Renderer {
     pub(crate) edits: Edits,
     /// Pipelines that can be recorded.
     built: Vec<(PassKey, ComputePipeline)>,
-    /// Pipelines that the device has not yet accepted, and what is known of them. The mutex makes a renderer `Sync`,
-    /// and is never locked.
+    /// Pipelines that the device has not yet accepted, with their checks. The mutex makes a
+    /// renderer `Sync`, and is never locked.
     building: Mutex<VecDeque<(PassKey, ComputePipeline, Checks)>>,
-    /// Pipelines that are not ready: those being built, and then those whose building has not begun.
+    /// Pipelines that are not ready: first pipelines that are being built, then pipelines whose building has not begun.
     remaining: VecDeque<PassKey>,
-    /// What the device says of the layouts.
+    /// The checks of the layouts.
     layouts_check: Mutex<Checks>,
     /// The error that ended the building.
     failed: Option<GpuError>,
 }
 
-/// What a pipeline is for.
+/// The purpose of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PassKey {
     Trace(CameraKind, BrickKind, BrickPass),
@@ -49,8 +49,8 @@ pub(crate) enum PassKey {
 }
 
 impl Renderer {
-    /// Builds the pipelines on a device that the caller owns. This takes from milliseconds to seconds;
-    /// [`Renderer::begin`] does it in pieces, and another thread can do it as well.
+    /// Builds the pipelines on a device that the caller owns. This takes from milliseconds to seconds. It can run on
+    /// another thread, or in pieces with [`Renderer::begin`].
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
@@ -111,8 +111,8 @@ impl Renderer {
         }
     }
 
-    /// Builds one more pipeline, and returns the number of pipelines that are still not ready. The renderer is complete
-    /// when it is 0.
+    /// Builds one more pipeline, and returns the number of pipelines that are still not ready. The
+    /// renderer is complete when this number is 0.
     ///
     /// It never waits. On a native device the call takes as long as the driver needs for one pipeline. A browser builds
     /// in the background, so there the number may stay the same for some calls.
@@ -143,7 +143,7 @@ impl Renderer {
         Ok(true)
     }
 
-    /// Moves the pipelines that the device has accepted to those that can be recorded.
+    /// Moves the pipelines that the device has accepted to the pipelines that can be recorded.
     fn take_built(&mut self) -> Result<(), GpuError> {
         let layouts = self.layouts_check.get_mut().unwrap_or_else(PoisonError::into_inner);
         if !layouts.are_known()? {
@@ -165,19 +165,19 @@ impl Renderer {
         self.building.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether there are pipelines that continue tracing from hits that another pass has written, for a camera.
+    /// Whether some pipelines of a camera continue tracing from hits that another pass has written.
     pub(crate) fn continues_hits(&self, camera: CameraKind) -> bool {
         let built = self.built.iter().map(|(key, _)| key);
         let mut keys = built.chain(&self.remaining);
-        // Rays that are kept are those of the first brick's pass.
+        // Rays are kept only by the pass of the first brick.
         !self.keeps_rays
             && keys
                 .any(|key| matches!(key, PassKey::Trace(of, _, BrickPass::Later) if *of == camera))
     }
 
-    /// Moves some pipelines to the front of those that are still to be built, and returns how many of them are not ready.
+    /// Moves some pipelines to the front of the remaining ones, and returns how many of them are not ready.
     pub(crate) fn put_first(&mut self, needed: &[PassKey]) -> usize {
-        // Those that are being built keep their places.
+        // Pipelines that are being built keep their places.
         let begun = self.in_building().len();
         let (first, others): (Vec<_>, Vec<_>) =
             self.remaining.drain(begun..).partition(|key| needed.contains(key));

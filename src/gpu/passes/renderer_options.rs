@@ -19,20 +19,20 @@ pub struct RendererOptions {
     pub structures: Vec<Structure>,
     /// The primitives that scenes will consist of.
     pub primitives: Vec<Primitive>,
-    /// Whether scenes may be too large for one binding, so that they consist of several bricks. Rays end at a host's
-    /// depth by the same pipelines, see [`Renderer::record_with_depth`](crate::gpu::Renderer::record_with_depth).
+    /// Whether scenes may be too large for one binding, so that they consist of several bricks. The same pipelines end
+    /// rays at a host's depth, see [`Renderer::record_with_depth`](crate::gpu::Renderer::record_with_depth).
     pub several_bricks: bool,
     /// Whether frames keep the ray of every pixel, in 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
     /// Whether lit pictures use indirect dispatches, so that the device traces only paths that continue. All adapters
-    /// of this crate support them; the pictures do not depend on it.
+    /// of this crate support them. The pictures do not depend on this option.
     pub indirect: bool,
     /// The type of device whose order and sizes of submissions are used; `None` is the type of the adapter. Only
-    /// experiments and tests choose another. The pictures do not depend on it.
+    /// experiments and tests choose another. The pictures do not depend on this option.
     pub device_type: Option<wgpu::DeviceType>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
-    /// What is given to the device in place of each kernel. Only tests rewrite any.
+    /// A function that returns what the device gets in place of each kernel. Only tests set it.
     pub rewrite: Option<KernelRewrite>,
 }
 

@@ -66,7 +66,7 @@ pub(super) fn checked_targets<'a>(
     Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
 }
 
-/// Returns an error if a texture has another format or lacks a usage, which has this name.
+/// Returns an error if a texture has another format or lacks a usage. `name` is the name of the usage.
 pub(crate) fn check_texture(
     layer: &'static str,
     view: &TextureView,
@@ -89,8 +89,8 @@ pub(super) fn describe_size([width, height]: [u32; 2]) -> String {
     format!("{width}x{height}")
 }
 
-/// Textures for the targets of a frame, in the formats of a renderer. They are for hosts that have no textures of their
-/// own to be written to; a host whose picture changes its size makes new ones.
+/// Textures for the targets of a frame, in the formats of a renderer. They are for hosts without suitable textures. A
+/// host whose picture changes its size creates new ones.
 ///
 /// Each has the usages `STORAGE_BINDING`, `TEXTURE_BINDING` and `COPY_SRC`, so that [`Composite`](crate::gpu::Composite)
 /// can draw them, [`Picker`](crate::gpu::Picker) can copy from them, and the host can do both.
@@ -143,7 +143,7 @@ impl TargetTextures {
         Targets { color: &self.color, data }
     }
 
-    /// Columns and rows.
+    /// Number of columns and of rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size

@@ -54,7 +54,7 @@ impl Groups {
         self.count() * u64::from(WORKGROUP_SIDE * WORKGROUP_SIDE)
     }
 
-    /// Removes at most about `count` workgroups from those that are left: whole rows, or a part of one row.
+    /// Removes at most about `count` of the remaining workgroups: whole rows, or a part of one row.
     pub(crate) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
         let Self { first: [x, y], size: [width, height] } = left.pop()?;
         if width == 0 || height == 0 {
@@ -96,7 +96,7 @@ pub(crate) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
     })
 }
 
-/// The tiles that cover a film. Those at its right and lower edges may be smaller.
+/// The tiles that cover a film. Tiles at its right and lower edges may be smaller.
 pub(crate) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
     let (width, height) = (film.width(), film.height());
     (0..height).step_by(tile_size[1] as usize).flat_map(move |y| {

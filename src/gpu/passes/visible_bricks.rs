@@ -1,4 +1,4 @@
-//! The bricks that are traced in each part of a picture, and in which order.
+//! The bricks that are traced in each part of a picture, and their order. A brick is a part of a scene in one binding.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -12,11 +12,11 @@ use crate::gpu::shader::records::SceneSpace;
 /// The bricks of a scene that a view may show.
 #[derive(Clone, Debug)]
 pub(crate) struct VisibleBricks {
-    /// Where the scene may be visible.
+    /// The region in which the scene may be visible.
     scene: VisibleRegion,
     /// The bricks that may be visible, the nearest first.
     bricks: Vec<(usize, VisibleRegion)>,
-    /// The brick that is traced where there are no others.
+    /// The brick that is traced where no brick may be visible.
     nearest: usize,
 }
 
@@ -36,7 +36,7 @@ impl VisibleBricks {
     }
 
     /// The bricks to be traced for a tile or a band, in order, and the workgroups that are dispatched for each. The
-    /// first is traced wherever the scene may be visible, because its pass writes misses and records rays.
+    /// first brick is traced wherever the scene may be visible, because its pass writes misses and records rays.
     pub(crate) fn parts_of(&self, tile: Tile) -> Vec<(usize, Groups)> {
         let regions = self.bricks.iter().map(|(brick, region)| (*brick, region.groups_of(tile)));
         let mut parts: Vec<_> = regions.filter(|(_, groups)| groups.count() > 0).collect();
@@ -49,8 +49,8 @@ impl VisibleBricks {
     }
 }
 
-/// The box of a brick, inflated like that of the scene, outside of which no ray hits its spheres; `None` for a brick
-/// without spheres.
+/// The box of a brick, inflated like the box of the scene. No ray hits the brick's spheres outside of
+/// it. `None` for a brick without spheres.
 pub(crate) fn space_of(scene: &SceneSpace, brick: &BrickBounds) -> Option<SceneSpace> {
     // The scene's box includes its margin, so this margin is slightly larger.
     let margin = 2.0 * margin_of(scene.min, scene.max);
@@ -145,7 +145,7 @@ impl VisibleRegion {
         let edge = |pixels: u32| 1.0 + 2.0 * PIXELS_AROUND / f64::from(pixels);
         let film = view.film.whole();
         let (right, up) = (edge(film.width()), edge(film.height()));
-        // All corners are on the other side of a plane through the eye, and so is the box.
+        // All corners, and so the box, are beyond a plane through the eye.
         let is_outside = corners.iter().all(|(.., depth)| *depth <= 0.0)
             || corners.iter().all(|(x, _, depth)| *x > right * depth)
             || corners.iter().all(|(x, _, depth)| -x > right * depth)
@@ -154,7 +154,7 @@ impl VisibleRegion {
         (!is_outside).then(|| Self::of(view, space))
     }
 
-    /// The part of the region that lies in another.
+    /// The intersection of two regions.
     pub(crate) fn within(mut self, other: Self) -> Self {
         for axis in 0..2 {
             self.first[axis] = self.first[axis].max(other.first[axis]);

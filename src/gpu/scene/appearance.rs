@@ -38,7 +38,7 @@ impl AppearanceWords {
     }
 }
 
-/// Whether spheres have words that tell their materials.
+/// Whether spheres have words with the indices of their materials.
 fn has_materials(appearance: &SceneAppearance) -> bool {
     appearance.material_rows().len() > 1
 }
@@ -74,7 +74,7 @@ pub(crate) fn palette_length(appearance: &Appearance) -> usize {
 /// Number of different values of a byte.
 const BYTES: usize = 256;
 
-/// The palette: the colours that the indices in colour words refer to.
+/// The palette: the colours to which the indices in colour words refer.
 pub(crate) fn palette(appearance: &Appearance) -> Vec<Color> {
     let opaque = |color: &LinearRgb| {
         let [r, g, b] = color.to_array();
@@ -184,7 +184,7 @@ mod tests {
         let tinted = Appearance::from(colors)
             .with_surface(SurfaceProperties { material: glass, opacity: 1.0 });
         let tinted = scene(tinted);
-        // The first and the last have the same colour.
+        // The first and the last sphere have the same colour.
         assert_eq!(counts(&tinted), (3, 2));
         assert_eq!(
             [0, 1, 2, 3].map(|id| tinted.checked_appearance().material_row(id)),

@@ -1,4 +1,4 @@
-//! A scene on a device: its buffers, and updates of them.
+//! A scene on a device: its buffers, and updates of them. A brick is a part of a scene that fits into one binding.
 
 pub(crate) mod appearance;
 pub(crate) mod query_structure;

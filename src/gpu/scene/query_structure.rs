@@ -6,7 +6,7 @@ use wgpu::{BufferUsages, CommandEncoder, Device, Features, Tlas};
 /// The features that kernels with ray queries need.
 pub(crate) const FEATURES: Features = Features::EXPERIMENTAL_RAY_QUERY;
 
-/// What wgpu asks of those who use ray queries.
+/// The permission that wgpu requires for ray queries.
 #[expect(
     unsafe_code,
     reason = "whoever opens a device for ray queries is told that they are an experiment"
@@ -17,10 +17,10 @@ pub(crate) fn experiment() -> wgpu::ExperimentalFeatures {
     unsafe { wgpu::ExperimentalFeatures::enabled() }
 }
 
-/// Whole boxes, without a rotation or a scale.
+/// The transform that leaves boxes in place: no rotation, and a scale of one.
 const IN_PLACE: [f32; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
-/// Begins a structure of boxes, whose least coordinates come first. It exists once the encoder's work is done.
+/// Begins a structure of boxes, each given by its least and its greatest coordinates. The encoder's work completes it.
 pub(crate) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncoder) {
     let buffer = device.create_buffer_init(&BufferInitDescriptor {
         label: Some("pinhole boxes"),
@@ -32,7 +32,7 @@ pub(crate) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncode
     let size = wgpu::BlasAABBGeometrySizeDescriptor {
         // A brick has fewer than 2²⁸ spheres, which any device allows.
         primitive_count: boxes.len() as u32,
-        // One candidate for each box, because each costs the test of a sphere.
+        // One candidate for each box, because each candidate costs the test of a sphere.
         flags: wgpu::AccelerationStructureGeometryFlags::NO_DUPLICATE_ANY_HIT_INVOCATION,
     };
     let label = Some("pinhole ray query");

@@ -30,11 +30,11 @@ pub(crate) struct SceneId {
     shape: u64,
 }
 
-/// Identifies what a scene on a device looks like.
+/// Identifies the look of a scene on a device: its shapes and its colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SceneLook {
     id: SceneId,
-    /// Number of times that its colours have changed since it was copied to the device.
+    /// Number of times that the colours have changed since the scene was copied to the device.
     colors: u64,
 }
 
@@ -54,10 +54,10 @@ pub struct SceneBuffers {
     /// The data of the host's scene that pictures need.
     pub(crate) summary: SceneSummary,
     structure: Structure,
-    /// How lit pictures exclude the sphere that a ray starts on from its search.
+    /// How lit pictures exclude a sphere from the search of a ray that starts on it.
     pub(crate) exclude_by: ExcludeBy,
-    /// In the order in which they were copied. There is at least one, so that the rays of an empty scene are marked as
-    /// misses.
+    /// Bricks in the order in which they were copied. There is at least one, so that the rays of an
+    /// empty scene are marked as misses.
     pub(crate) bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
@@ -107,8 +107,8 @@ impl SceneBuffers {
         Self::upload(renderer, device, queue, SceneSummary::of(scene), accel.into(), &ids).await
     }
 
-    /// Copies a scene like [`SceneBuffers::new`], with a second structure of the spheres that cast shadows if some do
-    /// not, because they are not opaque. Studios of such scenes need it.
+    /// Copies a scene like [`SceneBuffers::new`]. If some spheres cast no shadows, because they are not opaque, also
+    /// copies a second structure, of the spheres that do. Studios of such scenes need it.
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
@@ -148,7 +148,7 @@ impl SceneBuffers {
         Ok(Self::new_of(upload.finish()?, summary, ids.exclude_by, renderer.shape))
     }
 
-    /// The scene of bricks that were copied.
+    /// Creates a scene from bricks that were copied.
     pub(crate) fn new_of(
         uploaded: UploadedBricks,
         summary: SceneSummary,
@@ -178,7 +178,7 @@ impl SceneBuffers {
         }
     }
 
-    /// The same scene together with those of its spheres that cast shadows in a studio.
+    /// Returns the same scene together with its spheres that cast shadows in a studio.
     pub(crate) fn with_occluders(self, occluders: Self) -> Self {
         Self { occluders: Some(Box::new(occluders)), ..self }
     }
@@ -222,7 +222,7 @@ impl SceneBuffers {
         }
     }
 
-    /// The settings by which primary rays are shaded.
+    /// The settings for shading primary rays.
     pub(crate) fn primary_settings(
         &self,
         settings: &RenderSettings,
@@ -238,7 +238,7 @@ impl SceneBuffers {
     }
 
     /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres,
-    /// the iteration limit bounds their number.
+    /// the iteration limit bounds the number.
     pub(crate) fn rays_at_once(&self, max: u32) -> u32 {
         let fits = LIST_LEN / self.tests_per_ray.max(1);
         u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, max)
@@ -250,7 +250,7 @@ impl SceneBuffers {
     }
 
     /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of
-    /// this one, because most pictures of a scene cost about the same.
+    /// this picture, because most pictures of a scene take about the same time.
     pub(crate) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
         self.submission_size
             .lock()

@@ -1,5 +1,5 @@
-//! The data of a scene, besides its buffers, that pictures need, so that the host's scene can be dropped after the upload;
-//! and the ids by which kernels identify its shapes.
+//! A summary of a scene: the data, besides its buffers, that pictures need after the host's scene was dropped. Also the
+//! ids by which kernels identify shapes.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub(crate) struct EmissiveSphere {
 }
 
 impl SceneSummary {
-    /// Bytes of an emissive sphere.
+    /// Size of an emissive sphere in bytes.
     pub(crate) const BYTES_PER_EMITTER: u64 = 8 + size_of::<EmissiveSphere>() as u64;
 
     pub(crate) fn of(scene: &Scene) -> Self {
@@ -67,7 +67,7 @@ impl SceneSummary {
     }
 }
 
-/// How the shape that a ray starts on is excluded from its search.
+/// How a ray that starts on a shape excludes this shape from its search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum ExcludeBy {
     /// By the shape's index in the structure, if no equal shape is in another brick. This costs nothing for each test.
@@ -85,7 +85,7 @@ impl ExcludeBy {
     }
 }
 
-/// The ids of the spheres of a structure, and the way in which rays exclude the sphere that they start on.
+/// The ids of the spheres of a structure, and how rays exclude the sphere on which they start.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeIds {
     /// The id of every sphere that the structure was built from; `None` if every sphere's id is its index.
@@ -111,7 +111,7 @@ impl ShapeIds {
         Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
     }
 
-    /// The ids of spheres that are given by their indices in the input of the structure.
+    /// The ids of spheres with the given indices in the input of the structure.
     pub(crate) fn of<'a>(&self, numbers: &'a [u32]) -> Cow<'a, [u32]> {
         match &self.ids {
             None => numbers.into(),

@@ -1,4 +1,4 @@
-//! The buffers of the bricks of a scene, and copying bricks to a device, one after the other.
+//! Copying the bricks of a scene to a device, one after the other, and their buffers.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::scene::SceneAppearance;
 pub(crate) struct BrickBuffers {
     /// Structure and primitive, which determine the kernels.
     pub(crate) kind: BrickKind,
-    /// The boxes of the shapes, by which bricks are sorted and looked for in pictures.
+    /// The bounds of the shapes, by which bricks are sorted and found in pictures.
     pub(crate) bounds: BrickBounds,
     /// Bind group 1 of `trace`.
     pub(crate) trace_group: BindGroup,
@@ -29,23 +29,23 @@ pub(crate) struct BrickBuffers {
     pub(crate) surface_group: BindGroup,
     /// Bind group 3 of kernels that search the brick and shade its shapes.
     pub(crate) appearance_group: BindGroup,
-    /// The id of every sphere, in the order of the structure, and after them words of some structures.
+    /// The id of every sphere, in the order of the structure. Some structures append words.
     pub(crate) ids: Buffer,
     /// The appearance words of the spheres.
     pub(crate) appearances: Buffer,
     pub(crate) shape_count: u32,
 }
 
-/// What all bricks of a scene have in common.
+/// The properties that all bricks of a scene have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BrickSpace {
-    /// The planned structure. Grids of some bricks may be nested nevertheless.
+    /// The planned structure. However, grids of some bricks may be nested.
     pub(crate) structure: Structure,
     /// The inflated box of the scene.
     pub(crate) bounds: (Vec3, Vec3),
 }
 
-/// The bricks of a scene that are to be copied. Each may be built when it is asked for.
+/// The bricks of a scene that are to be copied. Each may be built only when the iterator returns it.
 pub(crate) struct BrickSource<I> {
     pub(crate) space: BrickSpace,
     pub(crate) may_part_equals: bool,
@@ -90,7 +90,7 @@ pub(crate) struct SceneUpload<'a> {
     work: Vec<CommandEncoder>,
 }
 
-/// A size that no shape of any primitive exceeds, in bytes.
+/// Size in bytes that no shape of any primitive exceeds.
 const LARGEST_SHAPE: usize = 64;
 
 impl<'a> SceneUpload<'a> {
@@ -149,7 +149,7 @@ impl<'a> SceneUpload<'a> {
         let shapes = bytemuck::cast_slice(&brick.spheres);
         let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { &ids };
-        // What shares a buffer with the ids, so that a kernel has enough bindings.
+        // Data that share a buffer with the ids, so that a kernel has enough bindings.
         let mut with_ids: Vec<&[u8]> = vec![bytemuck::cast_slice(ids)];
         let mut words: Option<&[u8]> = None;
         let mut boxes = None;
@@ -164,7 +164,7 @@ impl<'a> SceneUpload<'a> {
                 words = Some(bytemuck::cast_slice(&grid.balls));
             }
             Index::WideTree(tree) => {
-                // Without a crowd, no margin is too small for any ray.
+                // Without a crowd (a box around most spheres), no margin is too small for any ray.
                 record.crowd_margin = 1e30;
                 if let Some(crowd) = &tree.margins.crowd {
                     record.crowd_min = crowd.min.to_array();
@@ -237,12 +237,12 @@ impl<'a> SceneUpload<'a> {
         std::mem::take(&mut self.work)
     }
 
-    /// Returns the bricks since the last call, each of which is searched as what it is.
+    /// Returns the bricks since the last call. Each keeps its own structure.
     pub(crate) fn take_bricks(&mut self) -> Vec<BrickBuffers> {
         std::mem::take(&mut self.uploaded.bricks)
     }
 
-    /// Returns the bricks, which are all searched as nested grids if any of them is one.
+    /// Returns the bricks. If any of them is a nested grid, all are searched as nested grids.
     pub(crate) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
         let is_nested =
@@ -256,7 +256,7 @@ impl<'a> SceneUpload<'a> {
     }
 }
 
-/// A buffer of slices, one after another, whose size is added to `bytes`.
+/// Creates a buffer that contains slices one after another, and adds its size to `bytes`.
 fn joined(
     (device, queue): (&Device, &Queue),
     bytes: &mut u64,

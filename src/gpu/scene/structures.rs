@@ -5,7 +5,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::scene::Scene;
 
-/// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them; they can also be made
+/// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them. They can also be made
 /// from a single structure.
 #[derive(Debug)]
 pub struct Structures {
@@ -53,15 +53,15 @@ pub struct Retry {
     pub next: AccelChoice,
 }
 
-/// Plans structures for a choice and calls `work` with the plan. If the choice is [`AccelChoice::Auto`] and rays need
-/// too many steps in the planned structures ([`GpuError::Steps`]), this is repeated with another choice, after a call
-/// of `retrying`.
+/// Plans structures for a choice and calls `work` with the plan. If the choice is
+/// [`AccelChoice::Auto`] and rays need too many steps in the planned structures ([`GpuError::Steps`]),
+/// calls `retrying` and repeats this with another choice.
 ///
 /// `plan` makes a plan for a choice, as [`Headless::plan`](crate::gpu::Headless::plan) does; `work` builds, uploads and
 /// renders.
 ///
 /// # Errors
-/// The outer error is the caller's own and ends the function at once; the inner error is that of the device.
+/// The outer error is the caller's own and ends the function at once. The inner error is the device's.
 pub async fn with_retries<T, E>(
     choice: AccelChoice,
     plan: impl Fn(AccelChoice) -> RenderPlan,

@@ -1,4 +1,4 @@
-//! Tests that a device that computes like the CPU passes, and that a fault in one result fails the right property.
+//! Tests that a device that computes like the CPU passes, and that a fault in one result makes the right property fail.
 
 use crate::gpu::self_test::records::{Arithmetic, Exact, Operands, Values};
 use crate::gpu::self_test::report::{PropertyOutcome, TestedProperty};
@@ -78,7 +78,7 @@ fn names_of_failing(properties: &[TestedProperty]) -> Vec<&'static str> {
     properties.iter().filter(|property| !property.passed()).map(|property| property.name).collect()
 }
 
-/// Moves a number away from zero by some neighbouring f32.
+/// Moves a number away from zero by `neighbours` steps of f32.
 fn off(number: &mut f32, neighbours: u32) {
     *number = f32::from_bits(number.to_bits() + neighbours);
 }
@@ -96,7 +96,7 @@ fn no_answers_fail() {
     }
 }
 
-/// Tests the results of optimisers that rewrite expressions without fences.
+/// Tests results of compilers that rewrite expressions as if there were no fences.
 #[test]
 fn fences_that_leak_are_found() {
     let is_fence = |names: Vec<&str>| names == ["fence"];
@@ -182,7 +182,7 @@ fn errors_beyond_their_bounds_are_found() {
             );
         }
     }
-    // The error of a quotient is relative, and not in ULP.
+    // The error of a quotient is measured relative to the quotient, not in ULP.
     let divide = |units: f32| {
         failing_arithmetic(3, |_, answer| answer.quotient *= 1.0 + units * f32::EPSILON)
     };
@@ -197,7 +197,7 @@ fn errors_beyond_their_bounds_are_found() {
 
 #[test]
 fn a_dot_product_of_less_precision_is_found() {
-    // The mantissa is cut to the width of that of an f16.
+    // The mantissa is cut to the width of an f16's mantissa.
     let narrowed = |v: f32| f32::from_bits(v.to_bits() & !0x1fff);
     let names = (0..COUNT).map(|at| failing_arithmetic(at, |_, a| a.dot = narrowed(a.dot)));
     assert!(names.filter(|names| names == &["dot"]).count() > COUNT / 2);

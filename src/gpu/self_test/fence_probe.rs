@@ -1,12 +1,12 @@
-//! Judging fences in a kernel that traces rays: with the frame of a picture, and with all that a compiler may make of
-//! such a kernel.
+//! Judging fences in a kernel that traces rays, which has the frame of a picture, and in which a compiler may make all
+//! the optimisations that it makes in such kernels.
 
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::self_test::report::{Tally, TestedProperty, percent};
 use crate::gpu::shader::Part;
 use crate::verify::{TracedPixel, TracedRay};
 
-/// What turns the kernel that records rays into the one that probes fences.
+/// The edit that turns the kernel that records rays into the kernel that probes fences.
 pub(crate) fn edit() -> ShaderEdit {
     let recorded = Part::named("primary/entry.wgsl#recorded");
     let probed = Part::named("primary/entry.wgsl#probed");
@@ -17,7 +17,7 @@ pub(crate) fn edit() -> ShaderEdit {
     }
 }
 
-/// Judges what the kernel recorded in place of rays.
+/// Judges the values that the kernel recorded in place of rays.
 pub(crate) fn judge(pixels: &[TracedPixel]) -> TestedProperty {
     let mut tally = Tally::default();
     let (mut rounded, mut rewritten) = (0, 0);

@@ -9,8 +9,8 @@ pub(super) const INVOCATIONS: u32 = 64;
 /// Number of iterations of the longest loop, on every device.
 pub(super) const LONGEST: u32 = 1_000_000;
 
-/// Maximum total number of iterations of nested loops. A GPU that runs invocations in groups multiplies it by the
-/// number of invocations in a group.
+/// Maximum total number of iterations of nested loops. On a GPU that runs invocations in groups, the total is
+/// multiplied by the number of invocations in a group.
 const NESTED: u32 = 1 << 16;
 
 /// The runs of the kernel, one after another: a loop up to the iteration limit, two nested loops, and the longest loop,

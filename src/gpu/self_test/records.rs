@@ -1,5 +1,5 @@
-//! Records of the self-test that kernels read and write. Twins: the structs of the same names in
-//! the files in `shaders/self_test`. The test of `gpu/shader/records.rs` compares them.
+//! Records of the self-test that kernels read and write. Twins: the structs of the same names in the files in
+//! `shaders/self_test`. A test in `gpu/shader/records.rs` compares them.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -16,7 +16,7 @@ pub(crate) struct SelfTest {
 }
 
 impl Default for SelfTest {
-    /// No loops, and numbers for fences like those of a frame.
+    /// No loops, and the numbers for fences that a frame has.
     fn default() -> Self {
         let limit = 64_000;
         Self { limit, limit_again: limit, single: 0, outer: 0, inner: 0 }
@@ -140,9 +140,9 @@ fn all<T>(seed: u64, count: usize, make: impl Fn(&Numbers<'_>) -> T) -> Vec<T> {
     (0..count as u64).map(|index| make(&Numbers { uniform: &uniform, index })).collect()
 }
 
-/// Inputs of operations whose results may be rounded. Exponents are chosen so that nothing overflows or is subnormal,
-/// that f64 represents sums and products exactly, and that f32 represents the rounding error of a sum, in whichever
-/// direction it is rounded.
+/// Inputs of operations whose results may be rounded. The exponents have three properties: no result
+/// overflows or is subnormal, f64 represents sums and products exactly, and f32 represents the rounding error
+/// of a sum in either direction of rounding.
 pub(super) fn operands(count: usize) -> Vec<Operands> {
     let mut operands = all(1, count, |numbers| {
         let exponent = numbers.integer(0, -50, 59);

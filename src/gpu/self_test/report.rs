@@ -16,7 +16,7 @@ pub enum SelfTestExtent {
 pub enum PropertyOutcome {
     /// The device has the property.
     Passed,
-    /// The device has the property, and shows another behaviour that is worth knowing.
+    /// The device has the property, and shows another behaviour that users should know.
     Noted,
     /// The device lacks the property, so error bounds are not valid for it.
     Failed,

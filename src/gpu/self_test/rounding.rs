@@ -1,10 +1,10 @@
-//! Judging operations whose results may be rounded, and those whose results must be exact.
+//! Judging operations whose results may be rounded, and operations whose results must be exact.
 
 use crate::gpu::self_test::records::{Arithmetic, Exact, Operands, Values};
 use crate::gpu::self_test::report::{PropertyOutcome, Tally, TestedProperty, percent};
 use crate::verify::{DIVIDE_UNITS, SQRT_ULP, gamma};
 
-/// Maximum allowed error of 1/√x in ULP. The bounds of other operations are those of the checker.
+/// Maximum allowed error of 1/√x in ULP. Other operations have the bounds of the checker.
 const INVERSE_SQRT: f64 = 2.0;
 
 /// Maximum allowed error of a dot product of three components, relative to the sum of the absolute products.
@@ -94,12 +94,12 @@ fn add_multiply(pairs: &[Pair<'_>]) -> TestedProperty {
     tally.property("add_multiply", words, vec![("nearest_percent", nearest)])
 }
 
-/// How the error of a result is measured.
+/// A measure of the error of a result.
 struct Measure {
     of: fn(f32, f64) -> f64,
-    /// In words, after the number.
+    /// The unit in words, which follow the number.
     unit: &'static str,
-    /// The names of figures: the largest that was found, and the largest that is allowed.
+    /// The names of two figures: the largest error that was found, and the largest that is allowed.
     figures: [&'static str; 2],
 }
 
@@ -250,7 +250,7 @@ fn comparison_and_conversion(values: &[Values], answers: &[Exact]) -> TestedProp
     tally.property("comparison_and_conversion", words, Vec::new())
 }
 
-/// All operations, and whether their results are the same as on the CPU.
+/// All exact operations, and whether their results are the same as on the CPU.
 fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
     let Values { f, g, whole, i, j, .. } = *v;
     let orders = [f < g, f <= g, f == g, f != g, f >= g, f > g];
@@ -276,7 +276,7 @@ fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
         ("i << j", got.shifted_left == i << shift),
         ("i >> j", got.shifted_right == i >> shift),
         ("countOneBits(i)", got.ones == i.count_ones()),
-        // In WGSL the result for zero is all ones.
+        // In WGSL, the result for zero has all bits set.
         ("firstTrailingBit(i)", got.lowest == if i == 0 { u32::MAX } else { i.trailing_zeros() }),
     ]
 }
@@ -284,7 +284,7 @@ fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
 /// Bound of the errors of f64 quotients and roots, which are less than 2⁻⁵⁰ of the value, in ULP of f32.
 pub(super) const PAD: f64 = 1.0 / (1_u64 << 26) as f64;
 
-/// Whether `got` is one of the two f32 that enclose the exact value, or the value itself.
+/// Whether `got` is the exact value, or one of the two f32 that enclose it.
 pub(super) fn is_neighbour(got: f32, exact: f64) -> bool {
     let value = f64::from(got);
     if value < exact {
@@ -297,7 +297,7 @@ pub(super) fn is_neighbour(got: f32, exact: f64) -> bool {
     }
 }
 
-/// The largest f32 that is not greater than the exact value, and the smallest that is not less.
+/// The largest f32 that is not greater than the exact value, and the smallest f32 that is not less.
 pub(super) fn neighbours(exact: f64) -> [f32; 2] {
     let nearest = exact as f32;
     let value = f64::from(nearest);

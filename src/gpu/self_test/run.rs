@@ -14,7 +14,7 @@ use crate::gpu::self_test::{loops, records, rounding};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::{Kernel, pipeline};
 
-/// Numbers of inputs of each operation, which are multiples of the workgroup size.
+/// Number of inputs of each operation, in a quick and in a full test. Both are multiples of the workgroup size.
 const QUICK: usize = 512;
 const FULL: usize = 1 << 17;
 
@@ -26,7 +26,7 @@ pub(crate) struct SelfTestRun {
     operands: Vec<Operands>,
     values: Vec<Values>,
     limit: u32,
-    /// Operations that round; and in a full test those that are exact, and loops.
+    /// Dispatches of operations that round. In a full test, dispatches of exact operations and of loops follow.
     dispatches: Vec<Dispatch>,
 }
 
@@ -81,8 +81,8 @@ struct Dispatch {
     workgroups: u32,
 }
 
-/// Dispatches of a kernel, one for each record, with one invocation for each input. The kernel is built in the same way as
-/// those of a renderer, and has one bind group: the record, and an input and a result for each invocation.
+/// Dispatches of a kernel, one for each record, with one invocation for each input. The kernel is built in the same way
+/// as kernels of a renderer. Its bind group has the record, and an input and a result for each invocation.
 fn dispatches<Input: Pod, Answer: Pod>(
     device: &Device,
     checks: &Checks,

@@ -1,5 +1,5 @@
-//! Leaves out of a kernel what the values of its `override` constants make unreachable, before a driver translates it: a
-//! driver would work on all cameras, materials and sources to find that one is used.
+//! Removes unreachable code from a kernel, given the values of its `override` constants, before a driver translates it.
+//! Otherwise a driver would work on all cameras, materials and sources to find that only one of each is used.
 
 use wgpu::naga::back::pipeline_constants::process_overrides;
 use wgpu::naga::compact::{KeepUnused, compact};
@@ -9,8 +9,8 @@ use wgpu::naga::{
     SwitchValue, front,
 };
 
-/// The module of a kernel without `override` constants and without the branches that are not taken; `None` if the source
-/// is not valid, which a device explains better.
+/// The module of a kernel without `override` constants and without branches that are not taken. `None` if the source is
+/// not valid: the device then gives a better error.
 pub(super) fn folded(source: &str, entry_point: &str, constants: &[(&str, f64)]) -> Option<Module> {
     let module = front::wgsl::parse_str(source).ok()?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
@@ -52,11 +52,11 @@ fn fold_function(module: &Module, function: &mut Function) {
         _ => None,
     };
     fold(&mut function.body, &known);
-    // Names would keep what was computed in a branch that is gone.
+    // Names would keep values that were computed in a removed branch.
     function.named_expressions.clear();
 }
 
-/// Leaves out the branches of a block that are not taken, and what follows a jump.
+/// Removes the branches of a block that are not taken, and the statements after a jump.
 fn fold(block: &mut Block, known: &impl Fn(Handle<Expression>) -> Option<Literal>) {
     for (statement, span) in std::mem::take(block).span_into_iter() {
         let mut statement = taken(statement, known);
@@ -83,7 +83,7 @@ fn fold(block: &mut Block, known: &impl Fn(Handle<Expression>) -> Option<Literal
     }
 }
 
-/// The branch that is taken, if that is known.
+/// The branch that is taken, if it is known.
 fn taken(
     statement: Statement,
     known: &impl Fn(Handle<Expression>) -> Option<Literal>,
@@ -117,7 +117,7 @@ fn taken(
     }
 }
 
-/// Whether nothing behind a statement is reached.
+/// Whether no statement after this one is reached.
 fn jumps(statement: &Statement) -> bool {
     match statement {
         Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(functions(1, true).0, ["other"]);
         assert_eq!(functions(2, false).0, ["one", "other"]);
         assert!(functions(7, true).0.is_empty());
-        // What cannot be read is left to the device.
+        // Sources that cannot be parsed are left to the device.
         assert!(folded("fn run() { nothing(); }", "run", &[]).is_none());
         assert!(folded(SOURCE, "run", &[("KIND", 0.0)]).is_none());
     }

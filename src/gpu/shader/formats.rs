@@ -6,7 +6,7 @@ pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
 
-/// The format of the colour texture. Every WebGPU device supports all of them.
+/// The format of the colour texture. Every WebGPU device supports all variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ColorTarget {

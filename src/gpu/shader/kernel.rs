@@ -9,8 +9,8 @@ use crate::gpu::error::GpuError;
 /// The value of an `override` constant of WGSL, which is 0 or 1 for one of type `bool`.
 pub(crate) type Constant = (&'static str, u32);
 
-/// An entry point, the parts that it is composed of, and the values of the `override` constants that they declare.
-/// Kernels that differ in the values alone have the same source, and a pipeline for each set of values.
+/// An entry point, the parts from which it is composed, and the values of their `override` constants. Kernels that
+/// differ only in these values have the same source, and a pipeline for each set of values.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     pub(crate) entry_point: &'static str,
@@ -36,13 +36,13 @@ fn is_choice(part: &str) -> bool {
 }
 
 impl Kernel {
-    /// The kernel of the list in `shaders/kernels.txt` with the name of its entry point. `choices` are names in the list that
-    /// begin with `$`, and the lists that stand for them.
+    /// The kernel with the list of parts of its entry point in `shaders/kernels.txt`. `choices` are names in the list
+    /// that begin with `$`, and the lists that replace them.
     pub(crate) fn new(entry_point: &'static str, choices: &[(&str, &'static str)]) -> Self {
         Self { entry_point, parts: parts(entry_point, choices), constants: Vec::new() }
     }
 
-    /// The kernel with the values of those of some constants that it declares.
+    /// The kernel with values of constants. Values of constants that it does not declare are ignored.
     pub(crate) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
         let lines = self.parts.iter().flat_map(|part| part.source.lines());
         let names: BTreeSet<_> = lines
@@ -62,12 +62,12 @@ impl Kernel {
         })
     }
 
-    /// The constants as wgpu takes them.
+    /// The constants in the form that wgpu takes.
     pub(crate) fn values_of_constants(&self) -> Vec<(&'static str, f64)> {
         self.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect()
     }
 
-    /// Whether it is written in more than the WGSL of any device.
+    /// Whether the kernel uses ray queries, which not every device supports.
     pub(crate) fn has_ray_queries(&self) -> bool {
         self.parts.iter().any(|part| part.name == WITH_DIRECTIVE)
     }
@@ -79,7 +79,7 @@ impl Kernel {
         self
     }
 
-    /// The kernel after the edits of its parts, and after it was rewritten as a whole.
+    /// The kernel after the edits of its parts and the rewrite of its whole source.
     pub(crate) fn edited(mut self, edits: &Edits) -> Result<Self, GpuError> {
         for edit in &edits.replacements {
             for part in self.parts.iter_mut().filter(|part| part.name == edit.file) {
@@ -91,7 +91,7 @@ impl Kernel {
         }
         if let Some(rewrite) = &edits.rewrite {
             let source = rewrite.apply(&self.name(), &self.source());
-            // The names of the parts, which name the kernel, stay; the first of them has all of the source.
+            // The names of the parts stay, because they name the kernel. The first part gets the whole source.
             self.parts.iter_mut().for_each(|part| part.source = "".into());
             if let Some(first) = self.parts.first_mut() {
                 first.source = source.into();
@@ -106,14 +106,14 @@ impl Kernel {
         parts.flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
     }
 
-    /// The parts as they are composed: one that begins with a directive is the first.
+    /// The parts in the order in which they are composed. A part that begins with a directive is the first.
     fn in_order(&self) -> impl Iterator<Item = &Part> {
         let has_directive = |part: &&Part| part.name == WITH_DIRECTIVE;
         let others = self.parts.iter().filter(move |part| !has_directive(part));
         self.parts.iter().filter(has_directive).chain(others)
     }
 
-    /// Replaces every position in the composed WGSL that occurs in a message of naga or wgpu by a position in a file.
+    /// Replaces positions in the composed WGSL, in a message of naga or wgpu, by positions in files.
     ///
     /// The parser names the source `wgsl`, and the validator names it by its label, which is the name of the kernel.
     pub(crate) fn with_positions_in_files(&self, message: &str) -> String {

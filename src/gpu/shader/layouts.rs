@@ -81,8 +81,8 @@ impl Layouts {
         found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
     }
 
-    /// Layout of bind group 1 of `trace` for a brick of which it is not known yet whether it will be
-    /// searched as a nested grid. Both kinds of grids have the same bindings.
+    /// Layout of bind group 1 of `trace` for a grid that may later be searched as a nested grid. Both kinds of grids
+    /// have the same bindings.
     pub(crate) fn brick_like(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
         let bound_as = |kind: BrickKind| (kind.structure.with_nested(true), kind.primitive);
         let found = self.brick.iter().find(|(of, _)| bound_as(*of) == bound_as(kind));
@@ -104,7 +104,7 @@ fn shapes(primitive: Primitive) -> BindingType {
     }
 }
 
-/// Creates a layout of bindings that are numbered from 0.
+/// Creates a layout of bindings with numbers from 0.
 pub(crate) fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
     let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
     layout_of(device, label, &kinds)

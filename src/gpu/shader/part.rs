@@ -54,8 +54,8 @@ const FILES: &[(&str, &str)] = files! {
 /// The lists of parts.
 const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/kernels.txt"));
 
-/// The parts that are named in a list of `shaders/kernels.txt`. `choices` are names that begin with `$`, and the lists that
-/// stand for them.
+/// The parts that are named in a list of `shaders/kernels.txt`. `choices` are names that begin with
+/// `$`, and the lists that replace them.
 pub(super) fn parts(names: &'static str, choices: &[(&str, &'static str)]) -> Vec<Part> {
     static BY_NAME: LazyLock<HashMap<&str, &str>> =
         LazyLock::new(|| LISTS.split("\n\n").filter_map(|list| list.split_once(':')).collect());
@@ -70,8 +70,8 @@ pub(super) fn parts(names: &'static str, choices: &[(&str, &'static str)]) -> Ve
 }
 
 impl Part {
-    /// A file of the folder, or one of its variants. The source of one that does not exist is empty, which a test of all
-    /// kernels detects.
+    /// A file of the folder, or one of its variants. If it does not exist, its source is empty,
+    /// which a test of all kernels detects.
     pub(crate) fn named(name: &'static str) -> Self {
         let file = name.split('#').next();
         let text =
@@ -79,7 +79,7 @@ impl Part {
         Self::of(name, text)
     }
 
-    /// The part with this name of a file with this text.
+    /// The part with this name from the text of its file.
     pub(crate) fn of(name: &'static str, text: &'static str) -> Self {
         let (source, skipped) = match name.split_once('#') {
             None => (text, 0),

@@ -18,7 +18,7 @@ pub(crate) fn pipeline(
     pipeline_with(device, kernel, &groups, checks)
 }
 
-/// Creates the pipeline of a kernel like [`pipeline`]. It has no bind group where there is `None`.
+/// Creates the pipeline of a kernel like [`pipeline`], but without bind groups for which `groups` has `None`.
 pub(crate) fn pipeline_with(
     device: &Device,
     kernel: &Kernel,
@@ -54,7 +54,7 @@ pub(crate) fn pipeline_with(
     })
 }
 
-/// The source of a kernel as a device takes it, and the constants that it still has to be given. A browser takes WGSL.
+/// The source of a kernel as a device takes it, and the constants that still need values. A browser takes WGSL.
 fn source<'a>(
     kernel: &Kernel,
     constants: &'a [(&'a str, f64)],
@@ -67,7 +67,7 @@ fn source<'a>(
     (wgpu::ShaderSource::Wgsl(source.into()), constants)
 }
 
-/// The options of a stage whose `override` constants have some values.
+/// The options of a stage with these values of `override` constants.
 pub(crate) fn with_constants<'a>(
     constants: &'a [(&'a str, f64)],
 ) -> wgpu::PipelineCompilationOptions<'a> {

@@ -1,11 +1,11 @@
-//! The kernels of primary rays, and what kernels choose: structures, cameras and targets.
+//! The kernels of primary rays, and the choices that kernels have: structures, cameras and targets.
 
 use super::kernel::{Constant, Kernel};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::shader::formats::ColorTarget;
 
-/// Whether a brick is the first that is traced for a picture.
+/// Whether a brick is the first one that is traced for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum BrickPass {
     First,
@@ -29,7 +29,7 @@ pub(crate) fn trace_kernel(
     entered_kernel(camera, kind, brick_pass, entry)
 }
 
-/// The kernel that finds the nearest sphere of every ray and probes fences, which the self-test makes of the one that
+/// The kernel that finds the nearest sphere of every ray and probes fences. The self-test makes it from the kernel that
 /// records rays (`gpu/self_test/fence_probe.rs`).
 pub(crate) fn probe_kernel() -> Kernel {
     let kind = BrickKind { structure: Structure::Grid, primitive: Primitive::Sphere };
@@ -90,7 +90,7 @@ pub(crate) fn shade_kernel(
         .with([camera_constant(camera)])
 }
 
-/// The part of a primitive, which provides `Shape`, `intersect` and `shape_normal`.
+/// The part that provides `Shape`, `intersect` and `shape_normal` for a primitive.
 fn primitive_part(primitive: Primitive) -> &'static str {
     match primitive {
         Primitive::Sphere => "scene/sphere.wgsl",

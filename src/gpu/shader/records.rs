@@ -73,11 +73,11 @@ pub(crate) type Status = u32;
 /// A hit, which is a `vec4u`: the bits of t, the id, the shape index, and the bits of the distance to the ray's origin.
 pub(crate) type Hit = [u32; 4];
 
-/// The recorded rays of a pixel, each of which is two `vec4f`: origin and distance; direction, and a number that is
-/// nonzero if there is a ray. The first was traced, and with the second the hit was shaded.
+/// The two recorded rays of a pixel: the ray that was traced, and the ray with which the hit was shaded. Each is two
+/// `vec4f`: origin and distance; direction, and a number that is nonzero if there is a ray.
 pub(crate) type RecordedRays = [f32; 16];
 
-/// The position of a scene: the origin of its frame in world space, and its box in that frame, to which rays are moved.
+/// The position of a scene: the origin of its frame in world space, and its bounds there, to which rays are moved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneSpace {
     pub(crate) origin: DVec3,
@@ -98,7 +98,7 @@ pub(crate) type Sphere = [f32; 4];
 /// A colour, which is a `vec4f`: linear red, green and blue, and alpha.
 pub(crate) type Color = [f32; 4];
 
-/// The number for transparent misses, `SHADING_TRANSPARENT` in `shaders/primary/shading.wgsl`.
+/// The value for transparent misses, `SHADING_TRANSPARENT` in `shaders/primary/shading.wgsl`.
 const SHADING_TRANSPARENT: u32 = 2;
 
 /// Distance of a miss, `NO_HIT` in `shaders/scene/frame.wgsl`.
@@ -173,13 +173,13 @@ impl FrameParameters {
 }
 
 impl FrameParameters {
-    /// The same record with the order of rows that suits a device.
+    /// Returns the record with the order of rows that suits a device.
     pub(crate) fn in_order_of(self, shape: DeviceShape) -> Self {
         let row_step = if shape.spreads_rows { self.row_step } else { 1 };
         Self { row_step, ..self }
     }
 
-    /// The record for lit pictures, whose colours depend on other records.
+    /// The record for lit pictures. Other records determine their colours.
     pub(crate) fn of_tile(
         view: &View<'_>,
         scene: &SceneSpace,

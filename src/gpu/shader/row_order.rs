@@ -1,4 +1,4 @@
-//! The order in which rows of workgroups are taken, where it spreads any run of them over the picture.
+//! An order of rows of workgroups that spreads any run of rows over the picture.
 
 /// The step between consecutive rows of workgroups. It is about the golden ratio of their number, so that any run of
 /// rows is spread evenly over the picture, and coprime to their number, so that no row is left out.

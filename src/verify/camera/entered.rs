@@ -1,5 +1,5 @@
-//! The point where a camera's ray enters the scene's box, and bounds of a device's error; and all rays that a device may
-//! compute for a pixel, for results whose ray was not recorded. The WGSL twin is `shaders/scene/enter.wgsl`.
+//! The point where a camera's ray enters the scene's box, and bounds of a device's error. For results whose ray was not
+//! recorded, all rays that a device may compute for a pixel. The WGSL twin is `shaders/scene/enter.wgsl`.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
 
-/// The same constant as in `shaders/scene/enter.wgsl`.
+/// The smallest magnitude of a direction's component, as in `shaders/scene/enter.wgsl`.
 pub(crate) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl CameraModel {
@@ -45,14 +45,14 @@ impl CameraModel {
     }
 }
 
-/// Where a ray enters and leaves the scene's box.
+/// The intervals in which a ray enters and leaves the scene's box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoxCrossing {
     pub(crate) enter: Interval,
     pub(crate) leave: Interval,
 }
 
-/// Where a ray crosses the nearer and the farther of two parallel planes.
+/// The intervals in which a ray crosses the nearer and the farther of two parallel planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlabCrossing {
     pub(crate) near: Interval,
@@ -60,7 +60,7 @@ pub(crate) struct SlabCrossing {
 }
 
 impl SlabCrossing {
-    /// Of the crossings of two planes.
+    /// The crossings of two planes, in either order.
     pub(crate) fn between(a: Interval, b: Interval) -> Self {
         Self {
             near: Interval { low: a.low.min(b.low), high: a.high.min(b.high) },
@@ -68,7 +68,7 @@ impl SlabCrossing {
         }
     }
 
-    /// All that either of two is.
+    /// The union of two crossings.
     pub(super) fn or(self, other: Self) -> Self {
         Self { near: self.near.union(other.near), far: self.far.union(other.far) }
     }
@@ -149,7 +149,7 @@ impl EnteredRay {
         axes.chain([distance])
     }
 
-    /// The error of a component of the start: a product and a sum; the distance may be multiplied out.
+    /// The error of a component of the start: of a product and a sum. The distance may be multiplied out.
     fn origin_error(&self, axis: usize) -> f64 {
         let (d, start) = (self.recorded_direction[axis].abs(), self.exact.line.origin[axis].abs());
         let along = self.enter.high * d;
@@ -166,7 +166,7 @@ impl EnteredRay {
     /// The distances of entry that agree with a component of the ray's start.
     fn enter_by(&self, axis: usize, found: f64) -> Interval {
         let (d, error) = (self.recorded_direction[axis], self.origin_error(axis));
-        // For a direction perpendicular to this axis, the component says nothing about the distance.
+        // For a direction perpendicular to this axis, the component does not determine the distance.
         if d.abs() < SMALLEST_COMPONENT {
             return self.enter;
         }
@@ -181,7 +181,7 @@ impl EnteredRay {
         Interval { low: distance + enter.low - error, high: distance + enter.high + error }
     }
 
-    /// How much the ray of another kernel may differ from this one.
+    /// Maximum difference of another kernel's ray from this one.
     pub(crate) fn slack(&self) -> Slack {
         let turned = self.exact.direction_error.length();
         let moved = self.exact.origin_error.length();
@@ -221,7 +221,7 @@ impl CameraRay {
         let Line { origin, direction, bend } = self.line;
         let turned = self.direction_error.length();
         let along = enter.high * (direction.abs() + self.direction_error);
-        // As for `EnteredRay`: a product and a sum.
+        // As in `EnteredRay::origin_error`: a product and a sum.
         let moved = self.origin_error
             + gamma(4) * along
             + U * (origin.abs() + along + self.origin_error)

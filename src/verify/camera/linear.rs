@@ -14,7 +14,7 @@ use crate::verify::sphere::Line;
 /// A point of the view plane, relative to its middle.
 struct Aside {
     exact: DVec3,
-    /// The magnitudes of the sum's terms, and the error due to that of the location.
+    /// The magnitudes of the sum's terms, and the error that the error of the location causes.
     terms: DVec3,
     location_error: DVec3,
 }

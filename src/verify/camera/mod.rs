@@ -16,7 +16,7 @@ use crate::geometry::math::wide;
 
 pub(super) use entered::{AnyRay, BoxCrossing, EnteredRay, SMALLEST_COMPONENT, SlabCrossing};
 
-/// The centre of the lens; all rays of a recording go through it.
+/// The centre of the lens. All rays of a recording go through it.
 const LENS_CENTER: DVec2 = DVec2::splat(0.5);
 
 /// The exact ray of a pixel, before it is moved to the scene's box, and error bounds for a device's ray.
@@ -155,7 +155,7 @@ impl DeviceVector {
     }
 }
 
-/// A vector that was divided by its length, as every camera does.
+/// A vector that was divided by its length, as in every camera.
 #[derive(Clone, Copy, Debug)]
 struct Unit {
     direction: DVec3,
@@ -168,7 +168,7 @@ impl Unit {
     fn of(toward: DeviceVector) -> Self {
         let DeviceVector { exact, error } = toward;
         let length = exact.length();
-        // The length changes by at most the error of the vector; its own computation adds an error.
+        // The length changes by at most the error of the vector. Its own computation adds an error.
         let length_error = PAD * error.length() + error_of_length(length);
         let shortest = (length - length_error).max(f64::MIN_POSITIVE);
         // The errors of a reciprocal of the length and of a product.
@@ -181,7 +181,7 @@ impl Unit {
     }
 }
 
-/// The numbers within errors of a vector, along each axis.
+/// The intervals of a vector's components, given their errors.
 fn around(exact: DVec3, error: DVec3) -> [Interval; 3] {
     [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
 }

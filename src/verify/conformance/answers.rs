@@ -16,10 +16,10 @@ pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
 /// The largest k that an honest f32 renderer needs for ids and depths, for rays that it is given.
 pub const OF_GIVEN_RAYS: f64 = 24.0;
 
-/// What is added to the limit if the renderer made the rays by itself.
+/// Added to the limit if the renderer made the rays by itself.
 pub const FOR_CAMERAS: f64 = 16.0;
 
-/// What is added to the limit if normals are judged.
+/// Added to the limit if normals are judged.
 pub const FOR_NORMALS: f64 = 8.0;
 
 /// The part of the distance of a ray's start from the origin that is added to the size of a sphere.
@@ -35,12 +35,12 @@ pub struct Answers<'a> {
     pub size: [u32; 2],
     /// The sphere of each pixel, as an index in input order; [`NO_ID`] for a miss.
     pub ids: &'a [u32],
-    /// The depth of each pixel, in scene units. Depths of misses are not looked at.
+    /// The depth of each pixel, in scene units. Depths of misses are ignored.
     pub depths: Option<&'a [f64]>,
     /// The kind of depths.
     pub depth_kind: DepthKind,
-    /// The unit normal of each pixel in world space, which points away from the sphere's centre. Normals of misses are
-    /// not looked at.
+    /// The unit normal of each pixel in world space, which points away from the sphere's
+    /// centre. Normals of misses are ignored.
     pub normals: Option<&'a [[f64; 3]]>,
 }
 
@@ -69,12 +69,12 @@ pub enum Rays<'a> {
 #[error("{message}")]
 #[non_exhaustive]
 pub struct ConformanceError {
-    /// The field that is not valid, if it is one.
+    /// The field that is not valid, if the error is in a field.
     pub field: Option<Field>,
     message: String,
 }
 
-/// A field of answers, or the rays, of which a number is not valid.
+/// A field of answers, or the rays, with a number that is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
@@ -106,7 +106,7 @@ impl Answers<'_> {
         OF_GIVEN_RAYS + for_camera + for_normals
     }
 
-    /// Whether the answers can be judged; every number is looked at.
+    /// Checks whether the answers can be judged. Every number is checked.
     pub(super) fn check(&self, scene: &Scene, rays: Rays<'_>) -> Result<(), ConformanceError> {
         let size = self.size;
         let count = u64::from(size[0]) * u64::from(size[1]);
@@ -146,7 +146,7 @@ impl Answers<'_> {
         self.check_numbers(scene.len())
     }
 
-    /// The error for a number of a pixel.
+    /// The error for an invalid number of a pixel.
     fn wrong(&self, field: Field, index: usize, what: &str, message: &str) -> ConformanceError {
         let [column, row] = self.pixel(index);
         refused(Some(field), format!("the {what} at pixel ({column}, {row}) {message}"))
@@ -213,14 +213,14 @@ impl Rays<'_> {
     }
 }
 
-/// The largest number of pixels that are explained.
+/// The largest number of pixels with an explanation.
 pub(super) const KEPT: usize = 100;
 
 /// Exponents of two of the first and the last limit of the histogram.
 const FIRST: i32 = -4;
 const LAST: i32 = 24;
 
-/// How well the answers of a renderer hold, pixel by pixel: the result of
+/// The judgement of a renderer's answers, pixel by pixel: the result of
 /// [`Checker::certify_answers`](crate::verify::Checker::certify_answers).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -230,9 +230,9 @@ pub struct Conformance {
     /// The limit of k.
     pub at_most: f64,
     /// The outcome of every pixel, row by row from the top. A pixel is proved if its answer is the only one that is
-    /// legal within the limit, undecided if others are as well, and violated if it needs a larger k.
+    /// legal within the limit, undecided if other answers are legal too, and violated if it needs a larger k.
     pub outcomes: Vec<Outcome>,
-    /// The least k of every pixel; infinity where no k makes it legal.
+    /// The least k of every pixel; infinity if no k makes the pixel legal.
     pub least: Vec<f32>,
     /// The pixels that need the largest k, the worst first; at most a hundred.
     pub worst: Vec<Finding>,
@@ -252,15 +252,15 @@ pub struct Finding {
     pub outcome: Outcome,
     /// The least k.
     pub least: f64,
-    /// The same as a length in scene units: by how much a sphere must be moved.
+    /// The least k as a length in scene units: how far a sphere must be moved.
     pub margin: f64,
-    /// What needs it.
+    /// The reason for this k.
     pub reason: Reason,
     /// The sphere that the exact ray hits, and its distance.
     pub exact: Option<(u32, f64)>,
 }
 
-/// What is wrong with an answer unless the ray is changed.
+/// The defect of an answer if the ray is not changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reason {
@@ -297,7 +297,7 @@ impl Conformance {
         self.outcomes.iter().filter(|of_pixel| **of_pixel == outcome).count()
     }
 
-    /// The fraction of pixels of which only one answer is legal within the limit, and the renderer gave it.
+    /// The fraction of pixels for which only one answer is legal within the limit, and the renderer gave it.
     #[must_use]
     pub fn decided_fraction(&self) -> f64 {
         self.count(Outcome::Proved) as f64 / self.outcomes.len().max(1) as f64
@@ -316,9 +316,9 @@ impl Conformance {
         self.least.iter().copied().fold(0.0, f32::max).into()
     }
 
-    /// How many pixels need which k: the upper limits of k, which are powers of two from 1/16 on, and the number of
-    /// pixels up to each that are above the one before. It ends with the largest k; the last limit is infinite if that
-    /// is above 2²⁴.
+    /// The number of pixels by k. The limits are powers of two from 1/16 on, each with the number of pixels whose k is
+    /// at most this limit and above the previous one. The last limit is the first one that is not below the largest k.
+    /// It is infinite if that is above 2²⁴.
     #[must_use]
     pub fn histogram(&self) -> Vec<(f64, usize)> {
         let limits = (FIRST..=LAST).map(|exponent| 2_f64.powi(exponent)).chain([f64::INFINITY]);

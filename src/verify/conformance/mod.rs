@@ -1,10 +1,10 @@
-//! Whether the answers of any renderer are right: which sphere each pixel shows, at which depth and with which normal.
+//! Judges whether the answers of any renderer are right: which sphere each pixel shows, at which depth and normal.
 //!
-//! No renderer in floating-point numbers gives the exact answer to every ray, and this is no fault: where a ray only
-//! just meets a sphere, rounding decides. A tolerance for depths and a share of pixels that may differ would hide real
+//! No renderer in floating-point numbers gives the exact answer to every ray, and this is not a fault: if a ray just
+//! touches a sphere, rounding decides. A tolerance for depths and a share of pixels that may differ would hide real
 //! faults beside such rays. So answers are judged by *backward stability*, as numerical algorithms are (Higham,
 //! *Accuracy and Stability of Numerical Algorithms*, section 1.5): an answer is good if it is the exact answer to a
-//! question that differs by little from the one that was asked.
+//! question that differs little from the given question.
 //!
 //! # Definition
 //!
@@ -13,12 +13,12 @@
 //!
 //! |δ| ≤ k ε (max(|l|, r) + s).
 //!
-//! This is the same as a ray that starts up to k ε |l| elsewhere, or whose direction is turned by up to k ε. For given
-//! rays ([`Rays::Given`]) s is 0. For rays that the renderer makes by itself ([`Rays::View`]) s is an eighth of the
-//! distance of the camera from the origin of the scene's frame, because the camera's coordinates are rounded too, but
-//! not often. (The frame is that of
-//! the world, unless the data are far from the world's origin: [`Scene::origin`](crate::Scene::origin). Who narrows
-//! coordinates far from zero needs a larger k, and the picture shows it.)
+//! This is the same as a ray that starts up to k ε |l| elsewhere, or whose direction is turned by up to k ε.
+//! For given rays ([`Rays::Given`]) s is 0. For rays that the renderer makes by itself ([`Rays::View`]) s is
+//! an eighth of the distance of the camera from the origin of the scene's frame, because the camera's
+//! coordinates are rounded too, but not often. (The frame is that of the world, unless the data are far from
+//! the world's origin: [`Scene::origin`](crate::Scene::origin). A renderer that narrows coordinates far from
+//! zero needs a larger k, and the picture shows it.)
 //!
 //! An answer is *legal for k* if every sphere can be moved by at most k, each by itself, such that
 //!
@@ -27,21 +27,20 @@
 //!   coordinates);
 //! * no other sphere is hit before that; or, if a miss is claimed, no sphere is hit at all.
 //!
-//! Each sphere is moved by itself because a renderer tests each sphere by itself, with roundings of its own. Each of
-//! these conditions holds for all larger k if it holds for one, so that there is a *least k*. All spheres that are
-//! moved by at most a fill the ball of radius r + a, and share the ball of radius r − a; so the least move for each
-//! condition is the distance of a point from a circle, in closed form (`relative_sphere.rs`). The least k of a pixel is
-//! the largest of them. (Without a depth, how near the claimed sphere may be depends on k as well, and the least k is
-//! found by doubling and bisection.) Everything is computed in f64, whose errors are 2⁻²⁹ of one k.
+//! Each sphere is moved by itself because a renderer tests each sphere by itself, with separate roundings. If one of
+//! these conditions holds for some k, it holds for all larger k, so there is a *least k*. All spheres that are moved by
+//! at most a fill the ball of radius r + a, and share the ball of radius r − a. So the least move for each condition is
+//! the distance of a point from a circle, in closed form (`relative_sphere.rs`). The least k of a pixel is the largest
+//! of them. (Without a depth, the nearest position of the claimed sphere also depends on k, and the least k is found by
+//! doubling and bisection.) Everything is computed in f64, whose errors are 2⁻²⁹ of one k.
 //!
 //! A sphere that contains the start of its ray shows its far side. Spheres that are equal to the bit count as one.
 //!
 //! # Outcomes
 //!
 //! For a limit K, a pixel is *violated* if its least k is above K. It is *proved* if every answer that is legal for K
-//! names the sphere that the renderer named. Otherwise it is *undecided*: the answer is legal, but so are others, as at
-//! silhouettes and where spheres touch; nothing is said about it. A sphere whose radius is smaller than its move is
-//! never proved.
+//! names the sphere that the renderer named. Otherwise it is *undecided*: the answer is legal, but other answers are
+//! too, as at silhouettes and where spheres touch. A sphere whose radius is smaller than its move is never proved.
 //!
 //! # What an honest f32 renderer needs
 //!
@@ -51,7 +50,7 @@
 //! l = c − o, b = l·d, f = l − b d, q = r² − f·f, h = √q, t = b − h or (l·l − r²)/(b + h),
 //!
 //! needs k ≤ 9 for ids, k ≤ 21 with depths, and k ≤ 27 with normals. Let L = |l| ≥ r (from inside, the same holds with
-//! r in place of L), and ε the error of one rounding; terms in ε² are left out.
+//! r in place of L), and let ε be the error of one rounding. Terms in ε² are left out.
 //!
 //! 1. The difference l is off by ε L: a move by 1, in units of ε L.
 //! 2. b is off by at most 3 ε L (three roundings of l·d, by Cauchy and Schwarz). This moves f along d, across which it
@@ -71,19 +70,19 @@
 //!    that are at most L + |o| + r, of which s takes up |o|; making it unit adds 3.5 ε r: less than 21 + 2.5 + 3.5 = **27**.
 //! 7. A direction in f32 is of unit length up to 1.5 ε, so that distances and parameters differ by at most 1.5 ε t.
 //!
-//! So the limit is 24 for given rays ([`OF_GIVEN_RAYS`]), and 8 more where normals are judged ([`FOR_NORMALS`]). A
+//! So the limit is 24 for given rays ([`OF_GIVEN_RAYS`]), and 8 more if normals are judged ([`FOR_NORMALS`]). A
 //! renderer that makes its rays also rounds o, by ε |o|, and may move the ray's start along it, to numbers of at most
-//! |o| + 2 L; the limit times s covers |o|, and 2 remain. It rounds d: for a location x, y it sums x right + y up +
-//! forward. The location is off by 3 ε (the quotient, the difference), and each vector, product and sum by ε:
-//! 3 (|right| + |up|) + 4 (|x right| + |y up| + |forward|), relative to the length of the sum. Up to a field of view of 90°
-//! that is at most 6 + 4 √3 < 13, and making it unit adds 3.5: together less than 17 + 2. So the limit is 16 more
-//! ([`FOR_CAMERAS`]): 21 + 19 = 40. Wider fields of view, and cameras whose angles come from trigonometry with the errors
-//! that WGSL allows, may need more.
+//! |o| + 2 L. The limit times s covers |o|, and 2 remain. The renderer also rounds d: for a location x, y it sums x
+//! right + y up + forward. The location is off by 3 ε (the quotient, the difference), and each vector, product and sum
+//! by ε: 3 (|right| + |up|) + 4 (|x right| + |y up| + |forward|), relative to the length of the sum. Up to a field of
+//! view of 90° that is at most 6 + 4 √3 < 13, and normalizing it adds 3.5: together less than 17 + 2. So the limit is
+//! 16 more ([`FOR_CAMERAS`]): 21 + 19 = 40. Wider fields of view, and cameras whose angles come from trigonometry with
+//! the errors that WGSL allows, may need more.
 //!
-//! The textbook's quadratic formula is not honest in this sense: from b² − 4ac it subtracts numbers of the size L²,
-//! which loses ε L² from r², and a small sphere far away is moved by L/r times as much.
+//! The quadratic formula of textbooks does not meet these conditions: its b² − 4ac subtracts numbers of the size L²,
+//! which loses ε L² from r², so that a small sphere far away is moved by L/r times as much.
 //!
-//! In practice sums of so many roundings never meet, and honest renderers need k below 6 (`docs/conformance.md`).
+//! In practice, so many roundings never all add up, and honest renderers need k below 6 (`docs/conformance.md`).
 //!
 //! ```
 //! use pinhole::camera::{PinholeCamera, Pose};
@@ -124,11 +123,11 @@ use super::checker::Checker;
 use crate::parallel::{map_parts, ranges};
 
 impl Checker<'_> {
-    /// Judges the answers of any renderer to exact rays. `at_most` is the limit of k; without it, the limit is
-    /// [`OF_GIVEN_RAYS`], and [`FOR_CAMERAS`] and [`FOR_NORMALS`] where they apply.
+    /// Judges the answers of any renderer to exact rays. `at_most` is the limit of k. Without it, the limit is
+    /// [`OF_GIVEN_RAYS`], plus [`FOR_CAMERAS`] and [`FOR_NORMALS`] if they apply.
     ///
     /// # Errors
-    /// Returns an error if a list has a wrong length, an id is not that of a sphere, a number is not finite or not
+    /// Returns an error if a list has a wrong length, an id is not the index of a sphere, a number is not finite or not
     /// positive where it must be, or if depths along an axis are given without a camera that has one.
     pub fn certify_answers(
         &self,
@@ -172,7 +171,7 @@ impl Checker<'_> {
     }
 }
 
-/// The outcomes and the least k of a range of pixels, and the indices of those with the largest k, the worst first.
+/// The outcomes and the least k of a range of pixels, and the indices of pixels with the largest k, the worst first.
 fn judge(check: &PixelCheck<'_>, range: Range<usize>) -> (Vec<(Outcome, f32)>, Vec<usize>) {
     let (start, mut others) = (range.start, Vec::new());
     let judged = |index| {

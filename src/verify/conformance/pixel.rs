@@ -11,10 +11,10 @@ use crate::verify::conformance::answers::{Finding, Reason};
 use crate::verify::hit::Candidates;
 use crate::verify::sphere::Line;
 
-/// With this k a centre may be moved by its distance, and every answer is legal that is consistent with one sphere.
+/// The k (a move in units of ε) that moves a centre by its distance: every answer consistent with one sphere is legal.
 const EVERYTHING: f64 = 1.0 / EPSILON;
 
-/// The rounding errors of a search in f64, relative to the longest vector to a sphere: many times what they are.
+/// A generous bound of the rounding errors of a search in f64, relative to the longest vector to a sphere.
 const OF_SEARCH: f64 = 1.0 / (1_u64 << 40) as f64;
 
 pub(super) struct PixelCheck<'a> {
@@ -29,13 +29,13 @@ pub(super) struct PixelCheck<'a> {
 /// The exact ray of a pixel, in the scene's frame.
 struct ExactRay {
     line: Line,
-    /// The length that is added where numbers of the size of coordinates are rounded.
+    /// The length that is added to sizes if numbers of the size of coordinates are rounded.
     coordinates: f64,
-    /// The length that is added to the size of every sphere, where the renderer made the ray by itself.
+    /// The length that is added to the size of every sphere if the renderer made the ray by itself.
     start: f64,
 }
 
-/// A sphere beside the one that the renderer found.
+/// A sphere other than the one that the renderer found.
 pub(super) struct Other {
     id: u32,
     seen: RelativeSphere,
@@ -43,14 +43,14 @@ pub(super) struct Other {
     earliest: f64,
 }
 
-/// What a renderer says of a pixel that it calls a hit.
+/// A renderer's claim about a pixel that it calls a hit.
 struct Claim {
     sphere: [f32; 4],
     seen: RelativeSphere,
-    /// The move that is k = 1.
+    /// The length of the move for k = 1.
     unit: f64,
     distance: Option<f64>,
-    /// The least k for this sphere by itself, and what needs it.
+    /// The least k for this sphere by itself, and the reason for it.
     alone: f64,
     reason: Reason,
 }
@@ -60,7 +60,7 @@ impl ExactRay {
         RelativeSphere::new(self.line.origin, self.line.direction, sphere)
     }
 
-    /// The move of a sphere that is k = 1.
+    /// The length of the move of a sphere for k = 1.
     fn unit(&self, seen: &RelativeSphere) -> f64 {
         EPSILON * (seen.size() + self.start)
     }
@@ -82,7 +82,7 @@ impl PixelCheck<'_> {
     pub(super) fn judge(&self, index: usize, others: &mut Vec<Other>) -> (Outcome, f64) {
         let id = self.answers.ids[index];
         let Some(ray) = self.ray(index) else {
-            // Where the camera has no ray, only a miss is legal.
+            // If the camera has no ray, only a miss is legal.
             return if id == NO_ID {
                 (Outcome::Proved, 0.0)
             } else {
@@ -142,7 +142,7 @@ impl PixelCheck<'_> {
                 (finding.margin, finding.reason) = (claim.alone * claim.unit, claim.reason);
             }
             claim => {
-                // The sphere that is in the way the most.
+                // The sphere that hides the claimed one the most.
                 let needed = |other: &Other| {
                     let unit = ray.unit(&other.seen);
                     let t = claim
@@ -168,7 +168,7 @@ impl PixelCheck<'_> {
         self.scene.spheres()[id as usize]
     }
 
-    /// What the renderer says of a hit; `None` for a miss.
+    /// The renderer's claim about a hit; `None` for a miss.
     fn claim(&self, index: usize, id: u32, ray: &ExactRay) -> Option<Claim> {
         if id == NO_ID {
             return None;
@@ -194,19 +194,19 @@ impl PixelCheck<'_> {
             let moved = seen
                 .move_to_normal(direction, normal.normalize_or_zero())
                 .max((length - 1.0).abs() * f64::from(sphere[3]));
-            // The point of the hit has coordinates, which are rounded, whoever made the ray.
+            // The coordinates of the hit point are rounded, whether the ray was given or not.
             let needed = moved / (EPSILON * (seen.size() + ray.coordinates));
             if needed > alone {
                 (alone, reason) = (needed, Reason::Normal);
             }
         }
-        // NaN, if a ray is across the axis of depth.
+        // The value is NaN if a ray is perpendicular to the axis of depth.
         let alone = if alone.is_nan() { f64::INFINITY } else { alone };
         Some(Claim { sphere, seen, unit, distance, alone, reason })
     }
 
-    /// Finds the spheres that may be the nearest beside the one that the renderer found, for k of at most the limit.
-    /// Returns whether the sphere of the claim is certainly hit.
+    /// Finds the other spheres that may be the nearest, for k of at most the limit. Returns whether
+    /// the claimed sphere is certainly hit.
     fn find(&self, ray: &ExactRay, claim: Option<&Claim>, others: &mut Vec<Other>) -> bool {
         others.clear();
         let k = self.at_most;
@@ -235,7 +235,7 @@ impl PixelCheck<'_> {
         certain.is_some()
     }
 
-    /// Finds the spheres beside that of the claim which the exact ray meets before `t`.
+    /// Finds the spheres other than the claimed one that the exact ray meets before `t`.
     fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64, others: &mut Vec<Other>) {
         others.clear();
         let beside = OF_SEARCH * self.candidates.longest_from(ray.line.origin);
@@ -249,13 +249,13 @@ impl PixelCheck<'_> {
         });
     }
 
-    /// The least k with which every sphere is missed.
+    /// The least k for which the ray misses every sphere.
     fn to_be_missed(&self, ray: &ExactRay, others: &[Other]) -> f64 {
         let needed = |other: &Other| other.seen.move_to_miss() / ray.unit(&other.seen);
         others.iter().map(needed).fold(0.0, f64::max)
     }
 
-    /// The least k with which a claim is right by itself, and no other sphere certainly hides it.
+    /// The least k for which a claim is right by itself, and no other sphere certainly hides it.
     fn to_be_nearest(ray: &ExactRay, claim: &Claim, others: &[Other]) -> f64 {
         let hidden = |t: f64| {
             let needed = |other: &Other| other.seen.move_to_pass(t) / ray.unit(&other.seen);
@@ -265,7 +265,7 @@ impl PixelCheck<'_> {
         if let Some(t) = claim.distance {
             return alone.max(hidden(t));
         }
-        // Without a depth, the sphere may be as near as k allows, so that k is found by bisection.
+        // Without a depth, k determines how near the sphere may be, so it is found by bisection.
         let is_enough = |k: f64| hidden(claim.earliest(k)) <= k;
         if is_enough(alone) {
             return alone;

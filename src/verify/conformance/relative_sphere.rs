@@ -1,10 +1,9 @@
-//! A sphere as an exact ray sees it, and how far its centre must be moved for each of the answers that a renderer may
-//! give.
+//! A sphere relative to an exact ray, and the least move of its centre for each answer that a renderer may give.
 //!
-//! In the plane through the ray and the centre, the ray is the axis from 0 on, the centre is at `b` along it and at `f`
+//! In the plane through the ray and the centre, the ray is the axis from 0 on. The centre is at `b` along it and at `f`
 //! beside it. A renderer's answer holds for a sphere whose centre is moved by at most `a`. All such spheres together
-//! fill the ball of radius r + a around the centre, and what they have in common is the ball of radius r − a. So the
-//! bounds are distances of points from circles, in closed form.
+//! fill the ball of radius r + a around the centre, and the ball of radius r − a is inside all of them. So the bounds
+//! are distances of points from circles, in closed form.
 
 use glam::DVec3;
 
@@ -25,7 +24,7 @@ pub(super) struct RelativeSphere {
 }
 
 impl RelativeSphere {
-    /// The sphere as the ray sees it; the direction must have unit length.
+    /// The sphere relative to a ray. The direction must have unit length.
     pub(super) fn new(origin: DVec3, direction: DVec3, [x, y, z, radius]: [f32; 4]) -> Self {
         let to_center = wide([x, y, z]) - origin;
         let b = to_center.dot(direction);
@@ -33,7 +32,7 @@ impl RelativeSphere {
         Self { b, f: foot.length(), l: to_center.length(), r: radius.into(), foot }
     }
 
-    /// The length of which moves are multiples: the distance of the centre, or the radius if the ray starts inside.
+    /// The length of which k is a multiple: the distance of the centre, or the radius if the ray starts inside.
     pub(super) fn size(&self) -> f64 {
         self.l.max(self.r)
     }
@@ -47,27 +46,27 @@ impl RelativeSphere {
         (t - self.b).hypot(self.f)
     }
 
-    /// The least move with which the sphere is hit.
+    /// The least move for which the sphere is hit.
     pub(super) fn move_to_hit(&self) -> f64 {
         let outside = if self.b > 0.0 { self.f } else { self.l };
         if self.starts_inside() { 0.0 } else { (outside - self.r).max(0.0) }
     }
 
-    /// The least move with which the sphere is missed; 0 if it is missed without.
+    /// The least move for which the sphere is missed; 0 if the ray misses it anyway.
     pub(super) fn move_to_miss(&self) -> f64 {
         let least = match (self.starts_inside(), self.b > 0.0) {
             (true, false) => self.r - self.l,
             (false, false) => 0.0,
-            // A line beside the sphere; there is no nearer way out.
+            // A line beside the sphere. There is no nearer way out.
             (_, true) => self.r - self.f,
         };
         least.max(0.0)
     }
 
-    /// The least move with which the first point of the sphere on the ray is at distance `t`.
+    /// The least move for which the first point of the sphere on the ray is at distance `t`.
     pub(super) fn move_to_hit_at(&self, t: f64) -> f64 {
         let to_surface = (self.distance_of(t) - self.r).abs();
-        // Where a line only touches the moved sphere, its centre is beside the point.
+        // If a line only touches the moved sphere, its centre is beside the point.
         let to_touching = (t - self.b).hypot(self.f - self.r);
         let [entering, leaving] =
             if t <= self.b { [to_surface, to_touching] } else { [to_touching, to_surface] };
@@ -75,7 +74,7 @@ impl RelativeSphere {
         entering.min(leaving.max(self.l - self.r))
     }
 
-    /// The least move with which the sphere does not certainly hide a point at distance `t`.
+    /// The least move for which the sphere does not certainly hide a point at distance `t`.
     pub(super) fn move_to_pass(&self, t: f64) -> f64 {
         let missed = self.move_to_miss();
         let beyond_far_side = self.distance_of(t) - self.r;
@@ -83,12 +82,12 @@ impl RelativeSphere {
             return missed.min(beyond_far_side).max(0.0);
         }
         let before_near_side = if t <= self.b { -beyond_far_side } else { missed };
-        // If the ray may as well start inside, it meets the far side.
+        // If the ray may also start inside, it meets the far side.
         let inside = (self.l - self.r).max(beyond_far_side);
         missed.min(before_near_side).min(inside).max(0.0)
     }
 
-    /// The least move with which the outward normal of the hit is `normal`, which must have unit length.
+    /// The least move for which the outward normal of the hit is `normal`, which must have unit length.
     pub(super) fn move_to_normal(&self, direction: DVec3, normal: DVec3) -> f64 {
         let along = normal.dot(direction);
         // The moved centre is on the line that lies beside the ray by the normal times the radius.
@@ -99,10 +98,10 @@ impl RelativeSphere {
         entering.min(leaving)
     }
 
-    /// The least distance at which a sphere is hit whose centre is moved by at most `a`, if any is hit.
+    /// The least distance of the hits of all spheres whose centre is moved by at most `a`, if any is hit.
     pub(super) fn earliest(&self, a: f64) -> f64 {
         if self.l - self.r <= -a {
-            // All of them are left.
+            // All moved spheres contain the start.
             let inner = self.r - a;
             return self.b + (inner * inner - self.f * self.f).max(0.0).sqrt();
         }
@@ -113,7 +112,7 @@ impl RelativeSphere {
         self.b - (outer * outer - self.f * self.f).max(0.0).sqrt()
     }
 
-    /// The largest distance at which a sphere is hit whose centre is moved by at most `a`, if all of them are hit.
+    /// The largest distance of the hits of all spheres whose centre is moved by at most `a`, if all are hit.
     pub(super) fn latest(&self, a: f64) -> f64 {
         if self.l - self.r > a {
             let inner = self.r - a;
@@ -130,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// The distance at which a ray along x first meets a sphere of radius 1, in the plainest way.
+    /// The distance at which a ray along x first meets a sphere of radius 1, computed directly.
     fn first(center: DVec3) -> Option<f64> {
         let beside = center.y.hypot(center.z);
         let half = (1.0 - beside * beside).max(0.0).sqrt();
@@ -139,7 +138,7 @@ mod tests {
         (beside <= 1.0 && (is_inside || t > 0.0)).then_some(t)
     }
 
-    /// What closed forms say is what spheres with moved centres show: none beyond the bounds, and some close to them.
+    /// Spheres with moved centres stay within the bounds of the closed forms, and some come close to the bounds.
     #[test]
     fn bounds_hold_and_are_reached() {
         let mut random = Rng::with_seed(4);

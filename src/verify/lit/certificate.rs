@@ -84,7 +84,7 @@ pub struct LitViolation {
     pub surface: u32,
     /// The stage with the illegal result.
     pub stage: LitStage,
-    /// The result that was found, and the legal ones.
+    /// The result that was found, and the legal results.
     pub message: String,
 }
 
@@ -96,10 +96,10 @@ impl fmt::Display for LitViolation {
     }
 }
 
-/// The largest numbers of open stages and of undecided ones that are kept; all are counted.
+/// Maximum number of open stages, and of undecided stages, that are kept. All are counted.
 pub(super) const OPEN_KEPT: usize = 32;
 
-/// A stage of which several results are legal, or whose bounds are so wide that its check says little.
+/// A stage with several legal results, or with bounds that are too wide for its check to decide much.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -112,15 +112,15 @@ pub struct LitOpen {
     pub surface: u32,
     /// The stage.
     pub stage: LitStage,
-    /// Whether its check says little; otherwise the device gave one of several legal results.
+    /// Whether the bounds are too wide; otherwise the device gave one of several legal results.
     pub is_undecided: bool,
-    /// Of searches, up to four legal answers in words: spheres that may be the nearest, or that may hide a light and need
-    /// not. Of other stages none are listed.
+    /// Up to four legal answers of a search in words: spheres that may be the nearest, or that may hide a light but
+    /// need not. Empty for other stages.
     pub legal: Vec<String>,
 }
 
 impl fmt::Display for LitOpen {
-    /// Writes where the stage is and what is legal, on one line.
+    /// Writes the address of the stage and its legal answers, on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], sample, surface, stage, legal, .. } = self;
         let (stage, legal) = (stage.name(), legal.join(", or "));
@@ -128,20 +128,20 @@ impl fmt::Display for LitOpen {
     }
 }
 
-/// The number of stages that were judged, by verdict. A stage counts once for each sample
-/// that passes through it; in a studio, a search counts once for each light and each direction.
+/// The number of stages that were judged, by verdict. A stage counts once for each sample that passes through it. In a
+/// studio, a search counts once for each light and each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct StageCounts {
     /// All stages that were judged.
     pub checked: u64,
-    /// Stages with a single legal answer, up to narrow bounds, which the device gave.
+    /// Stages with a single legal answer, up to narrow bounds. The device gave this answer.
     pub decided: u64,
-    /// Stages with several legal answers, as at a silhouette or at a random choice on a boundary, of which the device
-    /// gave one.
+    /// Stages with several legal answers, as at a silhouette or at a random choice on a
+    /// boundary. The device gave one of them.
     pub open: u64,
-    /// Stages with a legal answer whose bound is so wide that the check says little.
+    /// Stages with a legal answer whose bound is too wide for the check to decide much.
     pub undecided: u64,
 }
 
@@ -149,15 +149,15 @@ pub struct StageCounts {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct LitCertificate {
-    /// The number of samples of pixels; each is a path, or a ray of a studio with all surfaces that it passes.
+    /// The number of samples of pixels. Each is a path, or a ray of a studio with all surfaces that it passes.
     pub paths: u64,
-    /// The counts of each stage, by its place in [`LitStage`].
+    /// The counts of each stage, indexed by [`LitStage`].
     pub(crate) counts: [StageCounts; LitStage::COUNT],
     /// The number of stages with an illegal result.
     pub violation_count: u64,
     /// The first violations, in the order of samples, surfaces and pixels.
     pub violations: Vec<LitViolation>,
-    /// The first stages that are open, and the first that are undecided.
+    /// The first open stages, and the first undecided stages.
     pub open: Vec<LitOpen>,
     /// First column and row, width and height of the rectangles of the film in which samples were taken.
     pub rectangles: Vec<[u32; 4]>,
@@ -167,22 +167,22 @@ pub struct LitCertificate {
     pub film_samples: u32,
     /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
     pub upload: Option<UploadError>,
-    /// How far the numbers of decided stages are from the middle of their bounds.
+    /// The deviations of decided stages from the middle of their bounds.
     pub deviations: Deviations,
     /// Whether the picture is that of a studio.
     pub is_studio: bool,
 }
 
-/// How much of a lit picture was judged: so many samples of so many of its pixels.
+/// The judged share of a lit picture: some samples of some pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct LitShare {
-    /// The number of samples that were judged of each of the pixels.
+    /// The number of samples that were judged of each of these pixels.
     pub samples: u64,
     /// The number of samples of each pixel of the picture.
     pub of_samples: u64,
-    /// The number of pixels of which samples were judged.
+    /// The number of pixels with judged samples.
     pub pixels: u64,
     /// The number of pixels of the picture.
     pub of_pixels: u64,
@@ -197,7 +197,7 @@ impl LitShare {
     }
 }
 
-/// The number of pixels in rectangles that may overlap.
+/// The number of pixels in rectangles, which may overlap.
 fn covered(rectangles: &[[u32; 4]]) -> u64 {
     let rows = rectangles.iter().flat_map(|[_, y, _, height]| *y..y.saturating_add(*height));
     let rows: std::collections::BTreeSet<u32> = rows.collect();
@@ -217,8 +217,8 @@ fn covered(rectangles: &[[u32; 4]]) -> u64 {
 }
 
 impl LitCertificate {
-    /// How much of the picture was judged. Of each rectangle as many samples were recorded; more samples than the picture
-    /// has count as all of them.
+    /// The share of the picture that was judged. The same number of samples was recorded in each rectangle. If it is
+    /// larger than the number in the picture, all samples count as judged.
     #[must_use]
     pub fn share(&self) -> LitShare {
         let area = |[_, _, width, height]: &[u32; 4]| u64::from(*width) * u64::from(*height);
@@ -241,7 +241,7 @@ impl LitCertificate {
             .fold(StageCounts::default(), StageCounts::plus)
     }
 
-    /// The counts of the stages of a path, or of those of a studio, with their names, in order.
+    /// The counts of the stages of a path, or of a studio, with their names, in order.
     #[must_use]
     pub fn named(&self) -> Vec<(&'static str, StageCounts)> {
         use LitStage::{
@@ -256,8 +256,8 @@ impl LitCertificate {
         stages.iter().map(|stage| (stage.name(), self.counts[*stage as usize])).collect()
     }
 
-    /// The outcome: violated if the uploaded data are wrong or a stage is not legal, and undecided if too much is
-    /// undecided in any kind of stages.
+    /// The outcome: violated if the uploaded data are wrong or a stage is not legal, and undecided if too many stages
+    /// of any kind are undecided.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         let is_violated = self.upload.is_some() || self.violation_count > 0;

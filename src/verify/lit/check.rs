@@ -17,7 +17,7 @@ pub(crate) struct LitCheck<'a> {
 }
 
 impl LitCheck<'_> {
-    /// A kernel that reads the state of a ray, and as yet has no hit and changes nothing.
+    /// A kernel that reads the state of a ray. As yet it has no hit and changes nothing.
     pub(crate) fn kernel<'b>(
         &'b self,
         address: Address,

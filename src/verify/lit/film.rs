@@ -104,7 +104,7 @@ const ALBEDO: Name = (LitStage::Accumulate, "the sum of the first surfaces' colo
 const SQUARE: Name = (LitStage::Accumulate, "the sum of squared luminances");
 const REST: Name = (LitStage::Accumulate, "the rounding error of a sum");
 
-/// Judges the sums of the pixel with this index: that of a sample with a color, and those before it.
+/// Judges the sums of the pixel with this index: the sum after a sample with a colour, given the sums before it.
 pub(crate) fn check_sums(
     color: Vector,
     state: &PathState,
@@ -120,7 +120,7 @@ pub(crate) fn check_sums(
         let (sum, found) = (Number::recorded(before.value[channel]), after.value[channel]);
         let size = sum.interval().size() + more.interval().size();
         judge.number_of(name, found, sum + more, size)?;
-        // The sum is fenced and stored, so it is now known exactly, and with it how the kernel finds what was rounded.
+        // The sum is fenced and stored, so it is now known exactly, and so are the steps that find its rounding error.
         let value = Number::recorded(found);
         let part = (value - sum).fence();
         let lost = (sum - (value - part).fence()).fence() + (more - part).fence();
@@ -129,7 +129,7 @@ pub(crate) fn check_sums(
     }
     let alpha = Number::recorded(before.alpha) + Number::recorded(state.number(slot::RADIANCE));
     judge.number(ALPHA, after.alpha, alpha)?;
-    // Surfaces have few colours, so that chance does not spread the roundings of their sums.
+    // Surfaces have few colours, so chance does not spread the roundings of their sums.
     let measured = judge.deviations.len();
     let albedo = Vector::recorded(before.albedo) + Vector::recorded(state.vector(slot::FIRST));
     judge.vector(ALBEDO, after.albedo, albedo)?;
@@ -140,7 +140,7 @@ pub(crate) fn check_sums(
 struct Sums {
     /// Colour and squared luminance.
     value: [f32; 4],
-    /// What rounding left out of `value`.
+    /// The rounding error of `value`.
     rest: [f32; 4],
     alpha: f32,
     albedo: [f32; 3],

@@ -1,4 +1,4 @@
-//! The comparison of what a kernel wrote with what it may have written, number by number, and the verdict about a stage.
+//! Comparing the results of a kernel with the legal ones, number by number, and the verdict about a stage.
 
 use std::fmt::Display;
 
@@ -14,7 +14,7 @@ use crate::verify::lit::recording::PathState;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-/// The relative width above which a bound says nothing.
+/// The relative width above which a bound is too wide to decide anything.
 const WIDE: f64 = 0.1;
 
 /// A result of a device that is not legal.
@@ -29,13 +29,13 @@ pub(crate) struct Mismatch {
 /// The stage and the name of a number, for reports.
 pub(crate) type Name = (LitStage, &'static str);
 
-/// Compares results with legal ones, and records whether a bound is too wide to say anything.
+/// Compares results with legal ones, and records whether a bound is too wide to decide anything.
 #[derive(Debug, Default)]
 pub(crate) struct Judge {
     passed: u32,
-    /// Whether some bound was too wide to say anything.
+    /// Whether some bound was too wide to decide anything.
     pub(crate) is_wide: bool,
-    /// How far numbers are from the middle of their bounds.
+    /// The deviations of numbers from the middle of their bounds.
     pub(crate) deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
@@ -54,7 +54,7 @@ impl Judge {
         Ok(())
     }
 
-    /// Compares a number; its bound is narrow or wide relative to `scale`.
+    /// Compares a number. Its bound is narrow or wide relative to `scale`.
     fn within(
         &mut self,
         (stage, what): Name,
@@ -77,7 +77,7 @@ impl Judge {
         self.number_of(name, found, legal, 0.0)
     }
 
-    /// Compares a number; its bound is narrow or wide relative to `size` or to itself.
+    /// Compares a number. Its bound is narrow or wide relative to `size` or to itself.
     pub(crate) fn number_of(
         &mut self,
         name: Name,
@@ -89,7 +89,7 @@ impl Judge {
         self.within(name, found, legal, legal.size().max(size))
     }
 
-    /// Compares a vector; its bounds are narrow or wide relative to its largest component.
+    /// Compares a vector. Its bounds are narrow or wide relative to its largest component.
     pub(crate) fn vector(
         &mut self,
         name: Name,
@@ -99,7 +99,7 @@ impl Judge {
         self.vector_of(name, found, legal, 0.0)
     }
 
-    /// Compares a vector; its bounds are narrow or wide relative to `size` or its largest component.
+    /// Compares a vector. Its bounds are narrow or wide relative to `size` or its largest component.
     pub(crate) fn vector_of(
         &mut self,
         name: Name,
@@ -154,7 +154,7 @@ pub(crate) struct StageResult {
     verdict: StageOutcome,
     /// The legal answers of an open search, in words.
     alternatives: Vec<String>,
-    /// How far numbers are from the middle of their bounds, if these say something.
+    /// The deviations of numbers from the middle of their bounds, if the bounds allow measuring them.
     deviations: Vec<(LitStage, &'static str, f64)>,
 }
 
@@ -283,7 +283,7 @@ pub(crate) fn judge_pixels(
     all
 }
 
-/// A search; `alternatives` names the legal answers if there are several.
+/// The result of a search. `alternatives` names the legal answers if there are several.
 pub(crate) fn searched(is_open: bool, alternatives: impl FnOnce() -> Vec<String>) -> StageResult {
     match is_open {
         true => StageResult { alternatives: alternatives(), ..StageOutcome::Open.into() },

@@ -1,5 +1,5 @@
-//! One invocation of a shading kernel, which is followed number by number, from its input to its legal output; and where
-//! its ray hits a sphere or the ground. The WGSL twin is `shaders/path/vertex.wgsl`.
+//! One invocation of a shading kernel, followed number by number from its input to its legal output, and the place
+//! where its ray hits a sphere or the ground. The WGSL twin is `shaders/path/vertex.wgsl`.
 
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ impl<'a> Kernel<'a> {
         pair(pixel_seed(self.address.pixel, self.lighting().seed), sample, number)
     }
 
-    /// An entry of the tables; zeros beyond their end.
+    /// An entry of the tables; zeros beyond the end of the tables.
     pub(crate) fn table(&self, at: u32) -> [u32; 4] {
         self.inputs.tables.get(at as usize).copied().unwrap_or_default()
     }
@@ -69,7 +69,7 @@ impl<'a> Kernel<'a> {
     }
 }
 
-/// The number in [0, 1) that the upper 24 bits stand for, exactly.
+/// The exact number in [0, 1) that the upper 24 bits represent.
 pub(crate) fn unit(bits: u32) -> Number {
     Number::known(crate::camera::sampling::unit(bits))
 }
@@ -84,10 +84,10 @@ pub(crate) struct Vertex {
     pub(crate) is_back: bool,
     /// Distance along the ray.
     pub(crate) distance: Number,
-    /// Centre and radius of the sphere; the radius is 0 for the ground.
+    /// Centre and radius of the sphere. The radius is 0 for the ground.
     pub(crate) sphere: [f32; 4],
     pub(crate) color: [f32; 3],
-    /// Index of the material; the ground has the first.
+    /// Index of the material. The ground has the first material.
     pub(crate) material_index: u32,
     /// The opacities of the material and of the colour, which the kernel multiplies.
     pub(crate) opacities: [f32; 2],
@@ -246,7 +246,7 @@ impl Kernel<'_> {
 }
 
 impl Kernel<'_> {
-    /// The normal, narrowed by the point on the sphere that was computed from it.
+    /// The normal, narrowed by means of the point on the sphere that was computed from it.
     fn normal_by_point(
         &mut self,
         outward: Vector,
@@ -271,8 +271,8 @@ impl Kernel<'_> {
     }
 }
 
-/// A ray that starts where it enters the scene's box, at a known distance: its line, its start, and how far the kernel's
-/// may be from it.
+/// A ray that starts where it enters the scene's box, at a known distance: its line, its start, and the maximum
+/// difference of the kernel's ray.
 fn entered(origin: [f32; 3], direction: [f32; 3], distance: f32) -> (Line, Vector, Slack) {
     let (start, along) = (wide(origin), wide(direction));
     let distance = f64::from(distance);

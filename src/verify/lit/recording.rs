@@ -1,18 +1,18 @@
-//! What recordings of lit pictures have in common: the numbers that the device was given, and the states of paths.
+//! The common parts of recordings of lit pictures: the inputs of the device, and the states of paths.
 
 use crate::camera::film::Film;
 use crate::render::RenderSettings;
 use crate::verify::certificate::pixel_at;
 use crate::verify::recording::{RequestedCamera, UploadError, UploadedView};
 
-/// The view and the settings of a lit picture, and the numbers that a device was given for a rectangle of it.
+/// The view and the settings of a lit picture, and the inputs of the device for a rectangle of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LitInputs {
     /// The requested camera.
     pub camera: RequestedCamera,
     /// The numbers of the view on the device.
     pub uploaded: UploadedView,
-    /// The corners of the box to which the origins of shadow rays of a studio are moved: that of the opaque spheres.
+    /// The corners of the box of the opaque spheres, to which the origins of shadow rays of a studio are moved.
     pub occluders: [[f32; 3]; 2],
     /// The size of the picture.
     pub film: Film,
@@ -22,8 +22,8 @@ pub struct LitInputs {
     pub size: [u32; 2],
     /// The requested settings.
     pub settings: RenderSettings,
-    /// The largest number of surfaces: those that a path is scattered at, or those that are seen behind each other in a
-    /// studio.
+    /// Maximum number of surfaces: the surfaces at which a path is scattered, or in a studio the
+    /// surfaces that are seen behind each other.
     pub max_surfaces: u32,
     /// The parameters of the lighting on the device.
     pub lighting: UploadedLighting,
@@ -52,7 +52,7 @@ impl LitInputs {
         self.settings.studio_parameters().is_some()
     }
 
-    /// The numbers of lists of lights and of directions of ambient light at each surface of a studio.
+    /// The number of lists of lights, and of directions of ambient light, at each surface of a studio.
     pub(crate) fn batches(&self) -> [usize; 2] {
         let UploadedLighting { light_count, occlusion_samples, .. } = self.lighting;
         [light_count, occlusion_samples].map(|count| count.div_ceil(BITS) as usize)
@@ -68,7 +68,7 @@ impl LitInputs {
 /// and the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LitRecording {
-    /// What was requested, and the numbers that the device was given.
+    /// The request, and the inputs of the device.
     pub given: LitInputs,
     /// The samples in the order in which they were taken.
     pub samples: Vec<RecordedSample>,
@@ -81,7 +81,7 @@ pub struct RecordedSample {
     pub sample: u32,
     /// The state of every ray at the camera.
     pub start: Vec<PathState>,
-    /// The surfaces in the order in which they are hit, up to the one at which the last ray ends.
+    /// The surfaces in the order in which they are hit, up to the surface at which the last ray ends.
     pub surfaces: Vec<RecordedSurface>,
     /// The sums of the pixels without and with the sample.
     pub film: RecordedFilm,
@@ -107,9 +107,9 @@ pub struct RecordedSurface {
 pub struct StudioLight {
     /// A bit for each light that is hidden.
     pub hidden: Vec<u32>,
-    /// Radiance and opacity with the light that is not, as bits.
+    /// Radiance and opacity after the lights that are not hidden were added, as bits.
     pub radiance: Vec<[u32; 4]>,
-    /// The bits that are left for the next lights, which should be none.
+    /// The bits that are left for the next lights. They should all be 0.
     pub left: Vec<u32>,
 }
 
@@ -163,7 +163,7 @@ pub type PixelSums = [[u32; 4]; 3];
 pub struct RecordedFilm {
     /// The sums before the sample.
     pub before: Vec<PixelSums>,
-    /// The sums after it.
+    /// The sums after the sample.
     pub after: Vec<PixelSums>,
 }
 
@@ -175,8 +175,8 @@ pub struct PathState {
 }
 
 impl PathState {
-    /// The number of slots. The last three are those of the sampled light and of the medium, or in a studio those of the
-    /// surface: its normal, its colour, and its specular lobe.
+    /// The number of slots. The last three are for the sampled light and the medium, or in a studio for the surface:
+    /// its normal, its colour, and its specular lobe.
     pub const SLOTS: usize = 9;
 
     /// The slot of the radiance so far, whose last number is the opacity.
@@ -197,7 +197,7 @@ impl PathState {
         self
     }
 
-    /// The state in a studio once the light of some lights is added, with the bits that are left of them.
+    /// The state in a studio after the light of some lights was added, with the bits that are left of them.
     pub(crate) fn with_light(mut self, radiance: [u32; 4], left: u32) -> Self {
         self.slots[slot::RADIANCE] = radiance;
         self.slots[slot::NORMAL][3] = left;
@@ -245,7 +245,7 @@ pub(crate) struct Departure {
     pub(crate) emitter: u32,
 }
 
-/// The value of [`Departure::emitter`] without an emitter.
+/// The value of [`Departure::emitter`] if there is no emitter.
 pub(crate) const NO_EMITTER: u32 = u32::MAX;
 
 /// The indices of the slots.
@@ -276,7 +276,7 @@ pub(crate) mod flag {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct UploadedLighting {
-    /// Colour where a ray hits nothing.
+    /// Colour of the background.
     pub background: [f32; 3],
     /// Sum of the `LIGHTING_` constants that apply.
     pub flags: u32,
@@ -335,6 +335,6 @@ pub struct UploadedLighting {
 pub struct UploadedSky {
     /// Radiance, row by row.
     pub texels: Vec<[f32; 3]>,
-    /// Cumulative tables for sampling: that of the rows, and those of the columns of each row.
+    /// Cumulative tables for sampling: one for the rows, and one for the columns of each row.
     pub shares: Vec<f32>,
 }

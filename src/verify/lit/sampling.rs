@@ -1,6 +1,6 @@
-//! The check of what kernels sample: directions, points of the lights of the settings, and microfacets of materials. The
-//! WGSL twins are `shaders/math/warp.wgsl`, `math/disk.wgsl`, `scene/lamp.wgsl`, `scene/material.wgsl` and
-//! `path/microfacet.wgsl`.
+//! The check of sampled quantities: directions, points of the lights of the settings, and microfacets of
+//! materials. The WGSL twins are `shaders/math/warp.wgsl`, `math/disk.wgsl`, `scene/lamp.wgsl`,
+//! `scene/material.wgsl` and `path/microfacet.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -78,7 +78,7 @@ pub(crate) fn cosine_direction(u: [u32; 2]) -> Vector {
     Vector([x, y, z])
 }
 
-/// A random direction within an angle of z, uniformly distributed; `k` is 1 minus the cosine of the angle.
+/// A random direction within an angle of z, uniformly distributed. `k` is 1 minus the cosine of the angle.
 pub(crate) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
     let [x, y] = disk(u);
     let q = (x.squared() + y.squared()) * k;
@@ -104,8 +104,8 @@ pub(crate) struct Lamp {
 }
 
 impl Kernel<'_> {
-    /// The point of a light that `u` chooses. A direction that the kernel fences is narrowed to the recorded one, if
-    /// there is one and it is legal.
+    /// The point of the light that `u` chooses. If the kernel fences the direction, it is narrowed to the recorded
+    /// direction, if there is one and it is legal.
     pub(crate) fn lamp(
         &mut self,
         light: u32,
@@ -220,7 +220,7 @@ pub(crate) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
     let Interval { low: least, high: most } = c2.interval();
     let exact = Number::between(1.0 / most - 1.0, 1.0 / least - 1.0);
     let Interval { low: floor, high: ceiling } = exact.interval();
-    // Both are bounds; the second includes the rounding errors of the quotient and the difference.
+    // Both are bounds. The second includes the rounding errors of the quotient and the difference.
     let error = 8.0 * crate::verify::rounding::U;
     let beyond = Number::between(
         low.max(floor - error * (1.0 + 1.0 / most)),
@@ -237,7 +237,7 @@ fn ggx_density(alpha: Number, half: Vector) -> Number {
     Number::ONE / (pi() * alpha.squared() * q.squared())
 }
 
-/// A random microfacet normal, of those that are visible from `out`.
+/// A random microfacet normal that is visible from `out`.
 pub(crate) fn visible_mirror(
     alpha: Number,
     out: Vector,
@@ -256,7 +256,7 @@ pub(crate) fn visible_mirror(
         Vector([Number::ONE, Number::ZERO, Number::ZERO])
     };
     let Vector([a, b, _]) = first;
-    // The cross product of both; the first has no z component.
+    // The cross product of both. The first has no z component.
     let second = Vector([-(z * b), z * a, x * b - y * a]);
     let [p, down] = disk(u);
     let s = Number::HALF * (Number::ONE + z);

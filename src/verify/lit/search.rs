@@ -1,6 +1,6 @@
-//! The check of searches: the nearest hit of a path's ray, and the occlusion of a light; and what else is legal where a
-//! search is open, in words. The WGSL twins are `shaders/path/extend.wgsl`, `path/hit_before.wgsl`, `path/occlude.wgsl`
-//! and `accel/excluded.wgsl`.
+//! The check of searches: the nearest hit of a path's ray, and the occlusion of a light. It also names the other legal
+//! answers of an open search. The WGSL twins are `shaders/path/extend.wgsl`, `path/hit_before.wgsl`,
+//! `path/occlude.wgsl` and `accel/excluded.wgsl`.
 
 use glam::{DVec3, Vec4};
 
@@ -90,12 +90,12 @@ impl Entry {
     }
 }
 
-/// What hides light: whether there may be something, and whether there must be.
+/// Whether an obstacle may hide the light, and whether one must.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Obstacle {
     pub(crate) may: bool,
     pub(crate) must: bool,
-    /// The spheres that may hide it and need not.
+    /// The spheres that may hide the light but need not.
     pub(crate) doubts: Doubts,
 }
 
@@ -103,7 +103,7 @@ impl Obstacle {
     pub(crate) const NEVER: Self = Self { may: false, must: false, doubts: Doubts::NONE };
     pub(crate) const ALWAYS: Self = Self { may: true, must: true, doubts: Doubts::NONE };
 
-    /// The answers to several questions of which one is asked.
+    /// The answer to one of two questions, if it is not known which one is asked.
     pub(crate) fn or(self, other: Self) -> Self {
         Self {
             may: self.may || other.may,
@@ -113,8 +113,8 @@ impl Obstacle {
     }
 }
 
-/// Whether a sphere equals one that a ray leaves or ends on. Compared by value, because the sign of a zero does not
-/// matter.
+/// Whether a sphere equals the sphere that a ray leaves or ends on. They are compared by value, because
+/// the sign of a zero does not matter.
 pub(crate) fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
     Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
@@ -220,12 +220,12 @@ pub(crate) fn check_open(
 const MOST: usize = 4;
 
 impl LegalHits {
-    /// The legal answers, the nearest first; of more than four, the miss and the nearest.
+    /// The legal answers, the nearest first. If there are more than four, the miss and the nearest.
     pub(crate) fn alternatives(&self) -> Vec<String> {
         let mut hits: Vec<&LegalHit> = self.spheres.iter().collect();
         hits.sort_by(|a, b| a.lowest().total_cmp(&b.lowest()));
         let place = |hit: &LegalHit| {
-            // Written like the f32 next to them: a device gives no others.
+            // Written like the f32 beside them, because a device gives only f32.
             let crossing = [hit.near, hit.far].into_iter().flatten().next();
             let [low, high] = crossing.map_or([0.0; 2], |at| [at.low as f32, at.high as f32]);
             match low < high {
@@ -242,7 +242,7 @@ impl LegalHits {
     }
 }
 
-/// The spheres that may hide a light and need not.
+/// The spheres that may hide a light but need not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Doubts(Vec<String>);
 
@@ -267,7 +267,7 @@ impl Doubts {
         }
     }
 
-    /// Those of both.
+    /// The doubts of both.
     pub(crate) fn and(mut self, other: Self) -> Self {
         for doubt in other.0 {
             if self.0.len() < MOST && !self.0.contains(&doubt) {
@@ -277,7 +277,7 @@ impl Doubts {
         self
     }
 
-    /// What is open, in words.
+    /// The legal answers, in words.
     pub(crate) fn alternatives(&self) -> Vec<String> {
         match self.0.is_empty() {
             true => vec![
@@ -302,7 +302,7 @@ mod tests {
             legal.find(&Candidates::new(spheres).unwrap(), &line);
             legal.alternatives()
         };
-        // Two spheres that begin where a third does, and one far behind.
+        // Two spheres that begin where a third begins, and one far behind.
         let equal = [ball(9.0, 1.0), ball(10.0, 2.0), ball(8.5, 0.5), ball(20.0, 1.0)];
         let found = named(&equal);
         assert_eq!(found.len(), 3, "{found:?}");
@@ -310,7 +310,7 @@ mod tests {
             assert!(found.iter().any(|w| w.starts_with(&format!("sphere {id} at "))), "{found:?}");
             let ends = words.split(" at ").nth(1).unwrap().split(" to ");
             let ends: Vec<f32> = ends.map(|end| end.parse().unwrap()).collect();
-            // All surfaces are there, and the bounds of the sphere test are some 2⁻¹⁹ of the distance to centres.
+            // All intervals contain the surface, and their bounds are some 2⁻¹⁹ of the distance to centres.
             assert!(ends[0] <= 8.0 && 8.0 <= ends[1] && ends[1] - ends[0] < 1e-4, "{found:?}");
         }
         // The ray touches a sphere, so that it may miss it.
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(first_words(&[ball(9.0, 1.0), touched]), ["sphere 1", "sphere 0"]);
         assert_eq!(first_words(&[touched]), ["sphere 0", "a miss"]);
         assert_eq!(named(&[]), ["a miss"]);
-        // Of many, four are named, and the miss is one of them.
+        // If there are many answers, four are named, and the miss is one of them.
         let many: Vec<_> = (1..9).map(|i| [1.0, 0.0, i as f32, 1.0]).collect();
         assert_eq!(first_words(&many), ["sphere 0", "sphere 1", "sphere 2", "a miss"]);
     }
@@ -340,7 +340,7 @@ mod tests {
             "hidden or not: sphere 5, which ends where the search does",
         ];
         assert_eq!(doubts.alternatives(), words);
-        // The same doubt counts once, and not more than four do.
+        // The same doubt counts once, and at most four doubts are kept.
         assert_eq!(doubts.clone().and(doubts.clone()), doubts);
         let mut others = Doubts::NONE;
         (0..9).for_each(|id| others.add(&Candidate { id, ..touched }, &line, false));

@@ -1,5 +1,5 @@
 //! The check of uploaded data for lit pictures: whether the numbers on the device, and its tables of lights, emitters,
-//! materials and energies, are those of the requested scene and settings.
+//! materials and energies, match the requested scene and settings.
 
 use std::cmp::Ordering;
 
@@ -89,7 +89,7 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
     first_wrong(&all)
 }
 
-/// The first parameter that is wrong, of those with their names and whether they are right.
+/// Returns an error with the name of the first parameter that is wrong. Each has a name, and whether it is right.
 fn first_wrong(all: &[(&'static str, bool)]) -> Result<(), UploadError> {
     match all.iter().find(|(_, is_right)| !is_right) {
         None => Ok(()),
@@ -123,7 +123,7 @@ fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<()
                 && is_near(lighting.cue_scale, 1.0 / (far - near))
         }
     };
-    // Behind an opaque surface nothing is seen.
+    // No surface is seen behind an opaque one.
     let max_surfaces = if scene.is_opaque() { 1 } else { studio.max_surfaces };
     first_wrong(&[
         ("the ambient light", is_color(lighting.ambient, studio.ambient)),
@@ -219,7 +219,7 @@ fn uses_light_sampling(inputs: &LitInputs) -> bool {
     }
 }
 
-/// Checks the table of lights, and returns how many of them light sampling chooses from.
+/// Checks the table of lights, and returns the number of lights among which light sampling chooses.
 fn check_lights(
     tables: &Tables<'_>,
     scene: &Scene,
@@ -277,7 +277,7 @@ fn check_lights(
     Ok(lamps)
 }
 
-/// Checks the table of emissive spheres, and returns how many of them light sampling chooses from.
+/// Checks the table of emissive spheres, and returns the number of spheres among which light sampling chooses.
 fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError> {
     if !uses_light_sampling(inputs) {
         return Ok(0);
@@ -299,8 +299,8 @@ fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError>
     keep_first_of_equals(&mut ids, scene.spheres());
     let total: f64 = ids.iter().map(|id| weight(*id)).sum();
     let all = 2_f64.powi(32);
-    // Each emitter has one pick for certain, and its share of the others. Picks are whole numbers, and the sum of all
-    // weights before an emitter is rounded as often as there are terms.
+    // Each emitter has one certain pick, and its share of the others. Picks are whole numbers. The sum of all weights
+    // before an emitter is rounded once for each term.
     let others = all - ids.len() as f64;
     let slack = 3.0 + 4.0 * f64::EPSILON * all * (ids.len() as f64 + 16.0);
     let mut before = 0.0;
@@ -327,10 +327,10 @@ fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError>
     Ok(ids.len() as u32)
 }
 
-/// Keeps the ids of spheres that no earlier sphere of the scene equals. Of equal spheres, rays hit only the first, so
-/// only that one is sampled.
+/// Keeps the ids of spheres that no earlier sphere of the scene equals. Rays hit only the first of equal spheres, so
+/// only this one is sampled.
 fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
-    // Compared by value, because the sign of a zero does not matter; no component is NaN.
+    // Compared by value, because the sign of a zero does not matter. No component is NaN.
     let order = |a: &[f32; 4], b: &[f32; 4]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
     let sphere = |id: u32| &spheres[id as usize];
     ids.sort_by(|a, b| order(sphere(*a), sphere(*b)));
@@ -346,7 +346,7 @@ fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
     ids.sort_unstable();
 }
 
-/// Checks the material of the ground, which is the first, and those of the spheres.
+/// Checks the material of the ground, which is the first one, and the materials of the spheres.
 fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), UploadError> {
     let rows = scene.checked_appearance().material_rows();
     let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();

@@ -6,7 +6,7 @@ use crate::verify::choices::Choices;
 use crate::verify::rounding::{FLUSH, Interval, PAD, SQRT, U};
 
 impl Number {
-    /// The square root; that of zero is zero. Negative values in the interval are ignored.
+    /// The square root. The root of zero is zero. Negative values in the interval are ignored.
     pub(crate) fn sqrt(self) -> Self {
         let Interval { low, high } = self.interval();
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());

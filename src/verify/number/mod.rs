@@ -1,11 +1,11 @@
 //! The values of a number in a kernel: an interval that grows by the freedom that WGSL allows.
 //!
-//! Between two fences, a compiler may fuse products and sums, and add the terms of a sum in any order. A number is
-//! therefore stored as the result of exact arithmetic, with the sum of the magnitudes of its terms and the number of
-//! roundings that a term may have passed through. Only when a kernel compares it, divides by it or fences it, the
-//! interval grows by the error of all of them: γ(k) times the terms' magnitudes (`rounding.rs`). Two things are
-//! assumed: that products of sums are not expanded, and that a number is flushed to zero only where it appears in the
-//! kernel's text.
+//! Between two fences, a compiler may fuse products and sums, and add the terms of a sum in any order. A number
+//! is therefore stored as the result of exact arithmetic, with the sum of the magnitudes of its terms and the
+//! number of roundings that a term may have passed through. Only when a kernel compares the number, divides by it
+//! or fences it, the interval grows by the error of all roundings: γ(k) times the terms' magnitudes
+//! (`rounding.rs`). Two things are assumed: that products of sums are not expanded, and that a number is flushed
+//! to zero only where it appears in the kernel's text.
 
 mod functions;
 #[cfg(test)]
@@ -19,7 +19,7 @@ use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 pub(crate) use functions::{atan2_turns, sin_cos_eighth, sin_cos_turns};
 pub(crate) use vector::Vector;
 
-/// A limit above every f32; products of two such numbers are still finite.
+/// A limit above every f32. Products of two such numbers are still finite.
 const LARGEST: f64 = 1e90;
 
 /// A number that a kernel has computed and not yet fenced.
@@ -28,13 +28,13 @@ pub(crate) struct Number {
     /// The interval of exact arithmetic.
     low: f64,
     high: f64,
-    /// The sum of the magnitudes of its terms.
+    /// The sum of the magnitudes of the number's terms.
     size: f64,
     /// The error of subnormal numbers that were flushed to zero.
     flushed: f64,
-    /// The number of terms of its sums.
+    /// The number of terms of the number's sums.
     terms: u32,
-    /// The number of roundings of a term apart from those of sums.
+    /// The number of roundings of a term, without the roundings of sums.
     products: u32,
     /// Whether no term is negative, so that nothing cancels.
     is_positive: bool,
@@ -51,7 +51,7 @@ impl Number {
         Self::between(value, value)
     }
 
-    /// A number that the device recorded; it may count as zero if it is subnormal.
+    /// A number that the device recorded. It may count as zero if it is subnormal.
     pub(crate) fn recorded(value: f32) -> Self {
         let wide = f64::from(value);
         if wide.abs() < FLUSH {
@@ -115,12 +115,12 @@ impl Number {
         Interval { low, high }
     }
 
-    /// Whether it is zero on every device; a sum that only may cancel is not.
+    /// Whether the number is zero on every device. A sum that may only cancel is not.
     pub(crate) fn is_zero(&self) -> bool {
         self.size == 0.0
     }
 
-    /// Whether it is less than another number; `None` if undecided.
+    /// Whether the number is less than another; `None` if undecided.
     pub(crate) fn is_less(self, other: Self) -> Option<bool> {
         let (a, b) = (self.interval(), other.interval());
         if a.high < b.low {
@@ -132,12 +132,12 @@ impl Number {
         }
     }
 
-    /// Whether it is more than another number; `None` if undecided.
+    /// Whether the number is more than another; `None` if undecided.
     pub(crate) fn is_more(self, other: Self) -> Option<bool> {
         other.is_less(self)
     }
 
-    /// Whether it is positive; `None` if undecided.
+    /// Whether the number is positive; `None` if undecided.
     pub(crate) fn is_above_zero(self) -> Option<bool> {
         self.is_more(Self::ZERO)
     }
@@ -171,13 +171,13 @@ impl Number {
         fenced * fenced
     }
 
-    /// The smallest interval that contains the values of both.
+    /// The smallest interval that contains the values of both numbers.
     pub(crate) fn union(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().union(other.interval());
         Self::between(low, high)
     }
 
-    /// The values in both intervals; itself, if there are none.
+    /// The values in both intervals; this number if there are none.
     pub(crate) fn narrowed(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().intersection(other.interval());
         if low <= high { Self::between(low, high) } else { self }
@@ -243,7 +243,7 @@ impl Mul for Number {
             return self;
         }
         let (a, b, c, d) = (self.low, self.high, other.low, other.high);
-        // Without infinite numbers, whose products with zero are none.
+        // The case without infinite numbers, whose products with zero are NaN.
         let is_simple = a >= 0.0 && c >= 0.0 && b <= LARGEST && d <= LARGEST;
         let (low, high) = if is_simple {
             (a * c, b * d)
@@ -274,7 +274,7 @@ impl Mul for Number {
 impl Div for Number {
     type Output = Self;
 
-    /// The quotient; every number if the divisor may be zero.
+    /// The quotient. If the divisor may be zero, any number.
     fn div(self, other: Self) -> Self {
         let Interval { low, high } = other.interval();
         if self.is_zero() {

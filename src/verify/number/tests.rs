@@ -103,7 +103,7 @@ impl Formula {
         })
     }
 
-    /// The result of a device; NaN after a division by zero, which no kernel does.
+    /// The result of a device. It is NaN after a division by zero, which no kernel does.
     fn device(&self, random: &mut Rng) -> f32 {
         match self {
             Self::Leaf(value) => *value,
@@ -134,7 +134,7 @@ impl Formula {
         }
     }
 
-    /// Nested sums are one sum, with terms in random order; products of two factors are fused at random.
+    /// Evaluates nested sums as one sum, with terms in random order. Products of two factors are fused at random.
     fn sum(&self, random: &mut Rng) -> f32 {
         let mut terms = Vec::new();
         self.terms(1.0, &mut terms);
@@ -181,7 +181,7 @@ fn round(random: &mut Rng, exact: f64) -> f32 {
     if rounded.is_subnormal() && random.bool() { 0.0 } else { rounded }
 }
 
-/// A quotient within 2.5 ULP, or the product with such an inverse, if that is a normal number.
+/// A quotient within 2.5 ULP, or the product with such a reciprocal, if the reciprocal is a normal number.
 fn quotient(random: &mut Rng, a: f32, b: f32) -> f32 {
     let inverse = off(random, 1.0 / wide(b), 2.5);
     if inverse.is_normal() && random.bool() {

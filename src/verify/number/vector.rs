@@ -53,7 +53,7 @@ impl Vector {
         x + y + z
     }
 
-    /// The vector divided by its length; if the length may be zero, any vector of about unit length.
+    /// The vector divided by its length. If the length may be zero, any vector of about unit length.
     pub(crate) fn normalized(self) -> Self {
         let v = self.fence();
         let length = v.squared().sqrt();

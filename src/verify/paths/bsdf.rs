@@ -117,7 +117,7 @@ impl Kernel<'_> {
         BsdfSample { direction, weight: r.value.map(|value| value / divisor), density: r.density }
     }
 
-    /// Light that is scattered below the surface has no weight.
+    /// A sample of the BSDF. Light that is scattered below the surface has no weight.
     fn above(&mut self, direction: Vector, weight: Vector, density: Number) -> BsdfSample {
         let is_above = self.choices.decide(direction.0[2].is_above_zero());
         let weight = if is_above { weight } else { Vector::ZERO };

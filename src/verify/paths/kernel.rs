@@ -1,4 +1,4 @@
-//! The check of the shading kernel, number by number: from its input to its legal output. The WGSL twins are
+//! The check of the shading kernel, number by number, from its input to its legal output. The WGSL twins are
 //! `shaders/path/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
 
 use crate::image::NO_ID;
@@ -138,14 +138,14 @@ impl Kernel<'_> {
         self.judge.number(LIGHT, after.number(slot::PENDING), open)
     }
 
-    /// Compares the state if no light was sampled; the direction of the light does not matter then.
+    /// Compares the state if no light was sampled. The direction of the light does not matter then.
     fn compare_no_light(&mut self) -> Result<(), Mismatch> {
         let after = self.after;
         self.judge.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
         self.compare_light(Vector::ZERO, Number::ZERO)
     }
 
-    /// The path ends because its ray hits nothing.
+    /// Judges a path that ends because its ray hits nothing.
     fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
         let after = self.after;
         self.compare_radiance(radiance, Number::recorded(alpha))?;
@@ -156,13 +156,13 @@ impl Kernel<'_> {
         self.same(&[slot::MEDIUM])
     }
 
-    /// The path ends on a surface. The next ray does not matter then.
+    /// Judges a path that ends on a surface. The next ray does not matter then.
     fn stop(&mut self) -> Result<(), Mismatch> {
         self.judge.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
         self.compare_no_light()
     }
 
-    /// The path passes through a surface as if it were not there.
+    /// Judges a path that passes through a surface as if it were not there.
     fn pass(
         &mut self,
         at: &Vertex,
@@ -188,7 +188,7 @@ impl Kernel<'_> {
         self.compare_flags(at, true, flag::FULL | scattered | alive)
     }
 
-    /// Compares the flags, including on which side of a surface the path continues.
+    /// Compares the flags, including the side of a surface on which the path continues.
     fn compare_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
@@ -196,7 +196,7 @@ impl Kernel<'_> {
         self.judge.bits(FLAGS, self.after.flags(), side | ground | flags)
     }
 
-    /// A surface scatters the path.
+    /// Judges a path that a surface scatters.
     fn bounce(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (after, surface) = (self.after, self.address.surface);
         let lobe = unit(self.pair(3)[0]);

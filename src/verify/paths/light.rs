@@ -18,7 +18,7 @@ use crate::verify::recording::NO_HIT;
 struct LightSample {
     direction: Vector,
     distance: Number,
-    /// Density of the direction, for a light that scattered rays can hit as well; 0 for others.
+    /// Density of the direction, if scattered rays can hit the light as well; 0 for other lights.
     density: Number,
     /// Radiance divided by the density.
     radiance: Vector,
@@ -38,7 +38,7 @@ const DISTANCE: Name = (LitStage::Light, "the distance to the light");
 const EMITTER: Name = (LitStage::Light, "the sampled emitter");
 
 impl Kernel<'_> {
-    /// The light of lights at the eye, which reaches only surfaces that the camera sees.
+    /// The light of lamps at the eye, which reaches only surfaces that the camera sees.
     pub(crate) fn head_light(&mut self, at: &Surface, is_seen: bool) -> Vector {
         if !is_seen || at.material.kind == DIELECTRIC {
             return Vector::ZERO;
@@ -163,7 +163,7 @@ impl Kernel<'_> {
         low.min(count.max(1) - 1)
     }
 
-    /// The density with which a point samples directions towards a chosen emitter; 0 from inside.
+    /// The density with which a point samples directions towards a chosen emitter; 0 inside the emitter.
     fn emitter_density(&mut self, emitter: &Emitter, position: Vector) -> Number {
         let [x, y, z, radius] = emitter.sphere;
         let radius = Number::recorded(radius);
@@ -195,7 +195,7 @@ impl Kernel<'_> {
         let k = cone_of_sphere(radius, length.max(radius));
         let axis = toward.fence().map(|c| c / length);
         let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
-        // Narrowed to the fenced direction in the recorded state if that is legal.
+        // Narrowed to the fenced direction in the recorded state, if it is legal.
         let recorded = Vector::recorded(self.after.vector(slot::SHADOW));
         let direction = direction.zip(recorded, Number::narrowed);
         let middle = toward.dot(direction);
@@ -380,7 +380,7 @@ impl Kernel<'_> {
         let along = along.min(Number::ONE);
         let across = (Number::known(column.into()) + along) / Number::known(width.into());
         let [sine, cosine] = sin_cos_turns(across - Number::HALF, self.choices);
-        // Measured from the nearer pole by sin² of half the colatitude.
+        // The angle is measured from the nearer pole, as sin² of half the colatitude.
         let is_upper = 2 * row < height;
         let from_pole = if is_upper { row } else { height - 1 - row };
         let into = if is_upper {

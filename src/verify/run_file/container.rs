@@ -48,7 +48,7 @@ struct Header<'a> {
     arrays: BTreeMap<&'a str, TensorInfo>,
 }
 
-/// Gives so many bytes of a reader to a sink, in pieces.
+/// Gives `count` bytes of a reader to a sink, in pieces.
 pub(super) fn in_pieces(
     source: &mut (impl Read + ?Sized),
     count: u64,
@@ -78,7 +78,7 @@ pub(super) fn write(
     mut arrays: Vec<Array<'_>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    // The widest numbers come first, so that all are aligned.
+    // The widest numbers come first, so that all arrays are aligned.
     arrays.sort_by_key(|array| Reverse(array.dtype.bitsize()));
     let arrays = &arrays[..];
     metadata.insert(FORMAT.to_owned(), VERSION.to_owned());
@@ -117,7 +117,7 @@ fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
     Some(offset + before.len())
 }
 
-/// The bytes of a file, which may be too many for the memory.
+/// The bytes of a file, which may not fit into memory.
 pub(super) trait Source: Read + Seek {}
 
 impl<S: Read + Seek> Source for S {}
@@ -290,7 +290,7 @@ impl<'a> Container<'a> {
 /// The number of items that are converted to bytes at a time.
 const CHUNK: usize = 1 << 12;
 
-// The format has the lowest byte first, so that numbers are copied as they lie in memory.
+// The format has the lowest byte first, so numbers are copied as they are in memory.
 const _: () = assert!(cfg!(target_endian = "little"), "run files need the lowest byte first");
 
 /// A type of numbers in arrays.
@@ -330,7 +330,7 @@ pub(super) type Sink<'a> = dyn FnMut(&[u8]) -> io::Result<()> + 'a;
 /// A function that writes all bytes of an array to a sink.
 type Emit<'a> = dyn Fn(&mut Sink<'_>) -> io::Result<()> + 'a;
 
-/// An array to be written; its bytes are generated as they are needed.
+/// An array to be written. Its bytes are generated when they are needed.
 pub(super) struct Array<'a> {
     pub(super) name: Cow<'static, str>,
     pub(super) dtype: Dtype,
@@ -339,7 +339,7 @@ pub(super) struct Array<'a> {
 }
 
 impl<'a> Array<'a> {
-    /// An array with `N` numbers for each item; `shape` is the shape of the items.
+    /// An array with `N` numbers for each item. `shape` is the shape of the items.
     pub(super) fn new<T: Clone + 'a, E: Number, const N: usize>(
         name: &'static str,
         shape: &[usize],
@@ -358,7 +358,7 @@ impl<'a> Array<'a> {
         Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
     }
 
-    /// An array with so many items as a list has; see [`Array::new`].
+    /// An array with an item for each element of a list; see [`Array::new`].
     pub(super) fn list<T: Clone + 'a, E: Number, const N: usize>(
         name: &'static str,
         items: impl Into<Cow<'a, [T]>>,

@@ -1,4 +1,4 @@
-//! Why bytes are not a run file: the version of the format, its digest, and the error.
+//! Errors of run files, and the format's version and digest.
 
 use sha2::{Digest, Sha256};
 
@@ -28,7 +28,7 @@ pub enum RunFileError {
     /// The file cannot be read.
     #[error("the run file cannot be read: {0}")]
     Unreadable(String),
-    /// The file is not what was written.
+    /// The file differs from the file that was written.
     #[error(
         "the run file was altered after it was written: its SHA-256 digest does not match; copy it again"
     )]

@@ -1,4 +1,4 @@
-//! What a device was given for a lit picture, and what was requested, as arrays.
+//! The request and the inputs of the device for a lit picture, as arrays.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -18,14 +18,14 @@ use crate::text::shortened;
 use crate::verify::lit::recording::{LitInputs, UploadedLighting, UploadedSky};
 use crate::verify::recording::UploadedView;
 
-/// The metadata key of the digest of what was requested.
+/// The metadata key of the digest of the request.
 const REQUEST: &str = "request_sha256";
 
-/// The metadata keys of what was requested, and of what the device was given, as JSON.
+/// The metadata keys of the request and of the inputs of the device, as JSON.
 const SETTINGS: &str = "requested";
 const GIVEN: &str = "given";
 
-/// The arrays of what was requested, of which some may be absent.
+/// The arrays of the request, of which some may be absent.
 const REQUESTED: [&str; 9] = [
     "camera",
     "color_index",
@@ -38,28 +38,28 @@ const REQUESTED: [&str; 9] = [
     "surfaces",
 ];
 
-/// What was requested, as JSON. The image of a sky is in arrays.
+/// The request, as JSON. The image of a sky is in arrays.
 #[derive(Serialize, Deserialize)]
 struct LitRequest {
     settings: RenderSettings,
     sky_image: Option<SkyImage>,
 }
 
-/// How the image of a sky is used.
+/// The use of the image of a sky.
 #[derive(Serialize, Deserialize)]
 struct SkyImage {
     strength: f32,
     rotation: f64,
 }
 
-/// What the device was given, as JSON.
+/// The inputs of the device, as JSON.
 #[derive(Serialize, Deserialize)]
 struct DeviceInputs {
     max_surfaces: u32,
     lighting: UploadedLighting,
 }
 
-/// Adds the arrays and texts of what a device was given to those of a file.
+/// Adds the arrays and texts of a device's inputs to the arrays and texts of a file.
 pub(super) fn add<'a>(
     given: &'a LitInputs,
     arrays: &mut Vec<Array<'a>>,
@@ -105,7 +105,7 @@ pub(super) fn add<'a>(
     Ok(())
 }
 
-/// The digest of what was requested. `emit` adds the bytes of an array, and says whether there is one.
+/// The digest of the request. `emit` adds the bytes of an array, and returns whether it exists.
 fn request<E>(
     texts: &BTreeMap<String, String>,
     emit: impl Fn(&str, &mut Sha256) -> Result<bool, E>,
@@ -146,7 +146,7 @@ pub(super) fn view(
     Ok(UploadedView { origin, advance, right, up, forward, numbers, scene_min, scene_max })
 }
 
-/// Reads what a device was given; the rectangle is that of no sample yet. `picture` has the requested camera and film.
+/// Reads the inputs of a device, as yet without the rectangle of a sample. `picture` has the requested camera and film.
 pub(super) fn read(
     file: &Container<'_>,
     picture: &crate::verify::Recording,

@@ -1,5 +1,5 @@
-//! Samples of a lit picture on their way into a run file, and back, one after the other. They are too many for the memory,
-//! so that they are kept in a file until the recording is complete.
+//! Writing samples of a lit picture into a run file, and reading them, one after the other. They do not fit into
+//! memory, so a temporary file keeps them until the recording is complete.
 
 use std::cell::RefCell;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -16,8 +16,8 @@ use crate::verify::run_file::lit_inputs;
 /// The largest number of samples in a run file.
 pub const MAX_SAMPLES: u32 = 4096;
 
-/// The largest number of bytes that a sample takes in memory. Recordings of [`Headless`](crate::gpu::Headless) take
-/// less.
+/// The largest number of bytes that a sample takes in memory. Recordings of
+/// [`Headless`](crate::gpu::Headless) take less.
 pub(super) const MAX_SAMPLE_BYTES: u64 = 1 << 30;
 
 /// A file or memory that keeps samples until they are written.
@@ -36,19 +36,19 @@ pub struct LitSamples {
 }
 
 impl LitSamples {
-    /// No samples yet. They will be kept in `spool`, which has nothing else.
+    /// Creates an empty list of samples. They will be kept in `spool`, which must be empty.
     #[must_use]
     pub fn new(spool: Box<dyn Spool>) -> Self {
         Self { spool: spool.into(), arrays: Vec::new(), end: 0, count: 0, given: None }
     }
 
-    /// Forgets all samples.
+    /// Removes all samples.
     pub fn clear(&mut self) {
         (self.end, self.count, self.given) = (0, 0, None);
         self.arrays.clear();
     }
 
-    /// Adds the samples of a recording. All recordings must be of one picture; their rectangles may differ.
+    /// Adds the samples of a recording. All recordings must be of one picture. Their rectangles may differ.
     ///
     /// # Errors
     /// Returns an error if the samples cannot be kept, if they are of different pictures, too many or too large, or if
@@ -129,7 +129,7 @@ impl LitSamples {
         Ok(())
     }
 
-    /// What the device was given, if there is a sample.
+    /// The inputs of the device, if there is a sample.
     pub(super) fn given(&self) -> Option<&LitInputs> {
         self.given.as_ref().filter(|_| self.count > 0)
     }
@@ -162,7 +162,7 @@ fn words_of(states: &[PathState]) -> impl Iterator<Item = &[u32]> {
     states.iter().map(|state| state.slots.as_flattened())
 }
 
-/// The name of an array of a sample, the samples being counted from 0.
+/// The name of an array of a sample. Samples are counted from 0.
 pub(super) fn name_of(sample: u32, array: &str) -> String {
     format!("sample_{sample}_{array}")
 }
@@ -178,7 +178,7 @@ pub(super) fn bytes_in_memory([pixels, surfaces, batches]: [u64; 3]) -> u64 {
 /// The metadata key of the number of samples.
 pub(super) const SAMPLES: &str = "lit_samples";
 
-/// Reads all samples, and calls `each` with a recording of every one. Returns whether the file has light.
+/// Reads all samples, and calls `each` with a recording of every sample. Returns whether the file has light.
 pub(super) fn each_sample(
     file: &Container<'_>,
     scene: &Scene,
@@ -219,7 +219,7 @@ impl Sample<'_, '_> {
         name_of(self.index, array)
     }
 
-    /// Reads the rectangle of a sample, and returns the sample's number.
+    /// Reads the rectangle of a sample, and returns the index of the sample in its pixels.
     fn place(self, given: &mut LitInputs) -> Result<u32, RunFileError> {
         let [sample, x, y, width, height] =
             self.file.fixed::<u32, 1, 5>(&self.name("place"))?.map(|[number]| number);

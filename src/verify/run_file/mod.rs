@@ -27,7 +27,7 @@
 //! | `surfaces` | f32 (k, 5) | surface properties: material (0 Lambert, 1 conductor, 2 dielectric, 3 emissive), three parameters, and opacity; absent if they are the default |
 //! | `surface_index` | u32 (n,) | indices into them; absent if all spheres have the first |
 //!
-//! Of a lit picture a file also has what was requested and what the device was given:
+//! For a lit picture, a file also has the request and the inputs of the device:
 //!
 //! | array | type, shape | |
 //! |---|---|---|
@@ -48,23 +48,23 @@
 //! | `open` | u32 (S, P) | along paths: the visibility of the light, as bits |
 //! | `hidden`, `radiance`, `left` | u32 (S, B, P), (S, B, P, 4), (S, B, P) | in studios: for each 32 lights and each 32 directions the hidden ones, the radiance with the others, and the bits that are left |
 //!
-//! and, if they were made,
+//! It may also have these arrays:
 //!
 //! | array | type, shape | |
 //! |---|---|---|
 //! | `noisy_color`, `noisy_normal`, `noisy_depth`, `noisy_albedo`, `noisy_variance` | f32 (h, w, 3), (h, w) | the small picture that the device denoised |
-//! | `denoised_color` | f32 (h, w, 3) | what it made of it |
+//! | `denoised_color` | f32 (h, w, 3) | the denoised picture |
 //! | `shown` | u8 (H, W, 3) | the lit picture as people see it, in sRGB; it is not judged |
 //!
-//! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the whole
-//! file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array `spheres`;
-//! `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also rendered without
-//! recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. With light, `lit_samples` is the
-//! number of samples, at most [`MAX_SAMPLES`]; `requested` and `given`
-//! are JSON: [`RenderSettings`](crate::RenderSettings), with strength and rotation of the sky's image apart, and what
-//! the device was given for them: the parameters of the lighting, and `max_surfaces` of [`LitInputs`](super::LitInputs); and
-//! `request_sha256` is a digest of what was requested: scene, camera, settings, lights and sky. The same run gives the
-//! same file, to the byte.
+//! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the
+//! whole file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array
+//! `spheres`; `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also
+//! rendered without recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. With
+//! light, `lit_samples` is the number of samples, at most [`MAX_SAMPLES`]; `requested` and `given` are JSON:
+//! [`RenderSettings`](crate::RenderSettings), with strength and rotation of the sky's image apart, and the
+//! inputs of the device for them: the parameters of the lighting, and `max_surfaces` of
+//! [`LitInputs`](super::LitInputs); and `request_sha256` is a digest of the request: scene, camera, settings,
+//! lights and sky. The same run gives the same file, to the byte.
 //!
 //! Input from the host is validated like scenes, films and cameras. The results of the device are kept as they are,
 //! even if they are wrong, because the checker judges them.
@@ -93,15 +93,15 @@ pub use write::{Extras, ShownPicture, write, write_with};
 /// The contents of a run file.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The scene that was rendered; only its bounds may differ.
+    /// The scene that was rendered. Only its bounds may differ.
     pub scene: Scene,
-    /// The recording: the data that the device was given, and its results.
+    /// The recording: the inputs of the device, and its results.
     pub recording: Recording,
     /// The origin of the recording.
     pub provenance: Provenance,
 }
 
-/// The origin of a recording, for human readers; it does not affect the verdict.
+/// The origin of a recording, for human readers. It does not affect the verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
     /// Version of this crate.

@@ -23,9 +23,9 @@ use crate::verify::{
     LitRecording, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay,
 };
 
-/// A run file that is open: complete and unaltered, but perhaps with contents that are not valid.
+/// An open run file. It is complete and unaltered, but its contents may not be valid.
 ///
-/// Arrays are read when they are asked for, and light sample by sample, so that a file may be larger than the memory.
+/// Arrays are read when they are needed, and light sample by sample, so a file may be larger than the memory.
 pub struct RunFile<'a> {
     file: Container<'a>,
 }
@@ -54,12 +54,12 @@ impl<'a> RunFile<'a> {
         Ok(Run { scene: scene(file)?, recording: recording(file)?, provenance: provenance(file)? })
     }
 
-    /// Reads the samples of the lit picture, one after the other, and calls `each` with a recording of every one, as
-    /// [`Headless::record_lit`](crate::gpu::Headless::record_lit) does. `run` is what [`RunFile::run`] returns. Returns
-    /// whether the file has light.
+    /// Reads the samples of the lit picture, one after the other, and calls `each` with a recording of every sample, as
+    /// [`Headless::record_lit`](crate::gpu::Headless::record_lit) does. `run` is the result of [`RunFile::run`].
+    /// Returns whether the file has light.
     ///
     /// # Errors
-    /// Returns an error if what was requested of the lighting or the shape of a sample is not valid.
+    /// Returns an error if the requested lighting or the shape of a sample is not valid.
     pub fn light(
         &self,
         run: &Run,
@@ -68,7 +68,7 @@ impl<'a> RunFile<'a> {
         lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
     }
 
-    /// Reads the noisy picture that the device denoised, and what it made of it; `None` if the file has none.
+    /// Reads the noisy picture that the device denoised, and the denoised picture; `None` if the file has neither.
     ///
     /// # Errors
     /// Returns an error if their shapes are not valid.
@@ -113,7 +113,7 @@ impl<'a> RunFile<'a> {
 /// Reads the scene and the picture by one ray for each pixel from a run file in memory.
 ///
 /// # Errors
-/// Returns an error if the bytes are not a run file, have another version, or were altered; or if scene, film, camera
+/// Returns an error if the bytes are not a run file, have another version, or were altered, or if scene, film, camera
 /// or settings are not valid.
 pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
     RunFile::open(&mut Cursor::new(bytes))?.run()
@@ -293,7 +293,7 @@ fn named<T: Copy>(
         .ok_or_else(|| contradiction(format!("there is no {key} `{}`", shortened(text))))
 }
 
-/// The film of a picture of three channels, and what that is called in errors.
+/// The film of a picture of three channels. `what` is the name of the picture in errors.
 fn film_of(file: &Container<'_>, name: &str, what: &str) -> Result<Film, RunFileError> {
     let [height, width, _] = *file.shape(name)? else {
         return Err(contradiction(format!("the array `{name}` does not have the shape (H, W, 3)")));
@@ -317,7 +317,7 @@ fn surface([kind, a, b, c, opacity]: [f32; 5]) -> Option<SurfaceProperties> {
     Some(SurfaceProperties { material, opacity })
 }
 
-/// Adds the surfaces of a file with so many spheres; without any, they are the default.
+/// Adds the surfaces of a file with this number of spheres. If the file has none, they are the default.
 fn with_surfaces(
     file: &Container<'_>,
     appearance: Appearance,

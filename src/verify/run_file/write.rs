@@ -13,12 +13,12 @@ use crate::verify::run_file::lit_samples::{LitSamples, SAMPLES};
 use crate::verify::run_file::{LIMIT, Provenance, container, lit_inputs, scene_sha256};
 use crate::verify::{PlainRender, Recording, TracedPixel};
 
-/// What a run file may hold besides the picture by one ray for each pixel.
+/// The contents that a run file may have besides the picture by one ray for each pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras<'a> {
     /// Samples of the lit picture.
     pub light: Option<&'a LitSamples>,
-    /// A noisy picture, and what the device's denoiser made of it.
+    /// A noisy picture, and the result of the device's denoiser.
     pub denoised: Option<[&'a Image; 2]>,
     /// The lit picture as it is shown to people.
     pub shown: Option<&'a ShownPicture>,
@@ -51,12 +51,12 @@ pub fn write(
     write_with(scene, recording, provenance, Extras::default(), out)
 }
 
-/// Writes a run file with what [`write()`] writes, and with the light of the picture. Each sample has 240 bytes for each
-/// pixel of its rectangle, and for each of its surfaces 164, or in studios 160 and 24 for each 32 lights or directions.
+/// Writes a run file like [`write()`], and adds the light of the picture. Each sample has 240 bytes for each pixel of
+/// its rectangle. Each surface adds 164 bytes, or in studios 160 and 24 for each 32 lights or directions.
 ///
 /// # Errors
-/// The same as for [`write()`]; and if the samples have another camera or film than the recording, or the noisy picture
-/// lacks a layer.
+/// The same as for [`write()`]; also if the samples have another camera or film than the recording,
+/// or the noisy picture lacks a layer.
 pub fn write_with(
     scene: &Scene,
     recording: &Recording,

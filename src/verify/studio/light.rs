@@ -22,7 +22,7 @@ impl Change {
         Self { radiance: self.radiance + other.radiance, opacity: self.opacity + other.opacity }
     }
 
-    /// The changes between both.
+    /// The union of two changes.
     pub(crate) fn union(self, other: Self) -> Self {
         Self {
             radiance: self.radiance.zip(other.radiance, Number::union),
@@ -32,7 +32,7 @@ impl Change {
 }
 
 impl Kernel<'_> {
-    /// What a light adds. `total` is the luminance of all lights on a shadow catcher.
+    /// The light that a lamp adds. `total` is the luminance of all lights on a shadow catcher.
     pub(crate) fn light_added(&mut self, light: u32, is_hidden: bool, total: Number) -> Change {
         if self.is_caught() {
             if !is_hidden {
@@ -57,7 +57,7 @@ impl Kernel<'_> {
         Change { radiance, opacity: Number::ZERO }
     }
 
-    /// What directions of ambient light add, of which some are hidden.
+    /// The light that directions of ambient light add. Some of them are hidden.
     pub(crate) fn ambient_added(&mut self, count: u32, hidden: u32, total: Number) -> Change {
         let lighting = self.lighting();
         let share = Number::ONE / Number::known(lighting.occlusion_samples.max(1).into());
@@ -108,7 +108,7 @@ fn luminance(color: [f32; 3]) -> Number {
 }
 
 impl Kernel<'_> {
-    /// Whether only shadows are seen of the surface.
+    /// Whether the surface is a shadow catcher, of which only shadows are seen.
     pub(crate) fn is_caught(&self) -> bool {
         self.before.number(slot::ALBEDO) > 0.0
     }
@@ -159,7 +159,7 @@ impl Kernel<'_> {
         if self.choices.decide(is_none) { Number::ONE } else { sum }
     }
 
-    /// The change of radiance and opacity if a share of all light is missing on the ground.
+    /// The change of radiance and opacity if the ground lacks a share of all light.
     fn caught(&self, share: Number) -> Change {
         let lighting = self.lighting();
         let alpha = Number::recorded(self.before.number(slot::ALBEDO)) * share;

@@ -1,6 +1,6 @@
-//! The check of whether light is hidden from a surface. The WGSL twins are `shaders/studio/hidden_light.wgsl`,
-//! `shadow.wgsl` and `ambient.wgsl`. Rays towards lights are not stored: where such a ray starts is known exactly, its
-//! direction up to an error.
+//! The check whether light is hidden from a surface. The WGSL twins are `shaders/studio/hidden_light.wgsl`,
+//! `shadow.wgsl` and `ambient.wgsl`. Rays towards lights are not stored. The start of such a ray is known exactly, and
+//! its direction up to an error.
 
 use glam::DVec3;
 
@@ -20,12 +20,12 @@ use crate::verify::sphere::{Line, Slack};
 pub(crate) const PAIRS: u32 = 4096;
 
 impl Kernel<'_> {
-    /// Whether lights of this kind are searched for.
+    /// Whether this light needs a search: lamps at the eye do not.
     pub(crate) fn casts_shadow(&self, light: u32) -> bool {
         self.lighting().flags & flag::SHADOWS != 0 && self.table(light.saturating_mul(3))[3] != HEAD
     }
 
-    /// The point of a light, as it is chosen for this surface.
+    /// The point of a light that is chosen for this surface.
     pub(crate) fn lamp_of_surface(&mut self, light: u32) -> Lamp {
         let number = 2 + PAIRS.wrapping_mul(self.address.surface).wrapping_add(light);
         let u = self.numbers(self.address.sample, number);
@@ -33,7 +33,7 @@ impl Kernel<'_> {
         self.lamp(light, position, u, None)
     }
 
-    /// Whether a light is hidden from the surface; a light behind it is not searched for.
+    /// Whether a light is hidden from the surface. A light behind the surface is not searched for.
     pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Obstacle {
         let Lamp { direction, distance, .. } = self.lamp_of_surface(light);
         let normal = Vector::recorded(self.before.vector(slot::NORMAL));
@@ -43,7 +43,7 @@ impl Kernel<'_> {
         self.is_hidden(candidates, direction, distance)
     }
 
-    /// Whether something is near in a direction of ambient light.
+    /// Whether a sphere is near in a direction of ambient light.
     pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Obstacle {
         let lighting = self.lighting();
         let sample =
@@ -80,7 +80,7 @@ impl Kernel<'_> {
         self.is_occluded(candidates, direction, distance)
     }
 
-    /// Whether an opaque sphere other than that of the surface is nearer than a distance.
+    /// Whether an opaque sphere, other than the sphere of the surface, is nearer than a distance.
     fn is_occluded(&self, candidates: &Candidates, toward: Vector, distance: Number) -> Obstacle {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
@@ -96,21 +96,21 @@ impl Kernel<'_> {
     }
 }
 
-/// The largest error of a direction, above which nothing is said.
+/// The largest error of a direction. Above it, the search is undecided.
 const MOST_TURNED: f64 = 0.01;
 
-/// The largest distance of a box, above which nothing is said. All lengths are smaller.
+/// The largest distance of a box. Above it, the search is undecided. All lengths are smaller.
 const MOST_DISTANT: f64 = 1e30;
 
 impl Entry {
-    /// All rays from a point in a direction; `None` if the direction is hardly known, or where they enter the box.
+    /// All rays from a point in a direction; `None` if the direction, or the entry into the box, is hardly known.
     pub(crate) fn aimed([low, high]: [DVec3; 2], origin: DVec3, direction: Vector) -> Option<Self> {
         let axes = direction.intervals();
         let middle = DVec3::from(axes.map(|axis| 0.5 * (axis.low + axis.high)));
         let half = DVec3::from(axes.map(|axis| 0.5 * (axis.high - axis.low)));
-        // The error of the middle is that of an addition in f64.
+        // The middle has the error of an addition in f64.
         let turned = PAD * half.length() + 4.0 * f64::EPSILON * middle.length();
-        // False also for NaN.
+        // This is also false for NaN.
         let is_known = turned <= MOST_TURNED;
         if !is_known {
             return None;
@@ -124,8 +124,8 @@ impl Entry {
             return None;
         }
         // The squared length of the device's direction d', which has about unit length and is within `turned` of the
-        // middle d, is off by no more than that of d by 2 turned + turned². Searches of the checker widen boxes by
-        // twice the bend times the longest vector, which is therefore more than the ray is beside.
+        // middle d, differs from that of d by at most 2 turned + turned². Searches of the checker widen boxes by twice
+        // the bend times the longest vector, which is more than the ray is displaced.
         let mut line = Line::exact(origin, middle);
         line.bend += 2.5 * turned;
         let (may_hit_box, may_miss_box) = (enter.low <= leave.high, enter.high > leave.low);
@@ -150,7 +150,7 @@ fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> SlabCrossing
         [direction.low.abs(), direction.high.abs()].map(|size| size.max(SMALLEST_COMPONENT));
     let is_positive = direction.low >= 0.0;
     if !is_positive && direction.high >= 0.0 {
-        // The sign of the direction is unknown. From between the planes one of them lies behind and one ahead.
+        // The sign of the direction is unknown. From between the planes, one of them lies behind and one ahead.
         let is_between = low < origin && origin < high;
         let nearest = (origin - low).min(high - origin) / sizes[0].max(sizes[1]);
         let everything = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };

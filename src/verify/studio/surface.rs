@@ -1,4 +1,4 @@
-//! The check of what is seen of a surface before any light is searched for. The WGSL twin is
+//! The check of the parts of a surface's look that need no search for light. The WGSL twin is
 //! `shaders/studio/surface.wgsl`.
 
 use crate::image::NO_ID;
@@ -29,9 +29,9 @@ const KEPT: Name = (LitStage::Surface, "an unchanged part of the ray's state");
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HitKind {
     Nothing,
-    /// A surface that shines and is not lit.
+    /// A surface that emits light and is not lit.
     Emitter,
-    /// A surface that lights are added to.
+    /// A surface to which lights add light.
     Surface,
 }
 
@@ -60,7 +60,7 @@ impl Kernel<'_> {
         let [of_material, alpha] = vertex.opacities.map(Number::recorded);
         let opacity = alpha * of_material;
         let weight = left_over * opacity;
-        // Behind an opaque surface nothing remains: a number minus itself is zero.
+        // Nothing remains behind an opaque surface: a number minus itself is zero.
         let is_opaque =
             vertex.opacities.iter().all(|opacity| opacity.to_bits() == 1.0_f32.to_bits());
         let rest = if is_opaque { Number::ZERO } else { left_over - weight };
@@ -131,7 +131,7 @@ impl Kernel<'_> {
         self.judge.same(KEPT, [self.before, self.after], slot)
     }
 
-    /// Compares radiance and opacity with those before and what is added to them.
+    /// Compares radiance and opacity with the sums of their previous values and the additions.
     fn added(&mut self, radiance: Vector, opacity: Number) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
         let sum = Vector::recorded(before.vector(slot::RADIANCE)) + radiance;
@@ -140,7 +140,7 @@ impl Kernel<'_> {
         self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
     }
 
-    /// Compares the sphere that the ray passes, its radius, and how far its far side is.
+    /// Compares the sphere that the ray passes, its radius, and the distance to its far side.
     fn compare_passed(&mut self, vertex: &Vertex) -> Result<(), Mismatch> {
         let departure = self.after.departure();
         let is_sphere = vertex.is_sphere();

@@ -1,13 +1,13 @@
-//! Pictures as they stand in files: whether every sample is one that a conforming device may have led to.
+//! Judges pictures as they are in files: whether a conforming device may have produced every sample.
 //!
 //! A file has no rays, depths or normals. So a pixel is judged against all rays together that a device may compute for
-//! it (`verify/camera/entered.rs`), the spheres that these may hit, the normals that the kernel may find there, and the
-//! colours that follow. An interval of colours becomes an interval of samples, because exposure, tone curve and the
-//! transfer function of sRGB are computed by the host, in the same way everywhere. For most pixels of a picture with 8
-//! bits it holds one or two samples.
+//! it (`verify/camera/entered.rs`), the spheres that these rays may hit, the normals that the kernel may find there,
+//! and the colours that follow. An interval of colours becomes an interval of samples, because the host computes
+//! exposure, tone curve and the transfer function of sRGB in the same way everywhere. In pictures with 8 bits, this
+//! interval contains one or two samples for most pixels.
 //!
-//! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). Pictures with light are estimates; they
-//! are judged by [`means`](super::means).
+//! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). Pictures with light are estimates,
+//! which [`means`](super::means) judges.
 
 mod samples;
 
@@ -24,7 +24,7 @@ use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::render::PrimarySettings;
 
-/// A pixel that no conforming device leads to.
+/// A pixel that no conforming device may have produced.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WrittenViolation {
@@ -51,7 +51,7 @@ impl fmt::Display for WrittenViolation {
     }
 }
 
-/// Whether a picture in a file is one that a conforming device may have led to.
+/// Whether a conforming device may have produced a picture in a file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WrittenCertificate {
@@ -70,7 +70,7 @@ impl WrittenCertificate {
         verdict.count(&self.verdicts)
     }
 
-    /// The number of pixels for which several answers are legal, of which the picture shows one.
+    /// The number of pixels for which several answers are legal. The picture shows one of them.
     #[must_use]
     pub fn undecided(&self) -> usize {
         Verdict::undecided(&self.verdicts)
@@ -85,7 +85,7 @@ impl WrittenCertificate {
 }
 
 impl Checker<'_> {
-    /// Judges every sample of a picture of primary rays, as it stands in its file.
+    /// Judges every sample of a picture of primary rays, as it is in its file.
     ///
     /// # Errors
     /// Returns an error if the picture is not as large as the view, or has another number of samples.
@@ -130,8 +130,8 @@ impl Checker<'_> {
         Ok(certificate)
     }
 
-    /// Whether surfaces of several spheres coincide where the middle ray of each pixel meets them, so that rounding
-    /// decides which one is seen.
+    /// Whether surfaces of several spheres coincide at the point where the middle ray of a pixel meets them, so that
+    /// rounding decides which one is seen.
     #[must_use]
     pub fn ties(&self, view: &View<'_>) -> Vec<bool> {
         let primary = PrimarySettings::default();

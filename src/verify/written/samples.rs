@@ -14,7 +14,7 @@ use crate::verify::recording::{RequestedCamera, UploadedView};
 use crate::verify::rounding::{Interval, PAD, U};
 use crate::verify::sphere::{LegalNormals, exactly, legal_color};
 
-/// Legal colours: those of one side of a sphere, or that of a miss.
+/// Legal colours: the colours of one side of a sphere, or the colour of a miss.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LegalColor {
     /// Linear red, green and blue.
@@ -43,7 +43,7 @@ impl<'a> PictureCheck<'a> {
         let [min, max] =
             [uploaded.scene_min, uploaded.scene_max].map(|v| DVec3::from(v.map(f64::from)));
         let model = CameraModel::new(requested.kind, &uploaded, &view.film);
-        // A device may choose another start by as much as the box is large.
+        // A device may choose another start, up to the size of the box away.
         let moved = 2.0 * U * (origin + (max - min).length());
         Self { checker, model, primary, moved }
     }
@@ -93,7 +93,7 @@ impl<'a> PictureCheck<'a> {
 #[error("{0}")]
 pub struct WrittenError(String);
 
-/// The samples of a picture as they stand in its file, row by row from the top.
+/// The samples of a picture as they are in its file, row by row from the top.
 #[derive(Clone, Copy, Debug)]
 pub enum Samples<'a> {
     /// Samples of a PNG in sRGB: RGB, or RGBA if the encoding is transparent, each of one byte or of two with the
@@ -103,14 +103,14 @@ pub enum Samples<'a> {
     Linear(&'a [[f32; 4]]),
 }
 
-/// A picture as it stands in its file.
+/// A picture as it is in its file.
 #[derive(Clone, Copy, Debug)]
 pub struct WrittenPicture<'a> {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// The samples.
     pub samples: Samples<'a>,
-    /// How the picture was encoded.
+    /// The settings with which the picture was encoded.
     pub encoding: &'a Encoding,
 }
 
@@ -145,7 +145,7 @@ impl WrittenPicture<'_> {
         Err(WrittenError(format!("the picture has {found} samples; {expected} are expected")))
     }
 
-    /// Red, green and blue of each pixel as they stand in the file, such that white is 1.
+    /// Red, green and blue of each pixel as they are in the file, scaled so that white is 1.
     ///
     /// # Errors
     /// Returns an error if there are too few or too many samples.
@@ -183,8 +183,8 @@ impl WrittenPicture<'_> {
 pub(super) struct LegalSample([[f64; 2]; 4]);
 
 impl LegalSample {
-    /// Compares a pixel with its legal samples: `None` if one of them holds it. Otherwise the first channel that is not
-    /// legal in the one that holds the most channels, and what is legal there.
+    /// Compares a pixel with its legal samples: `None` if one of them contains it. Otherwise returns the first channel
+    /// that is not legal in the sample that contains the most channels, and the legal interval there.
     pub(super) fn judge(legal: &[Self], found: &[f64; 4]) -> Option<(usize, [f64; 2])> {
         let outside = |Self(channels): &Self| {
             channels
@@ -196,7 +196,7 @@ impl LegalSample {
             return None;
         }
         let nearest = legal.iter().filter_map(|legal| Some((outside(legal)?, legal)));
-        // Without a legal answer, which does not happen, nothing is legal.
+        // If there is no legal answer, which does not happen, nothing is legal.
         let (channel, Self(channels)) =
             nearest.max_by_key(|(channel, _)| *channel).unwrap_or((0, &Self([[f64::NAN; 2]; 4])));
         Some((channel, channels[channel]))
@@ -204,7 +204,7 @@ impl LegalSample {
 }
 
 impl WrittenPicture<'_> {
-    /// The legal samples for legal colours; misses are transparent if the picture is.
+    /// The legal samples for legal colours. Misses are transparent if the picture is.
     pub(super) fn legal(&self, legal: &LegalColor, is_transparent: bool) -> LegalSample {
         let alpha = if legal.is_hit || !is_transparent { 1.0 } else { 0.0 };
         let Self { samples, encoding, .. } = self;
@@ -226,19 +226,19 @@ impl WrittenPicture<'_> {
         LegalSample(channels)
     }
 
-    /// The least and the greatest light of a display for legal colours.
+    /// The least and the greatest display light for legal colours.
     fn displayed(&self, legal: &LegalColor) -> [[f32; 3]; 2] {
         let encoding = self.encoding;
         let ends = [legal.color.map(|c| down(c.low)), legal.color.map(|c| up(c.high))];
         if !legal.is_hit && (encoding.transparent || encoding.kept_background().is_some()) {
-            // The background passes through unchanged, and is black where it is transparent.
+            // The background passes through unchanged. Where it is transparent, it is black.
             return ends;
         }
         encoding.display_range(ends)
     }
 }
 
-/// Encodes light of a display as the writers do; brighter light never gives a smaller sample.
+/// Encodes display light as the writers do. Brighter light never gives a smaller sample.
 fn encode(bits: Bits, light: [f32; 3]) -> [f64; 3] {
     match bits {
         Bits::Eight => to_srgb8(light).map(f64::from),

@@ -1,5 +1,5 @@
-//! Tests that the checker never accuses devices that conform to WGSL and yet round as they like, and that it accuses
-//! those whose results are farther off. For more scenes, run `cargo bench --bench verify -- adversary 100`.
+//! Tests with adversaries: conforming devices that round in arbitrary ways. The checker must never accuse them, but
+//! must accuse devices with larger errors. For more scenes, run `cargo bench --bench verify -- adversary 100`.
 
 mod operations;
 
@@ -22,19 +22,19 @@ use crate::support::effort::tries;
 use crate::support::{random_light, spheres};
 use crate::{headless, lit_scenes, planted, scenes, support};
 
-/// How many random lit scenes, and random studios, there are if all run.
+/// Number of random lit scenes, and of random studios, if all run.
 const SEEDS: u32 = 10;
 
-/// The longest side of pictures, which are cut to it.
+/// Maximum length of a side of a picture. Larger pictures are cut.
 const SIDE: u32 = 64;
 
-/// Views whose pictures are also those of `render`, without a recording.
+/// Views that are also rendered by `render`, without a recording.
 const RENDERED: [&str; 3] = ["three_spheres", "coincident_spheres", "on_the_wall_looking_in"];
 
-/// Every operation of kernels of primary rays rounds as it likes.
+/// Every operation of kernels of primary rays rounds arbitrarily.
 const ALL: Adversary = Adversary::new(Rounding::EachItsOwn, 1);
 
-/// A third of the operations of other kernels do, because Mesa compiles them for long.
+/// In other kernels, a third of the operations do, because Mesa takes long to compile them.
 const PART: Adversary = Adversary { share: 0.34, ..ALL };
 
 /// The error in ULP of devices that do not conform.
@@ -83,7 +83,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 pub(crate) type Lazy<T> = Box<dyn FnOnce() -> T + Send>;
 
-/// All lit scenes of the tests that a device of its own bits is legal, and random ones.
+/// All lit scenes whose samples are judged, and random ones.
 pub(crate) fn lit_views() -> Vec<(String, Lazy<support::View>)> {
     let mut views: Vec<(String, Lazy<support::View>)> = Vec::new();
     for (suite, of) in
@@ -106,7 +106,7 @@ pub(crate) fn not_accused(outcome: Outcome, words: &dyn Display) -> Result<(), F
     if outcome == Outcome::Violated { Err(words.to_string().into()) } else { Ok(()) }
 }
 
-/// Certifies a view that is cut to a small picture, and perhaps also what `render` makes of it.
+/// Certifies a view that is cut to a small picture, and the picture of `render` too if `is_rendered`.
 fn certify(
     device: &Device,
     view: &support::View,
@@ -161,7 +161,7 @@ pub(crate) fn certify_lit_on(
     Ok(certificate)
 }
 
-/// Devices whose results are farther off are accused, in every kind of stage.
+/// Tests that devices with larger errors are accused, in every kind of stage.
 fn found() -> Result<(), Failed> {
     let primary = certify(&FAULTY, &support::View::three_spheres(), false)?;
     println!("{primary}");
@@ -184,7 +184,7 @@ fn found() -> Result<(), Failed> {
 static ALIKE: Device =
     Device::new(|| open(Adversary { is_alike: true, ..Adversary::new(Rounding::EachItsOwn, 3) }));
 
-/// The bits of the distance and the id of every pixel's hit. `box_margin` is that of boxes for ray queries.
+/// The bits of the distance and the id of every pixel's hit. `box_margin` is the margin of boxes for ray queries.
 pub(crate) fn hits(
     headless: &Headless,
     scene: &Scene,
@@ -200,7 +200,7 @@ pub(crate) fn hits(
     Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
 }
 
-/// Calls `test` with a view of all of a scene.
+/// Calls `test` with a view of a whole scene.
 pub(crate) fn seen<T>(
     scene: &Scene,
     test: impl FnOnce(&View<'_>) -> Result<T, Failed>,
@@ -213,7 +213,7 @@ pub(crate) fn seen<T>(
     test(&View::new(&camera, Film::new(112, 112)?))
 }
 
-/// Whether structures find, to the bit, the hits that the list finds.
+/// Tests that structures find the same hits as the list, to the bit.
 pub(crate) fn agree(
     headless: &Headless,
     name: &str,
@@ -239,7 +239,7 @@ pub(crate) fn agree(
     })
 }
 
-/// Small spheres in a large box, beside which its margin is not small, and spheres that touch.
+/// Tests small spheres in a large box, whose margin is not small beside them, and spheres that touch.
 fn structures_agree() -> Result<(), Failed> {
     for (name, spheres) in [
         ("small", spheres::random(6000, 5, |_| 1e-3)),
@@ -252,7 +252,7 @@ fn structures_agree() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The mean deviations of a device without a fault are below this, where there are this many results.
+/// The mean deviations of a device without a fault are below `CLEAN` if there are at least `MANY` results.
 const CLEAN: f64 = LARGEST_MEAN / 2.0;
 const MANY: u64 = 20_000;
 
@@ -298,7 +298,7 @@ fn clean() -> Result<(), Failed> {
     if failed.is_empty() { Ok(()) } else { Err(failed.join("\n").into()) }
 }
 
-/// A fault that is smaller than its bound is noted.
+/// Tests that a fault that is smaller than its bound is noted.
 fn is_noted(fault: &Fault) -> Result<(), Failed> {
     let headless = fault.device()?;
     let deviations = match fault.setup() {

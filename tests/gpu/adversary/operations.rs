@@ -1,4 +1,4 @@
-//! Tests that the operations of an adversary are legal, and that they are not always the nearest.
+//! Tests that the operations of an adversary are legal, and that their results are not always the nearest numbers.
 
 #![expect(clippy::float_cmp, reason = "the results of roundings are compared for equality")]
 
@@ -16,12 +16,12 @@ const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }"
 
 type Exact = FBig<mode::HalfEven, 2>;
 
-/// A number in a precision in which nothing is rounded.
+/// A number in a precision in which no operation rounds.
 fn exact(value: f32) -> Exact {
     Exact::try_from(value).unwrap().with_precision(400).value()
 }
 
-/// Whether a number is one of the two neighbours of an exact one, or zero in place of a subnormal one.
+/// Whether a number is one of the two neighbours of an exact number, or zero in place of a subnormal one.
 fn is_neighbour(found: f32, exactly: &Exact) -> bool {
     let above = exact(found.next_up());
     let below = exact(found.next_down());
@@ -29,14 +29,13 @@ fn is_neighbour(found: f32, exactly: &Exact) -> bool {
     is_small || (below < *exactly && *exactly < above)
 }
 
-/// By how many ULP of the exact number another is off.
+/// Error of a number in ULP of the exact number.
 fn error_in_ulp(found: f32, exactly: f64) -> f64 {
     let (_, exponent) = (exactly, exactly.abs().log2().floor());
     (f64::from(found) - exactly).abs() / 2_f64.powf(exponent - 23.0)
 }
 
-/// Random numbers, of which some are nearly equal, so that sums cancel, and some have few digits, so that results are
-/// exact.
+/// Random numbers. Some are nearly equal, so that sums cancel. Some have few digits, so that results are exact.
 fn operands(count: usize) -> Vec<[u32; 4]> {
     let mut random = fastrand::Rng::with_seed(5);
     let number = |random: &mut fastrand::Rng| {

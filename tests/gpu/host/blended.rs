@@ -1,4 +1,4 @@
-//! Pictures that are transparent in parts, among what the host has drawn.
+//! Tests of pictures that are transparent in parts, over the drawings of the host.
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{Composite, CompositeOptions, Headless, Wait, wgpu};
@@ -18,7 +18,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// Colours of a picture, with alpha multiplied in, and distances, 1e30 for a miss.
+/// Colours of a picture, premultiplied by alpha, and distances, which are 1e30 for a miss.
 struct Picture {
     colors: Vec<[u8; 4]>,
     distances: Vec<f32>,
@@ -27,10 +27,10 @@ struct Picture {
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 
-/// What the host has drawn before. It is not black, so that too little of it is seen.
+/// The colour that the host has drawn before. It is not black, so that a missing part of it is seen.
 const UNDER: [u8; 4] = [51, 102, 204, 255];
 
-/// What is planted into the truth.
+/// A fault that is planted into the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
@@ -42,7 +42,7 @@ enum Fault {
     Farthest,
     /// Pixels are drawn where their ray hits.
     Hits,
-    /// The host's colour is not kept below.
+    /// The host's colour is not kept below the picture.
     NoBlend,
 }
 
@@ -97,13 +97,13 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
     (!is_behind).then(|| depth.clamp(0.0, 1.0))
 }
 
-/// Number of pixels whose colour or depth is not what it must be.
+/// Number of pixels with a wrong colour or depth.
 fn wrong(stage: &Stage, fault: Fault) -> usize {
     let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
     wrong_by(stage, &Composite::new(&stage.host.device, &options).wait().unwrap(), fault)
 }
 
-/// Number of pixels that a pipeline draws with a colour or depth that is not what it must be.
+/// Number of pixels that a pipeline draws with a wrong colour or depth.
 fn wrong_by(stage: &Stage, composite: &Composite, fault: Fault) -> usize {
     let picture = random_picture(5);
     stage.host.write(&stage.layers.color, &picture.colors);

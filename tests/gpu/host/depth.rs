@@ -1,4 +1,4 @@
-//! The depth and the colours that are drawn into a host's render pass.
+//! Tests of the depth and the colours that are drawn into a host's render pass.
 
 use libtest_mimic::Trial;
 use pinhole::camera::{DepthOrder, HostCamera};
@@ -32,25 +32,25 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// How the composite is drawn.
+/// The settings with which the composite is drawn.
 #[derive(Clone, Copy)]
 struct Draw {
     camera: HostCamera,
     first_pixel: [u32; 2],
-    /// The depth before.
+    /// The depth to which the host clears.
     cleared: f32,
 }
 
-/// What is wrong with the depths: how far they are from the truth, in units of what rounding permits, and in how many
-/// pixels there is a depth and should be none, or the other way round.
+/// The errors of the depths: their distance from the truth in units of the permitted rounding, and the number of pixels
+/// that have a depth but should not, or the other way round.
 #[derive(Debug)]
 struct Wrong {
-    /// Of the conversion from the distance that the depth layer holds.
+    /// The error of the conversion from the distance in the depth layer.
     conversion: f64,
-    /// Of everything from the spheres on.
+    /// The error of all steps, from the spheres on.
     whole: f64,
     coverage: usize,
-    /// Pixels that are judged, and pixels that are too close to a silhouette for that.
+    /// Number of pixels that are judged, and of pixels that are too close to a silhouette to be judged.
     judged: usize,
     unjudged: usize,
 }
@@ -85,7 +85,7 @@ fn judge(stage: &Stage, drawn: Draw) -> Wrong {
         let truth = stage.truth(pixel);
         let distance = distances[at(pixel)];
         let is_hit = distance < 1e30;
-        // At a silhouette, rounding decides what is hit.
+        // At a silhouette, rounding decides whether a sphere is hit.
         if stage.is_near_a_silhouette(pixel) {
             wrong.unjudged += 1;
             continue;
@@ -103,14 +103,14 @@ fn judge(stage: &Stage, drawn: Draw) -> Wrong {
         let camera = &stage.camera;
         let start = camera.clip_depth(location, if is_parallel(stage) { 0.0 } else { 1e30 });
         let change = |distance: f64| (camera.clip_depth(location, distance) - start).abs();
-        // The last rounding is that of the format; the others are of the quotient, which is at most 2.5 ULP wrong, of
-        // the four products and sums of its numerator, and of its rounded parameters.
+        // The last rounding is the rounding of the format. The others are those of the quotient, which is at most 2.5
+        // ULP wrong, of the four products and sums of its numerator, and of its rounded parameters.
         let rounding =
             |distance: f64| HALF_ULP * (found.abs() + start.abs() + 12.0 * change(distance));
         let expected = camera.clip_depth(location, f64::from(distance));
         let error = (found - expected).abs() / rounding(f64::from(distance));
         wrong.conversion = wrong.conversion.max(error);
-        // The distance is rounded in a scene of this size, and more so where the ray grazes the sphere.
+        // The distance is rounded in a scene of this size, with a larger error where the ray grazes the sphere.
         let length = truth.distance + 8.0;
         let distance_error = 4.0 * HALF_ULP * length / truth.cosine;
         let slope = change(truth.distance) / truth.distance;
@@ -172,7 +172,7 @@ fn faults(_: &'static Headless) {
     }
 }
 
-/// The bytes of a picture are those of the spheres' colours, whatever the target; and float targets hold linear light.
+/// The bytes of a picture are the bytes of the spheres' colours, for every target, and float targets hold linear light.
 fn colors(_: &'static Headless) {
     let stage = Stage::new(Convention::Reversed);
     for format in [
@@ -190,7 +190,7 @@ fn colors(_: &'static Headless) {
         for pixel in stage.clear_pixels() {
             let found = &bytes[at_target(pixel) * texel..][..texel];
             let Some(truth) = stage.truth(pixel) else {
-                // What the host cleared to: black, and opaque.
+                // The colour to which the host cleared: black, and opaque.
                 assert!(texel == 8 || found == [0, 0, 0, 255], "{format:?} {pixel:?}: {found:?}");
                 continue;
             };
@@ -219,7 +219,7 @@ fn half(bits: u16) -> f32 {
     (1.0 + f32::from(bits & 1023) / 1024.0) * 2_f32.powi(exponent)
 }
 
-/// Hits behind the far plane are not drawn, and hits in front of the near plane are, at its depth.
+/// Hits behind the far plane are not drawn. Hits in front of the near plane are drawn at its depth.
 fn planes(_: &'static Headless) {
     for convention in [Convention::Perspective, Convention::Reversed] {
         let stage = Stage::new(convention);
@@ -255,7 +255,7 @@ fn refused(_: &'static Headless) {
     let stage = Stage::new(Convention::Perspective);
     let device = &stage.host.device;
     let depth = CompositeDepth::new(TextureFormat::Depth32Float, DepthOrder::NearIsZero);
-    // A format that is no colour, and a number of samples that no device must have.
+    // A format that has no colour, and a number of samples that no device has to support.
     for (format, samples) in [(TextureFormat::Depth32Float, 1), (TextureFormat::Rgba8Unorm, 3)] {
         let mut options = CompositeOptions::new(format, depth);
         options.sample_count = samples;
@@ -266,7 +266,7 @@ fn refused(_: &'static Headless) {
     options.encoding = TargetEncoding::Linear;
     options.source = ColorTarget::Linear16;
     let composite = Composite::new(device, &options).wait().unwrap();
-    // The picture is in another format than the one to be drawn.
+    // The picture has another format than the pipeline draws.
     let picture = |targets: &Targets<'_>| CompositePicture::new(&composite, device, targets).wait();
     let error = stage.layers.with(true, picture).map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Target { layer: "color", .. }), "{error}");
@@ -283,7 +283,7 @@ fn refused(_: &'static Headless) {
     assert_eq!(composite.draw(&mut pass, &picture), Err(GpuError::NoCamera));
 }
 
-/// Number of pixels whose id is not the one that must be there.
+/// Number of pixels with a wrong id.
 fn wrongly_hidden(
     stage: &Stage,
     format: TextureFormat,
@@ -355,8 +355,8 @@ fn hiding_faults(_: &'static Headless) {
     }
 }
 
-/// Depth is at the near or the far plane, differently from pixel to pixel, so that a pixel either shows what it shows
-/// without depth, or nothing. The picture is one of several bands.
+/// Depth is at the near or the far plane, differently from pixel to pixel, so that a pixel either shows the same as
+/// without depth, or nothing. The picture has several bands.
 fn several_bands(_: &'static Headless) {
     const SIZE: [u32; 2] = [2400, 1900];
     let host = Host::new();

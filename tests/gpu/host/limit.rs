@@ -1,4 +1,4 @@
-//! Rays that end at the host's depth give the pictures of those that do not, to the bit.
+//! Tests that rays that end at the host's depth give the same pictures as other rays, to the bit.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// A renderer whose rays end at the host's depth, or do not.
+/// A renderer whose rays end at the host's depth if `is_limited`.
 fn renderer(stage: &Stage, is_limited: bool, edits: &[ShaderEdit]) -> Arc<Pipelines> {
     let options = RendererOptions {
         data_layers: true,
@@ -47,7 +47,7 @@ struct HostPicture {
 /// A different depth in every pixel, from the near plane to the far one. Some pixels are at these planes.
 fn random_depth(stage: &Stage, random: &mut fastrand::Rng) -> HostPicture {
     let texture = stage.host.texture(SIZE, TextureFormat::Depth16Unorm);
-    // Depths of points among the spheres; the whole range would be in front of them or behind them nearly everywhere.
+    // Depths of points among the spheres. Most depths of the whole range would be in front of them or behind them.
     let words: Vec<u16> = super::stage::pixels()
         .map(|pixel| match random.u32(0..10) {
             0 => 0,
@@ -63,7 +63,7 @@ fn random_depth(stage: &Stage, random: &mut fastrand::Rng) -> HostPicture {
     HostPicture { texture, first_pixel: [0, 0] }
 }
 
-/// The depth of the spheres of the stage, which are those of the scene or others.
+/// The depth of the spheres of the stage, which are the spheres of the scene or others.
 fn own_depth(stage: &Stage) -> HostPicture {
     let formats = [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float];
     let [_, texture] = stage.composited(formats, &stage.camera, FIRST, stage.far());
@@ -170,7 +170,7 @@ fn faults(_: &'static Headless) {
     }
 }
 
-/// The convention of a name, or all.
+/// The convention with a name, or all conventions.
 fn conventions(name: &str) -> impl Iterator<Item = Convention> {
     let is_named = move |one: &Convention| name == "All" || name == format!("{one:?}");
     Convention::ALL.into_iter().filter(is_named)
@@ -193,7 +193,7 @@ fn near(_: &'static Headless) {
             let planes = [-1.0, 1.0].map(|side| (DVec3::splat(side) - ray.origin) / ray.direction);
             let enters = planes[0].min(planes[1]).max_element();
             let leaves = planes[0].max(planes[1]).min_element();
-            // Hits are beside the point, also those that `hide` removes because they are a little too far.
+            // Hits are near the point. This includes hits that `hide` removes because they are slightly too far.
             let is_hit = ids[at] != u32::MAX || limits[at] == 0.0;
             if is_hit || stage.is_near_a_silhouette(pixel) || enters + 0.01 > leaves {
                 continue;

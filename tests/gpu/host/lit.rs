@@ -1,4 +1,4 @@
-//! Lit pictures that accumulate in a host's encoders: they are those of a headless device, to the bit.
+//! Tests that lit pictures that accumulate in a host's encoders are the same as on a headless device, to the bit.
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{
@@ -60,7 +60,7 @@ impl Show {
         Self::new([view.film.width(), view.film.height()])
     }
 
-    /// With the scene of a view, and a picture of it.
+    /// A host with the scene of a view, and a picture of it.
     fn ready(view: &View) -> (Self, SceneBuffers, LitPicture) {
         let show = Self::of(view);
         let scene = show.scene(&view.scene);
@@ -154,7 +154,7 @@ fn budgets(headless: &'static Headless) {
 }
 
 fn every_scene(headless: &'static Headless) {
-    // All have the same film.
+    // All scenes have the same film.
     let show = Show::of(&named("path_glass", 3));
     for (name, mut view) in share(lit_scenes::all()) {
         view.settings.sampling.samples = 3;
@@ -166,7 +166,7 @@ fn every_scene(headless: &'static Headless) {
     }
 }
 
-/// Every change begins again, and what was accumulated before leaves no trace.
+/// Tests that every change begins again, and that earlier samples leave no trace.
 fn changes(headless: &'static Headless) {
     let view = named("studio_ambient_occlusion", 4);
     let (show, scene, mut picture) = Show::ready(&view);
@@ -185,7 +185,7 @@ fn changes(headless: &'static Headless) {
     ];
     for (number, other) in others.iter().enumerate() {
         show.set(&mut picture, &scene, &view).unwrap();
-        // In the middle of a picture.
+        // The change is in the middle of a picture.
         show.submit(&mut picture, &scene, 60_000);
         assert!(show.set(&mut picture, &scene, other).unwrap(), "change {number}");
         show.host.wait();

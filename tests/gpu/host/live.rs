@@ -1,4 +1,4 @@
-//! Live pictures: each frame is that of the CPU reference, which knows the same frames before.
+//! Tests that each frame of a live picture agrees with the CPU reference, which has the same earlier frames.
 
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ const STUDIOS: [&str; 7] = [
     "studio_without_light",
 ];
 
-/// Cameras around the scene of a view. The kind is that of the first ones of `kinds`.
+/// Cameras around the scene of a view. `kind` is an index into the first elements of `kinds`.
 fn camera(kind: usize, angle: f64, film: Film) -> Box<dyn Camera> {
     let eye = [7.0 * angle.sin() + 0.4, 1.5 + 0.3 * angle, 7.0 * angle.cos()];
     let pose = Pose::looking_at(eye, [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
@@ -50,7 +50,7 @@ fn camera(kind: usize, angle: f64, film: Film) -> Box<dyn Camera> {
     }
 }
 
-/// A device for studios with a film as that of this one.
+/// A host for studios with the same film as this one.
 fn show(studio: &str, edits: Vec<ShaderEdit>) -> Arc<Show> {
     let film = named(studio, 1).film;
     Arc::new(Show::edited([film.width(), film.height()], edits))
@@ -68,7 +68,7 @@ impl Stage {
         Self::on(&show(name, edits), name)
     }
 
-    /// On a device that others may have used before.
+    /// A stage on a host that other stages may have used before.
     fn on(show: &Arc<Show>, name: &str) -> Self {
         let view = named(name, 1);
         let (show, scene) = (Arc::clone(show), show.scene(&view.scene));
@@ -93,8 +93,8 @@ impl Stage {
         picture.record(renderer, queue, encoder, &self.scene).unwrap()
     }
 
-    /// Renders a frame with both, and returns the fraction of pixels whose colours differ by more than rounding, or that
-    /// show another sphere.
+    /// Renders a frame with both, and returns the fraction of pixels that show another sphere, or whose
+    /// colours differ by more than rounding.
     fn compare(&mut self, picture: &mut LivePicture, camera: &dyn Camera) -> f64 {
         let Host { device, queue } = &self.show.host;
         let view = View::new(camera, self.view.film);
@@ -127,15 +127,15 @@ impl Stage {
     fn worst(&mut self, kind: usize) -> f64 {
         let mut picture = self.picture().unwrap();
         let film = self.view.film;
-        // It moves, rests, and moves again.
+        // The camera moves, rests, and moves again.
         let angles = [0.0, 0.03, 0.06, 0.09, 0.09, 0.09, 0.12, 0.4];
         let fractions = angles.map(|angle| self.compare(&mut picture, &*camera(kind, angle, film)));
         fractions.into_iter().fold(0.0, f64::max)
     }
 }
 
-/// The fraction of pixels that may differ: rays along edges, where f32 and f64 hit different things, and their
-/// neighbours. One pixel in 1,728 was found to.
+/// The fraction of pixels that may differ: rays along edges, where f32 and f64 hit different spheres, and their
+/// neighbours. One pixel in 1,728 differed in practice.
 const FEW: f64 = 0.005;
 
 fn moving(_: &'static Headless) {
@@ -148,7 +148,7 @@ fn moving(_: &'static Headless) {
     }
 }
 
-/// The average over frames is what a headless studio finds with as many rays through the same points.
+/// The average over frames agrees with a headless studio that traces as many rays through the same points.
 fn at_rest(headless: &'static Headless) {
     let stage = Stage::new("studio_near_occlusion", Vec::new());
     let mut picture = stage.picture().unwrap();
@@ -165,7 +165,7 @@ fn at_rest(headless: &'static Headless) {
         .render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR)
         .wait()
         .unwrap();
-    // Within a pixel of an edge the two are not the same: one is smooth there, and the other not.
+    // Within a pixel of an edge the two differ: only one of them is smooth there.
     let close = color
         .iter()
         .zip(wanted.color())
@@ -201,7 +201,7 @@ fn lost(_: &'static Headless) {
     submit(encoder);
     let mut encoder = stage.show.host.encoder();
     assert!(!stage.record(&mut picture, &mut encoder).was_lost);
-    // The device is not asked whether it is done, so there is no place for a fourth recording.
+    // The device is not asked whether it is done, so there is no room for a fourth recording.
     let mut encoders = vec![encoder];
     for _ in 0..2 {
         let mut encoder = stage.show.host.encoder();

@@ -52,7 +52,7 @@ fn random_pose(random: &mut fastrand::Rng) -> Pose {
     Pose::looking_at(DVec3::splat(0.5) - 2.5 * toward, DVec3::splat(0.5), up).unwrap()
 }
 
-/// All layers have the same bits.
+/// Tests that all layers have the same bits.
 fn as_our_own(headless: &'static Headless) {
     let (scene, film) = (scene(), Film::new(61, 43).unwrap());
     let settings = shaded(Shading::Headlight, LinearRgb::BLACK);
@@ -82,7 +82,7 @@ fn as_our_own(headless: &'static Headless) {
     }
 }
 
-/// The checker accepts what the kernels make of vectors that are not at right angles, and the reference agrees.
+/// The checker accepts the kernels' results for vectors that are not at right angles, and the reference agrees.
 fn legal(headless: &'static Headless) {
     let (scene, film) = (scene(), Film::new(61, 43).unwrap());
     let settings = shaded(Shading::Headlight, LinearRgb::BLACK);
@@ -95,7 +95,7 @@ fn legal(headless: &'static Headless) {
             let into = if i % 2 == 0 { 1.0 } else { -1.0 };
             let projection = convention.projection(edges, [0.1, 9.0], into);
             let to_view = view(&pose, into) * change;
-            // As most hosts have them, in f32.
+            // Matrices in f32, as most hosts have them.
             let (to_view, projection) = (to_view.as_mat4(), projection.as_mat4());
             let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
             let seen = pinhole::View::new(&camera, film);

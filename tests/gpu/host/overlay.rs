@@ -1,4 +1,4 @@
-//! Pictures in passes without depth, textures that pinhole makes for a host, and what is at a pixel, some frames later.
+//! Tests of pictures in passes without depth, of textures that pinhole makes for a host, and of picking.
 
 use libtest_mimic::Trial;
 use pinhole::camera::PanoramaCamera;
@@ -23,8 +23,8 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// Without depth and data layers, the bytes in the host's attachment are those of the picture, hits and misses alike, and
-/// nothing else is drawn to.
+/// Without depth and data layers, the bytes in the host's attachment are the bytes of the picture, for hits and misses,
+/// and nothing else is drawn to.
 fn every_pixel(headless: &'static Headless) {
     let stage = Stage::new(Convention::Perspective);
     let device = &stage.host.device;
@@ -33,7 +33,7 @@ fn every_pixel(headless: &'static Headless) {
     let targets = textures.targets();
     assert_eq!((textures.size(), targets.data.is_none()), (SIZE, true));
     let mut frame = Frame::new(&renderer, device, &targets).wait().unwrap();
-    // No host has matrices of this camera.
+    // Hosts have no matrices for this camera.
     let camera = PanoramaCamera::new(pose());
     let view = View::new(&camera, Film::new(SIZE[0], SIZE[1]).unwrap());
     let scene = Scene::new(&stage.spheres).unwrap();
@@ -107,7 +107,7 @@ fn textures(_: &'static Headless) {
             assert!(matches!(error, GpuError::Device { .. }), "{error}");
         }
     }
-    // A texture that cannot be drawn is refused without depth, too.
+    // A texture that cannot be drawn is also refused without depth.
     let composite =
         Composite::new(device, &CompositeOptions::without_depth(TextureFormat::Rgba8Unorm))
             .wait()

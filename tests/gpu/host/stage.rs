@@ -1,4 +1,4 @@
-//! A host program with a camera, attachments and spheres, and what its picture must be, in f64.
+//! A host program with a camera, attachments and spheres, and the picture that it must show, in f64.
 
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
@@ -26,7 +26,7 @@ pub(super) struct Stage {
     pub(super) host: Host,
     pub(super) convention: Convention,
     pub(super) camera: HostCamera,
-    /// From world space to clip space.
+    /// Transform from world space to clip space.
     pub(super) to_clip: DMat4,
     pub(super) spheres: Vec<Sphere>,
     shared: Arc<Pipelines>,
@@ -51,7 +51,7 @@ impl Pipelines {
         Self { renderer, test }
     }
 
-    /// With options that some stage may have had before.
+    /// Pipelines with these options. Stages with equal options share them.
     pub(super) fn with(options: &RendererOptions) -> Arc<Self> {
         static ALL: Mutex<Vec<(RendererOptions, Arc<Pipelines>)>> = Mutex::new(Vec::new());
         let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
@@ -64,7 +64,7 @@ impl Pipelines {
     }
 }
 
-/// The point of a sphere that a pixel shows.
+/// The point of a sphere at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truth {
     pub(super) id: usize,
@@ -86,7 +86,7 @@ pub(super) fn projection(convention: Convention, range: [f64; 2]) -> DMat4 {
     convention.projection([-0.5, 0.6, -0.35, 0.4].map(|edge| scale * edge), range, -1.0)
 }
 
-/// Centres and radii are exact in f32.
+/// Random spheres whose centres and radii are exact in f32.
 fn random_spheres() -> Vec<Sphere> {
     let mut random = fastrand::Rng::with_seed(12);
     let mut number = |range: std::ops::Range<i32>| f64::from(random.i32(range)) / 64.0;
@@ -104,8 +104,8 @@ impl Stage {
         Self::with(convention, projection(convention, RANGE), view(&pose(), -1.0))
     }
 
-    /// A host whose near plane is oblique, so that depth depends on the place on the film, and whose view stretches and
-    /// mirrors.
+    /// A host whose near plane is oblique, so that depth depends on the position on the film, and
+    /// whose view stretches and mirrors.
     pub(super) fn oblique(convention: Convention) -> Self {
         let mut projection = projection(convention, RANGE);
         projection.x_axis.z += 0.02;
@@ -179,7 +179,7 @@ impl Stage {
         self.layers.with(true, picture).unwrap()
     }
 
-    /// Attachments of one sample in which the spheres are drawn, seen by a camera.
+    /// Attachments with one sample, into which the spheres are drawn as a camera sees them.
     pub(super) fn composited(
         &self,
         [color, depth]: [TextureFormat; 2],
@@ -202,12 +202,12 @@ impl Stage {
         textures
     }
 
-    /// Records the spheres.
+    /// Records tracing the spheres.
     pub(super) fn trace(&self, encoder: &mut wgpu::CommandEncoder) {
         self.shared.renderer.record(encoder, &self.scene, &self.frame).unwrap();
     }
 
-    /// Records the spheres that the depth texture does not hide.
+    /// Records tracing the spheres that the depth texture does not hide.
     pub(super) fn trace_with_depth(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -261,12 +261,12 @@ impl Stage {
         hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// The pixels that are not near a silhouette, where rounding decides what is hit.
+    /// The pixels that are not near a silhouette, where rounding decides whether a sphere is hit.
     pub(super) fn clear_pixels(&self) -> impl Iterator<Item = [u32; 2]> {
         pixels().filter(|pixel| !self.is_near_a_silhouette(*pixel))
     }
 
-    /// `true` if the ray passes a sphere at less than a thousandth of its radius from its silhouette.
+    /// Whether the ray passes the silhouette of a sphere at less than a thousandth of the sphere's radius.
     pub(super) fn is_near_a_silhouette(&self, pixel: [u32; 2]) -> bool {
         let ray = self.camera.ray_in_world(Self::location(pixel));
         self.spheres.iter().any(|sphere| {
@@ -278,12 +278,12 @@ impl Stage {
     }
 }
 
-/// The place in a picture of a pixel.
+/// Index of a pixel in a picture.
 pub(super) fn at([column, row]: [u32; 2]) -> usize {
     (row * SIZE[0] + column) as usize
 }
 
-/// The place in an attachment of a pixel of the picture.
+/// Index of a pixel of the picture in an attachment.
 pub(super) fn at_target([column, row]: [u32; 2]) -> usize {
     ((row + FIRST[1]) * TARGET[0] + column + FIRST[0]) as usize
 }
@@ -296,7 +296,7 @@ pub(super) fn pixels() -> impl Iterator<Item = [u32; 2]> {
     (0..SIZE[1]).flat_map(|row| (0..SIZE[0]).map(move |column| [column, row]))
 }
 
-/// A render pass over the viewport of the picture. What is cleared is black.
+/// A render pass over the viewport of the picture. Targets are cleared to black.
 pub(super) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     color: &wgpu::TextureView,

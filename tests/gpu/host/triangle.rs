@@ -1,4 +1,4 @@
-//! Spheres and a triangle of the host hide each other.
+//! Tests that spheres and a triangle of the host hide each other.
 
 use libtest_mimic::Trial;
 use pinhole::camera::Camera;
@@ -100,11 +100,11 @@ impl Triangle {
     }
 }
 
-/// What the triangle is at a pixel.
+/// The part of the triangle at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum There {
     Nothing,
-    /// So close to an edge that the rasterizer's grid decides.
+    /// The pixel is so close to an edge that the rasterizer's grid decides.
     Edge,
     /// The point on the triangle.
     Triangle(DVec3),
@@ -136,7 +136,7 @@ pub(super) fn triangle_at(stage: &Stage, pixel: [u32; 2]) -> There {
     There::Triangle(ray.at(along))
 }
 
-/// The colour that a pixel must have. `None` where a silhouette, an edge or equal depths leave it open.
+/// The colour that a pixel must have; `None` if a silhouette, an edge or equal depths leave it open.
 fn expected(stage: &Stage, pixel: [u32; 2], resolution: f64) -> Option<[u8; 4]> {
     if stage.is_near_a_silhouette(pixel) {
         return None;
@@ -161,7 +161,7 @@ fn expected(stage: &Stage, pixel: [u32; 2], resolution: f64) -> Option<[u8; 4]> 
 fn both_ways(_: &'static Headless) {
     for convention in Convention::ALL {
         let stage = Stage::new(convention);
-        // A few units of the last place of a format: of the spheres' depth and of the interpolated one.
+        // A few units in the last place of a format, for the depth of spheres and the interpolated depth.
         for (format, resolution) in [
             (TextureFormat::Depth32Float, 1e-6),
             (TextureFormat::Depth24Plus, 1e-6),

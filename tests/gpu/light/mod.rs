@@ -1,4 +1,4 @@
-//! Tests that lit pictures of the GPU agree with those of the CPU reference for the same random numbers.
+//! Tests that lit pictures of the GPU agree with pictures of the CPU reference for the same random numbers.
 
 mod passes;
 
@@ -26,8 +26,8 @@ const LEAST_PSNR: f64 = 60.0;
 /// Maximum error of a component of a pixel if all samples took the same path.
 const SAME_WAY: f64 = 2e-3;
 
-/// Maximum fraction of pixels of which a sample may have taken another path: at a silhouette, between equally near
-/// spheres, or at a random choice.
+/// Maximum fraction of pixels with a sample that took another path: at a silhouette, between equally
+/// near spheres, or at a random choice.
 const MAX_OTHER: f64 = 0.02;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -85,7 +85,7 @@ fn agree_with(view: &View, wanted: &Image) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A picture that is finished early is identical to one that was requested with that number of samples.
+/// A picture that is finished early is identical to a picture that was requested with the same number of samples.
 fn batches(device: &'static Headless) {
     let mut view = lit_scenes::sampled("path_lobes_and_metals", 1000);
     let buffers = view.uploaded(device, AccelChoice::Auto);
@@ -119,7 +119,7 @@ fn denoising(device: &'static Headless) {
     assert!(error(&quiet) < 0.5 * error(&noisy), "{} of {}", error(&quiet), error(&noisy));
 }
 
-/// Spheres of which every second is not opaque. There are so many that every structure pays off.
+/// Spheres of which every second is not opaque. There are enough that every structure pays off.
 fn translucent(side: u32, settings: RenderSettings) -> View {
     let spheres: Vec<Sphere> = (0..400)
         .map(|i| {
@@ -200,13 +200,13 @@ fn not_recorded(device: &'static Headless) {
     assert_eq!(light.err(), Some(GpuError::NotLit));
 }
 
-/// A ceiling of lamps, of which the first layer of the table holds 1,398,101, above a matt ground.
+/// A ceiling of lamps above a matt ground. The first layer of the table holds 1,398,101 of them.
 fn several_layers(_: &'static Headless) {
     const COLUMNS: usize = 1250;
     let lamps: Vec<[f64; 4]> = (0..1200 * COLUMNS)
         .map(|i| {
             let (row, column) = ((i / COLUMNS) as f64, (i % COLUMNS) as f64);
-            // The lamps of the last rows, which are in the second layer, are larger and give most of the light.
+            // The lamps of the last rows are in the second layer. They are larger and give most of the light.
             let radius = if row < 1120.0 { 0.002 } else { 0.008 };
             [0.02 * column - 12.5, 2.0, 0.02 * row - 12.0, radius]
         })

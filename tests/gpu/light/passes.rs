@@ -35,7 +35,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// Spheres side by side, so many along each axis.
+/// Spheres side by side: x, y and z of them along the axes.
 fn block([x, y, z]: [u32; 3], step: f32, radius: f32) -> Scene {
     let spheres = (0..x * y * z).map(|i| {
         let [x, y, z] = [i % x, i / x % y, i / (x * y)].map(|c| step * c as f32 - 2.2);
@@ -44,7 +44,7 @@ fn block([x, y, z]: [u32; 3], step: f32, radius: f32) -> Scene {
     Scene::from_f32(spheres.collect(), LinearRgb::from_srgb8([200; 3])).unwrap()
 }
 
-/// A studio of a picture of several tiles. Before the device is known to be fast, even one sample is several submissions.
+/// A studio with several tiles. Before the device is known to be fast, even one sample takes several submissions.
 fn large_studio() -> View {
     let mut view = named("studio_ambient_occlusion");
     view.scene = block([10, 10, 10], 0.45, 0.25);
@@ -52,7 +52,7 @@ fn large_studio() -> View {
     view
 }
 
-/// In one pass, every ray is computed as in several passes, and light is added in the same order.
+/// One pass computes every ray in the same way as several passes, and adds light in the same order.
 fn one_pass(headless: &'static Headless) {
     let options = HeadlessOptions { one_pass: false, ..HeadlessOptions::default() };
     let several = Headless::open(&options).wait().unwrap();
@@ -67,12 +67,12 @@ fn one_pass(headless: &'static Headless) {
             if let Some(ground) = &mut caught.ground {
                 ground.is_shadow_catcher = !ground.is_shadow_catcher;
             }
-            // A number of directions whose reciprocal is rounded.
+            // A number of directions whose reciprocal must be rounded.
             if let Some(occlusion) = &mut studio.occlusion {
                 occlusion.samples = 5;
             }
         }
-        // Only a studio has others.
+        // Only a studio has other settings.
         let mut all = vec![&view.settings, &sharp, &caught];
         all.dedup();
         for (index, settings) in all.into_iter().enumerate() {
@@ -91,7 +91,7 @@ fn one_pass(headless: &'static Headless) {
     assert!(one == several, "the large picture differs");
 }
 
-/// The comparison with several passes is not blind.
+/// Tests that the comparison with several passes finds faults.
 fn faults(headless: &'static Headless) {
     for fault in planted("one_pass") {
         let [scene] = fault.setup();
@@ -121,8 +121,8 @@ fn structures(device: &'static Headless) {
     }
 }
 
-/// The sums of samples that are recorded one by one, pass by pass, are those of the picture, regardless of the number of
-/// samples in flight, of the sizes of batches, and of whether one pass takes whole samples.
+/// Samples that are recorded one by one, pass by pass, have the same sums as the picture. Neither the number of samples
+/// in flight, nor the sizes of batches, nor passes over whole samples change them.
 fn sums(headless: &'static Headless) {
     const SAMPLES: u32 = 11;
     let samples: Vec<u32> = (0..SAMPLES).collect();
@@ -172,7 +172,7 @@ fn long_list(headless: &'static Headless) {
     assert_eq!(pictures[0], pictures[1]);
 }
 
-/// The device computes the noise during a render, and the host at its end; both must agree.
+/// The device computes the noise during a render, and the host at the end. Both must agree.
 fn noise(headless: &'static Headless) {
     let view = sampled("path_emissive_both", 16);
     let buffers = view.uploaded(headless, AccelChoice::Auto);
@@ -197,28 +197,28 @@ fn noise(headless: &'static Headless) {
     assert!(early.unwrap() > last, "{told:?}");
 }
 
-/// If a render finishes within a batch, some tiles have more samples than others. Each pixel is identical to that of a
-/// picture with its number of samples.
+/// If a render finishes within a batch, some tiles have more samples than others. Each pixel is identical to the pixel
+/// of a picture with its number of samples.
 fn unfinished(headless: &'static Headless) {
     let mut view = named("path_emissive_both");
     view.film = Film::new(900, 500).unwrap();
     finish_within_a_batch(headless, &mut view, 4, 1);
 }
 
-/// The same with passes over whole samples. A slice of such a pass is a part of the pixels of a tile, and the render does
-/// not finish while some of these have more samples than others.
+/// Like [`unfinished`], with passes over whole samples. A slice of such a pass covers some pixels of a tile. The render
+/// does not finish while some of these pixels have more samples than others.
 fn unfinished_in_one_pass(headless: &'static Headless) {
     let mut view = large_studio();
-    // Three tiles, and so many rays that a slow device takes several submissions for a sample of one of them. The first
-    // call in the second tile comes before its slices, and the second call after them.
+    // Three tiles, with so many rays that a slow device takes several submissions for a sample of one of them. The
+    // first call in the second tile comes before its slices, and the second call after them.
     view.film = Film::new(800, 1300).unwrap();
     let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
     studio.occlusion = Some(Occlusion { radius: None, samples: 24 });
     finish_within_a_batch(headless, &mut view, 1, 2);
 }
 
-/// Finishes a render within a batch, at the call with this number after at least `first` samples, and compares its pixels
-/// with pictures that were asked for with as many samples.
+/// Finishes a render within a batch, at call `call` after at least `first` samples, and compares its pixels with
+/// pictures that were requested with as many samples.
 fn finish_within_a_batch(headless: &'static Headless, view: &mut View, first: u32, call: usize) {
     view.settings.sampling.samples = 64;
     let layers = LayerSet::COLOR.with(Layer::Samples);

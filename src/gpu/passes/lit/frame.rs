@@ -1,4 +1,4 @@
-//! Buffers of a lit picture: its light, those that all tiles share, and the sums of each tile.
+//! Buffers of a lit picture: its light, the buffers that all tiles share, and the sums of each tile.
 
 use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Device, Queue, TextureView};
 
@@ -24,7 +24,7 @@ pub(crate) enum Area {
     Whole,
     /// The workgroups in which the scene may be visible.
     Visible,
-    /// The same workgroups, with the box of the spheres that cast shadows.
+    /// The workgroups of [`Area::Visible`], with the box of the spheres that cast shadows.
     Occluders,
 }
 
@@ -51,14 +51,14 @@ pub(crate) struct LitFrame {
     pub(crate) variations_back: ReadableBuffer,
 }
 
-/// Who records the passes of a picture.
+/// The program that records the passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RecordedBy {
     /// This crate, which submits one recording before it makes the next, and reads the sums.
     Headless,
-    /// A host program, which may have so many recordings under way, and shows the sums.
+    /// A host program, which may have several recordings under way, and shows the sums.
     Host {
-        /// Number of recordings.
+        /// Maximum number of recordings under way.
         at_once: usize,
     },
 }
@@ -173,8 +173,8 @@ impl LitFrame {
         .await
     }
 
-    /// Queues the parameters of a recording's dispatches, of which there may be at most [`MAX_DISPATCHES`]. `place` is
-    /// the number of the recording among those under way.
+    /// Queues the parameters of a recording's dispatches, at most [`MAX_DISPATCHES`]. `place` is the index of the
+    /// recording among the recordings under way.
     pub(crate) fn queue_parameters(
         &self,
         queue: &Queue,
@@ -185,13 +185,13 @@ impl LitFrame {
         queue.write_buffer(&self.parameters, u64::from(self.parameter_offset(place, 0)), &bytes);
     }
 
-    /// Offset in bytes of the parameters of a dispatch, given the place of its recording and its index there.
+    /// Offset in bytes of the parameters of a dispatch, given the index of its recording and its own index there.
     pub(super) fn parameter_offset(&self, place: usize, number: usize) -> u32 {
-        // There are at most MAX_DISPATCHES of them in a few recordings, so it fits into u32.
+        // There are a few recordings with at most MAX_DISPATCHES each, so this fits into u32.
         ((place * MAX_DISPATCHES + number) * self.parameter_stride) as u32
     }
 
-    /// Queues other records for the tiles, in order, and returns whether any differs from what was there.
+    /// Queues other records for the tiles, in order, and returns whether any record differs from the previous one.
     pub(crate) fn set_frames(
         &mut self,
         queue: &Queue,
@@ -247,7 +247,7 @@ impl LitFrame {
     }
 }
 
-/// The bytes of records that lie so many bytes apart.
+/// Bytes of records that are placed `stride` bytes apart.
 fn strided<Record: bytemuck::Pod>(records: &[Record], stride: usize) -> Vec<u8> {
     let mut bytes = vec![0_u8; records.len() * stride];
     for (target, record) in bytes.chunks_mut(stride).zip(records) {
@@ -269,8 +269,8 @@ pub(crate) struct LightingBuffers {
 }
 
 impl LightingBuffers {
-    /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
-    /// the sky are uploaded if `is_new` says that they may be others.
+    /// Queues other light. Buffers are created only if tables have another size. The emitters and the image of the sky
+    /// are uploaded if `is_new` says that they may have changed.
     pub(crate) async fn set(
         &mut self,
         make: Make<'_>,
@@ -289,7 +289,7 @@ impl LightingBuffers {
         Ok(())
     }
 
-    /// Creates the buffers, with the emitters and the sky that are kept.
+    /// Creates the buffers. `kept` contains emitters and the sky.
     pub(crate) async fn new(
         make: Make<'_>,
         layouts: &LitLayouts,

@@ -16,7 +16,7 @@ pub(crate) enum Mode {
 }
 
 impl Mode {
-    /// All of them.
+    /// All modes.
     fn all() -> impl Iterator<Item = Self> {
         let paths = OnePass::ALL.into_iter().filter_map(|pass| match pass.mode() {
             Self::Path(materials, sources, _) => Some((materials, sources)),
@@ -87,11 +87,11 @@ impl Schedule {
     }
 }
 
-/// The pictures of which one pass takes whole samples.
+/// The pictures whose samples one pass takes as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum OnePass {
-    /// A studio of opaque spheres with lamps at the eye or infinitely far away, without a size and without shadows; all
-    /// surfaces are matt, and there is no ground.
+    /// A studio of opaque spheres without a ground, whose surfaces are all matt. Its lamps are at the eye or infinitely
+    /// far away, and have no size and no shadows.
     Sharp,
     /// A studio of opaque spheres with any lamps without a ground.
     Lamps,
@@ -102,7 +102,7 @@ pub(crate) enum OnePass {
 }
 
 impl OnePass {
-    /// All of them.
+    /// All kinds of such pictures.
     pub(crate) const ALL: [Self; 7] = [
         Self::Sharp,
         Self::Lamps,
@@ -118,7 +118,7 @@ impl OnePass {
         matches!(self, Self::Paths(..))
     }
 
-    /// The properties of its lighting.
+    /// The properties of the lighting of such a picture.
     fn mode(self) -> Mode {
         match self {
             Self::Paths(materials, sources) => Mode::Path(materials, sources, SkyKind::Plain),
@@ -131,8 +131,8 @@ impl OnePass {
     }
 }
 
-/// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
-/// two of the appearance, and those of the structure.
+/// Whether a kernel may have all the buffers that one pass over whole samples needs: the status word, the sums, the
+/// tables, two buffers of the appearance, and the buffers of the structure.
 pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
     let of_structure = if structure == Structure::List { 2 } else { 3 };
     5 + of_structure <= limits.max_storage_buffers_per_shader_stage
@@ -146,7 +146,7 @@ pub(crate) struct LitKey {
     pub(crate) structure: Structure,
     /// The structure of the spheres that cast shadows.
     pub(crate) occluders: Structure,
-    /// How rays exclude the sphere on which they start, among all spheres and among those that cast shadows.
+    /// How rays exclude the sphere on which they start, among all spheres and among the spheres that cast shadows.
     pub(crate) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(crate) several_bricks: bool,
@@ -233,15 +233,15 @@ impl LitKey {
     }
 }
 
-/// The pass that computes the numbers of workgroups of the next indirect dispatches, and the one that sums variances and
-/// luminances of pixels.
+/// The pass that computes the numbers of workgroups of the next indirect dispatches, and the pass that sums variances
+/// and luminances of pixels.
 pub(super) const OF_ALL: [PassName; 2] =
     [("advance", Schedule::Pixels, First), ("noise", Schedule::Pixels, First)];
 
 /// The kernels for every camera, structure, kind of lighting and schedule.
 pub(super) fn kernels() -> Vec<Kernel> {
     let mut known = HashSet::new();
-    // Where there are several passes, none depends on both a camera and a structure.
+    // If there are several passes, none depends on both a camera and a structure.
     let keys = LitKey::all(Structure::WITH_KERNELS).filter(|key| {
         let is_first = key.camera == CameraKind::Pinhole || key.structure == Structure::List;
         key.one_pass.is_some() || is_first

@@ -31,7 +31,7 @@ pub(crate) struct LightingData {
     pub(crate) tables: Vec<[f32; 4]>,
     /// The table of emitters, which is empty unless light sampling chooses among them.
     pub(crate) emitters: Vec<[f32; 4]>,
-    /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
+    /// Maximum number of surfaces at which a path is scattered; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
     pub(crate) max_surfaces: u32,
     /// Whether all spheres are opaque.
@@ -118,7 +118,7 @@ impl LightingData {
             && self.tables == other.tables
     }
 
-    /// Whether other light is hidden than with another light, apart from where lamps are.
+    /// Whether shadows or ambient occlusion may differ from those of another light, apart from the positions of lamps.
     pub(crate) fn rays_differ(&self, other: &Self) -> bool {
         let hidden =
             |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.has_shadows);
@@ -138,8 +138,8 @@ impl LightingData {
         is_same_sky && self.emitters.len() == other.emitters.len()
     }
 
-    /// The kind of picture, if one pass can take whole samples of a scene of so many bricks. With more lamps or
-    /// directions in a studio than several passes take at once, they would be summed in another order.
+    /// The kind of picture, if one pass can take whole samples of a scene with `bricks` bricks. `None` for a studio
+    /// with more lamps or directions than several passes take at once, because they would be summed in another order.
     pub(super) fn one_pass(&self, bricks: usize) -> Option<OnePass> {
         if let Mode::Path(materials, sources, sky) = self.mode {
             let is_one = sky == SkyKind::Plain && bricks == 1;
@@ -156,8 +156,8 @@ impl LightingData {
         })
     }
 
-    /// Number of iterations of loops that a path takes at most apart from searching, as `shaders/path/whole_paths.wgsl`
-    /// counts them; 0 in a studio.
+    /// Maximum number of loop iterations of a path apart from searching, as
+    /// `shaders/path/whole_paths.wgsl` counts them; 0 in a studio.
     pub(super) fn loops_of_path(&self) -> u32 {
         match self.mode {
             Mode::Path(..) => {
@@ -168,7 +168,7 @@ impl LightingData {
         }
     }
 
-    /// Number of rays that a sample takes at most, in a studio of opaque spheres or along a path.
+    /// Maximum number of rays of a sample, in a studio of opaque spheres or along a path.
     pub(super) fn rays_of_sample(&self) -> u32 {
         if let Mode::Path(..) = self.mode {
             let of_light = u32::from(self.parameters.source_count > 0) * self.max_surfaces;
@@ -178,7 +178,7 @@ impl LightingData {
         1 + shadows as u32 + self.parameters.occlusion_samples
     }
 
-    /// Size of the tables on the device in bytes, without that of emitters.
+    /// Size of the tables on the device in bytes, without the table of emitters.
     pub(crate) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }

@@ -31,7 +31,7 @@ pub(crate) struct LiveKey {
     pub(crate) has_ground: bool,
 }
 
-/// The cameras of a frame and of the one before. Twin: `LiveView` in `shaders/live/view.wgsl`.
+/// The cameras of a frame and of the previous one. Twin: `LiveView` in `shaders/live/view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct LiveView {
@@ -97,7 +97,7 @@ pub(crate) fn live_kernels() -> Vec<Kernel> {
 }
 
 impl LiveKey {
-    /// The key for a studio that one pass can take whole samples of.
+    /// The key for a studio whose samples one pass can take as a whole.
     pub(crate) fn new(of: &LitKey) -> Option<Self> {
         let LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
         one_pass.filter(|pass| !pass.is_paths()).map(|studio| Self {

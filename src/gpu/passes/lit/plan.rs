@@ -22,8 +22,8 @@ impl RenderPlan {
         let PictureRequest { scene, view, settings, host_bytes_per_pixel, .. } = *request;
         let (film, limits) = (&view.film, &device.limits);
         let layers = settings.layers_for(request.layers);
-        // Depth, normals and ids are rendered first, with one ray for each pixel. The buffers of that render are then
-        // freed.
+        // Depth, normals and ids are rendered first, with one ray for each pixel. The buffers
+        // of this render are then freed.
         let data = Self::planned(&PictureRequest { layers, ..*request }, accel, device, false);
         let data_bytes = total(&data.tile_buffers) + total(&data.tile_textures);
         let all_buffers = data.scene_buffers;
@@ -58,7 +58,7 @@ impl RenderPlan {
         });
         let mut tile_textures = vec![PlannedBuffer::one("sums read-back", film_bytes)];
         tile_textures.extend(emitter_table::planned(lighting.emitters.len()));
-        // The table itself, its copy that is queued for the device, and the spheres that it was made from.
+        // The table itself, its copy that is queued for the device, and the emissive spheres from which it was made.
         let emitters = (2 * size_of_val(&lighting.emitters[..])) as u64
             + summary.emissive.len() as u64 * SceneSummary::BYTES_PER_EMITTER;
         let scene_bytes = total(&scene_buffers);
@@ -75,7 +75,7 @@ impl RenderPlan {
             });
             of_all[phase].max(of_occluders)
         });
-        // The coverage of the outline takes 4 bytes; the memory of the caller is needed later.
+        // The coverage of the outline takes 4 bytes. The memory of the caller is needed later.
         let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
         // The image of the sky is converted to four components, and its copy is queued for the device.

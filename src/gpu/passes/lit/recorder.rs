@@ -19,7 +19,7 @@ pub(crate) struct Recorder<'a> {
     pub(crate) frame: &'a LitFrame,
     /// Index of the tile for which dispatches are recorded.
     pub(crate) tile: usize,
-    /// The number of the recording among those under way.
+    /// Index of the recording among the recordings under way.
     place: usize,
     advance: &'a Pass,
     /// Whether indirect dispatches are used.
@@ -29,7 +29,7 @@ pub(crate) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder for the recording with the number `place` among those under way.
+    /// A recorder for the recording with the index `place` among the recordings under way.
     pub(crate) fn new(
         frame: &'a LitFrame,
         advance: &'a Pass,
@@ -139,7 +139,7 @@ impl<'a> Recorder<'a> {
         let tile = &self.frame.tiles[self.tile];
         let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
         let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
-        // There are fewer groups than pixels, so it fits into u32.
+        // There are fewer groups than pixels, so their number fits into u32.
         let extent = Extent::Groups([groups as u32, 1, 1]);
         self.dispatch(encoder, noise, dispatch, &tile.sums, [None; 2], extent);
         (groups * WORKGROUP_SIZE) as usize

@@ -80,11 +80,11 @@ pub(crate) struct LightingParameters {
     pub(crate) filter_table: [[f32; 4]; 65],
 }
 
-/// Number of slots in the state of every path and every studio: those up to the hit in `shaders/path/state.wgsl`. A
-/// slot is a `vec4f`.
+/// Number of slots in the state of every path and every studio, up to the slot of the hit in
+/// `shaders/path/state.wgsl`. A slot is a `vec4f`.
 pub(crate) const COMMON_SLOTS: u64 = 7;
 
-/// Number of slots including those of a path's sampled light.
+/// Number of slots including those for the sampled light of a path.
 pub(crate) const LIGHT_SLOTS: u64 = 9;
 
 /// Number of slots including the absorption of a medium.
@@ -99,15 +99,15 @@ pub(crate) const FILM_SLOTS: u64 = 3;
 /// Number of pixels that an invocation of `shaders/path/noise.wgsl` sums.
 pub(super) const PIXELS_PER_VARIATION: u64 = 64;
 
-/// Number of samples of a pixel that are traced together, if not fewer are left. Each of them then costs less, because
-/// the sums are read and written once for all of them. Tiles become smaller in return.
+/// Number of samples of a pixel that are traced together, if not fewer are left. Each sample then takes less time,
+/// because the sums are read and written once for all of them. In return, tiles become smaller.
 const TOGETHER: u32 = 4;
 
-/// Maximum number of workgroups in a row, which every WebGPU device allows. Without indirect dispatches, a dispatch over
-/// a list has one for every workgroup of a tile and each sample in flight.
+/// Maximum number of workgroups in a row, which every WebGPU device allows. Without indirect dispatches, a dispatch
+/// over a list has one workgroup for every workgroup of a tile and each sample in flight.
 const MAX_GROUPS: u64 = 65_535;
 
-/// Sizes of the buffers that all tiles share, and of those of each tile.
+/// Sizes of the buffers that all tiles share, and of the buffers of each tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LitSizes {
     /// Maximum width and height of a tile in pixels.
@@ -142,7 +142,7 @@ impl LitSizes {
         let groups = tile.map(|side| u64::from(side.div_ceil(WORKGROUP_SIDE)));
         let max_layers = (MAX_GROUPS / (groups[0] * groups[1])).max(1);
         let in_flight = (max_paths / pixels).clamp(1, samples.max(1).into()).min(max_layers);
-        // There are not more than `samples`, so it fits into u32.
+        // Not more than `samples`, so it fits into u32.
         Self { tile, in_flight: in_flight as u32, slots }
     }
 

@@ -34,8 +34,8 @@ pub(crate) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Number of rays of the invocations at one place, over all layers; 0 if the dispatch traces none, so that it never takes
-    /// long.
+    /// Number of rays of the invocations at one place, over all layers; 0 if the dispatch traces
+    /// none, so that it never takes long.
     pub(crate) fn rays_in_layers(&self) -> u64 {
         if self.is_search { u64::from(self.layers()) * u64::from(self.rays) } else { 0 }
     }
@@ -100,7 +100,7 @@ pub(crate) enum Moment {
 pub(crate) enum Attempt {
     /// One pass takes whole samples, where there is such a pass.
     OnePass,
-    /// A ray for each invocation, except those towards ambient light.
+    /// A ray for each invocation, except rays towards ambient light.
     Steps,
     /// A ray for each invocation.
     OneByOne,
@@ -121,8 +121,8 @@ impl Attempt {
         LitKey { one_pass: key.one_pass.filter(|_| self == Self::OnePass), ..key }
     }
 
-    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
-    /// state that it reads does not depend on the direction.
+    /// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of
+    /// the state that the invocation reads does not depend on the direction.
     pub(crate) fn at_once(self) -> u32 {
         if self == Self::OneByOne { 1 } else { 32 }
     }
@@ -140,11 +140,11 @@ pub(crate) struct Round<'a> {
     pub(crate) attempt: Attempt,
 }
 
-/// Number of samples that an invocation of the pass over whole samples takes.
+/// Maximum number of samples that an invocation takes in the pass over whole samples.
 const SAMPLES_AT_ONCE: u32 = 8;
 
-/// Number of iterations of its loops apart from searching, which leaves the larger part of the limit of software devices
-/// to searching.
+/// Maximum number of loop iterations of such an invocation apart from searching. It leaves the larger part of the limit
+/// of software devices to searching.
 pub(super) const MOST_LOOPS: u32 = 2500;
 
 impl<'a> Round<'a> {
@@ -180,7 +180,7 @@ impl<'a> Round<'a> {
     fn one_pass(&self, pass: &'a Pass, dispatch: DispatchParameters) -> Vec<Step<'a>> {
         let brick = &self.scene.bricks[0];
         let rays = self.lighting.rays_of_sample();
-        // In a studio there are no such loops.
+        // Studios have no such loops.
         let by_loops = MOST_LOOPS / self.lighting.loops_of_path().max(1);
         let most = SAMPLES_AT_ONCE.min(by_loops).max(1);
         let at_once = (self.scene.rays_at_once(most * rays) / rays).max(1);
@@ -273,7 +273,7 @@ impl<'a> Steps<'a> {
         Ok(())
     }
 
-    /// The last dispatch traces rays.
+    /// Notes that the last dispatch traces rays.
     fn mark_search(&mut self) {
         if let Some(last) = self.steps.last_mut() {
             last.is_search = true;

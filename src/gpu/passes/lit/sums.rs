@@ -6,7 +6,7 @@ use crate::image::color::luminance;
 use crate::image::{Averages, Image};
 use crate::render::Totals;
 
-/// The sums of a pixel, which are the three vectors of `shaders/path/film_sums.wgsl`.
+/// The sums of a pixel: the three vectors of `shaders/path/film_sums.wgsl`.
 type Sums = [[f32; 4]; FILM_SLOTS as usize];
 
 /// Writes the means of a tile to the layers of an image.
