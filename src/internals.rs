@@ -6,8 +6,8 @@ pub use crate::accel::wide_tree::{WideNode, WideTree};
 pub use crate::cpu::light::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
-pub use crate::verify::NO_HIT;
-pub use crate::verify::lit::recording::{
+pub use crate::recording::NO_HIT;
+pub use crate::recording::lit::{
     PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
 

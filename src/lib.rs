@@ -148,6 +148,7 @@ pub mod internals;
 pub mod light;
 mod parallel;
 pub mod range;
+mod recording;
 pub mod render;
 pub mod scene;
 mod text;

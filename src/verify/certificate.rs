@@ -3,9 +3,9 @@
 use std::fmt;
 
 use crate::image::NO_ID;
+use crate::recording::UploadError;
 use crate::verify::bias::Deviations;
 use crate::verify::hit::LegalHits;
-use crate::verify::recording::UploadError;
 use crate::verify::rounding::Interval;
 
 /// The largest share of undecided answers in a certificate that proves something.
@@ -102,13 +102,6 @@ impl Verdict {
             Self::Violation => "violation",
         }
     }
-}
-
-/// Column and row of a pixel by its index, row by row from the top.
-pub(super) fn pixel_at(index: usize, width: u32) -> [u32; 2] {
-    let width = width.max(1) as usize;
-    // The sides of a picture are u32.
-    [(index % width) as u32, (index / width) as u32]
 }
 
 /// The number of pixels that a thread takes at a time.

@@ -6,20 +6,20 @@ use glam::DVec3;
 use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
 use crate::parallel::{map_parts, ranges};
+use crate::recording::pixel_at;
+use crate::recording::{NO_HIT, PlainRender, Recording, TracedPixel, TracedRay};
 use crate::scene::{Scene, SceneError};
 use crate::verify::bias::Deviations;
 use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
 use crate::verify::certificate::{
-    AXES, CHUNK, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, legal_is, pixel_at,
+    AXES, CHUNK, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, legal_is,
 };
 use crate::verify::hit::{Candidates, LegalHits};
-use crate::verify::recording::{
-    NO_HIT, PlainRender, Recording, TracedPixel, TracedRay, check_recording,
-};
 use crate::verify::rounding::{Interval, PAD, U, unit_error};
 use crate::verify::sphere::{
     LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth,
 };
+use crate::verify::uploaded::check_recording;
 
 /// Judges recordings of a scene.
 #[derive(Debug)]

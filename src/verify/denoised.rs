@@ -11,12 +11,13 @@
 //! roundings of the sums and of the quotient are added. A decision that intervals leave open, such as whether a miss
 //! has no noise, may have either outcome.
 
-use super::certificate::{channel_name, pixel_at};
+use super::certificate::channel_name;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
 use crate::image::denoise::{Guides, MissingGuide, PASSES};
 use crate::parallel::{map_parts, ranges};
+use crate::recording::pixel_at;
 use crate::verify::certificate::Outcome;
 
 /// The number of pixels that a thread takes at a time.

@@ -1,5 +1,9 @@
 //! The check of all stages of all samples of a recording, along paths or in a studio.
 
+use crate::recording::lit::{
+    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
+    flag, slot,
+};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
@@ -12,10 +16,6 @@ use crate::verify::lit::judge::{
     Judge, Mismatch, Name, StageOutcome, StageResult, along_choices, judge_pixels, searched,
 };
 use crate::verify::lit::kernel::{Hit, Kernel};
-use crate::verify::lit::recording::{
-    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
-    flag, slot,
-};
 use crate::verify::lit::search::{OPEN, Obstacle, check_hit, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};

@@ -51,14 +51,19 @@ mod number;
 mod paths;
 #[cfg(feature = "run-file")]
 pub mod picture_certificate;
-mod recording;
 mod rounding;
 #[cfg(feature = "run-file")]
 pub mod run_file;
 mod sphere;
 mod studio;
+mod uploaded;
 pub mod written;
 
+pub use crate::recording::lit::{LitInputs, LitRecording, RecordedSample};
+pub use crate::recording::{
+    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadError,
+    UploadedView,
+};
 pub use bias::{Deviation, Deviations, LARGEST_MEAN};
 pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, MOST_UNDECIDED, Outcome, Verdict, Violation};
@@ -66,15 +71,6 @@ pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use lit::certificate::{
     LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts,
-};
-pub use lit::recording::{LitInputs, LitRecording, RecordedSample};
-#[cfg(feature = "gpu")]
-pub(crate) use lit::recording::{
-    PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
-};
-pub use recording::{
-    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadError,
-    UploadedView,
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]

@@ -22,6 +22,16 @@ fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
     }
 }
 
+/// Lines of code below `folder`, but not comments, that contain one of the words.
+fn assert_code_is_without(folder: &str, words: &[&str]) {
+    for (path, text) in sources(folder) {
+        for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
+            let named = words.iter().any(|word| line.contains(word));
+            assert!(!named, "{}: {line}", path.display());
+        }
+    }
+}
+
 #[test]
 fn the_reference_and_the_gpu_do_not_know_each_other() {
     assert_absent("src/cpu", &["gpu", "wgpu", "wgsl::"], &[]);
@@ -38,13 +48,7 @@ fn the_reference_knows_no_structure() {
 /// What judges shares nothing with what is judged, and nothing with what judged it before.
 #[test]
 fn the_checker_knows_no_structure_and_no_renderer() {
-    for (path, text) in sources("src/verify") {
-        for line in text.lines() {
-            let words = ["crate::accel", "crate::cpu", "crate::gpu"];
-            let names = words.iter().any(|word| line.contains(word));
-            assert!(!names || line.trim_start().starts_with("//"), "{}: {line}", path.display());
-        }
-    }
+    assert_code_is_without("src/verify", &["crate::accel", "crate::cpu", "crate::gpu"]);
 }
 
 #[test]
@@ -93,6 +97,15 @@ fn readers_and_writers_touch_no_files() {
 fn only_the_program_sees_clap() {
     for folder in CRATES.into_iter().filter(|folder| *folder != "cli/src") {
         assert_absent(folder, &["clap::"], &[]);
+    }
+}
+
+/// What devices compute with is defined below those who compute and those who judge.
+#[test]
+fn recordings_know_neither_the_renderer_nor_the_checker() {
+    assert_code_is_without("src/recording", &["crate::gpu", "crate::verify"]);
+    for folder in ["src/gpu/host", "src/gpu/passes", "src/gpu/scene", "src/gpu/shader"] {
+        assert_code_is_without(folder, &["crate::verify"]);
     }
 }
 

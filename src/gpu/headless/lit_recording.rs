@@ -17,8 +17,8 @@ use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 use crate::light::SkyLight;
+use crate::recording::lit::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
 use crate::render::RenderSettings;
-use crate::verify::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
 
 /// Callback with the recording of each sample.
 pub type EachSample<'a> = dyn FnMut(&LitRecording) + 'a;

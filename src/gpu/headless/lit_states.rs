@@ -6,7 +6,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::lit::{LightingData, LitFrame, Mode, Moment};
-use crate::verify::{
+use crate::recording::lit::{
     LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface,
     StudioLight,
 };

@@ -13,9 +13,10 @@ use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
 use crate::gpu::shader::records;
 use crate::image::LayerSet;
+use crate::recording::TracedPixel;
 use crate::render::RenderSettings;
 use crate::scene::Scene;
-use crate::verify::{Checker, TracedPixel, Verdict};
+use crate::verify::{Checker, Verdict};
 
 /// The resources that a render by [`Headless`](crate::gpu::Headless) needs. Sizes are upper bounds for buffers and
 /// textures; a few hundred bytes of records for each brick are not included.

@@ -19,8 +19,8 @@ use crate::gpu::profile::NotedPass;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::image::{Image, LayerSet};
+use crate::recording::TracedPixel;
 use crate::render::PrimarySettings;
-use crate::verify::TracedPixel;
 
 /// The destination of a picture.
 pub(crate) struct Output<'a> {

@@ -14,8 +14,8 @@ use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_F
 use crate::gpu::shader::records::{self, NO_HIT};
 use crate::image::color::LinearRgb;
 use crate::image::{Image, NO_ID, RowMut, put};
+use crate::recording::{TracedPixel, TracedRay};
 use crate::scene::SceneAppearance;
-use crate::verify::{TracedPixel, TracedRay};
 
 /// A texture that kernels write, with a buffer through which the host reads it.
 #[derive(Debug)]

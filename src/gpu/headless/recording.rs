@@ -16,12 +16,12 @@ use crate::gpu::self_test::{TestedProperty, fence_probe};
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::image::color::LinearRgb;
 use crate::image::{Image, LayerSet, NO_ID};
+use crate::recording::{
+    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, UploadedView,
+};
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
-use crate::verify::{
-    Certificate, Checker, NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel,
-    UploadedView,
-};
+use crate::verify::{Certificate, Checker};
 
 /// Returns a camera together with the numbers that are uploaded for it and for the scene's bounds.
 pub(crate) fn requested_view(

@@ -12,7 +12,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::targets::Targets;
 use crate::gpu::resources::buffer;
 use crate::image::NO_ID;
-use crate::verify::NO_HIT;
+use crate::recording::NO_HIT;
 
 /// A ring of small buffers into which the id and depth of a pixel are copied. The result arrives some frames later.
 #[derive(Debug)]

@@ -16,8 +16,8 @@ use crate::gpu::resources::{buffer, numbered_group, part};
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId};
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::records::{self, FrameParameters};
+use crate::recording::RequestedCamera;
 use crate::render::{PrimarySettings, RenderSettings};
-use crate::verify::RequestedCamera;
 
 /// A view that is rendered to a set of targets. A recorded frame must be submitted before its view is set again.
 #[derive(Debug)]

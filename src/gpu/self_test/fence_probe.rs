@@ -4,7 +4,7 @@
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::self_test::report::{Tally, TestedProperty, percent};
 use crate::gpu::shader::Part;
-use crate::verify::{TracedPixel, TracedRay};
+use crate::recording::{TracedPixel, TracedRay};
 
 /// The edit that turns the kernel that records rays into the kernel that probes fences.
 pub(crate) fn edit() -> ShaderEdit {

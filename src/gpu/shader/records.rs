@@ -9,8 +9,8 @@ use crate::geometry::bounds::Bounds;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::shader::row_order::row_step;
+use crate::recording::RequestedCamera;
 use crate::render::{PrimarySettings, Shading};
-use crate::verify::RequestedCamera;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -102,7 +102,7 @@ pub(crate) type Color = [f32; 4];
 const SHADING_TRANSPARENT: u32 = 2;
 
 /// Distance of a miss, `NO_HIT` in `shaders/scene/frame.wgsl`.
-pub(crate) use crate::verify::NO_HIT;
+pub(crate) use crate::recording::NO_HIT;
 
 impl Camera {
     /// Computes the record in f64 and rounds it to f32: the camera is transformed to the scene's frame and moved along

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
+use crate::recording::TracedRay;
 use crate::verify::camera::{CameraModel, CameraRay, around};
 use crate::verify::certificate::{AXES, Mismatch, legal_is};
-use crate::verify::recording::TracedRay;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
 

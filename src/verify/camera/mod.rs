@@ -7,12 +7,12 @@ mod round;
 
 use glam::{DVec2, DVec3};
 
-use super::recording::UploadedView;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length};
 use super::sphere::Line;
 use crate::camera::CameraKind;
 use crate::camera::film::Film;
 use crate::geometry::math::wide;
+use crate::recording::UploadedView;
 
 pub(super) use entered::{AnyRay, BoxCrossing, EnteredRay, SMALLEST_COMPONENT, SlabCrossing};
 

@@ -7,8 +7,9 @@ use glam::DVec3;
 use crate::camera::View;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
+use crate::recording::pixel_at;
 use crate::scene::Scene;
-use crate::verify::certificate::{Outcome, pixel_at};
+use crate::verify::certificate::Outcome;
 
 /// The unit of k: 2⁻²⁴, half the distance from 1 to the next f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use crate::recording::UploadError;
 use crate::verify::bias::Deviations;
 use crate::verify::certificate::Outcome;
-use crate::verify::recording::UploadError;
 
 /// A stage of a sample, along a path or in a studio: a kernel, or a part of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,12 +1,12 @@
 //! The data with which light paths and studios are judged.
 
+use crate::recording::lit::{LitInputs, PathState};
 use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::judge::Judge;
 use crate::verify::lit::kernel::{Hit, Kernel};
-use crate::verify::lit::recording::{LitInputs, PathState};
 
 pub(crate) struct LitCheck<'a> {
     pub(crate) checker: &'a Checker<'a>,

@@ -7,10 +7,10 @@ use crate::camera::film::{Film, YAxis};
 use crate::camera::sampling::{pair, pixel_seed, unit};
 use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
+use crate::recording::lit::{LitInputs, NO_EMITTER, PathState, RecordedFilm, flag, slot};
 use crate::verify::camera::{CameraModel, Location};
 use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, along_choices};
-use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, RecordedFilm, flag, slot};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use crate::parallel::{map_parts, ranges};
+use crate::recording::lit::PathState;
 use crate::verify::bias::deviation;
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;
@@ -10,7 +11,6 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{
     Address, LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT,
 };
-use crate::verify::lit::recording::PathState;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 

@@ -6,13 +6,13 @@ use glam::DVec3;
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::geometry::math::wide;
 use crate::image::NO_ID;
+use crate::recording::NO_HIT;
+use crate::recording::lit::{LitInputs, PathState, UploadedLighting, flag, slot};
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Judge, Mismatch, Name};
-use crate::verify::lit::recording::{LitInputs, PathState, UploadedLighting, flag, slot};
 use crate::verify::number::{Number, Vector};
-use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use crate::verify::sphere::{Chord, Line, Slack, SphereTest, normal_at};
 

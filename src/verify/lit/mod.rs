@@ -12,7 +12,6 @@ pub(super) mod check;
 pub(super) mod film;
 pub(super) mod judge;
 pub(super) mod kernel;
-pub(crate) mod recording;
 pub(super) mod sampling;
 pub(super) mod search;
 pub(super) mod upload;

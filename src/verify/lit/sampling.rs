@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 
 use crate::camera::sampling::unit;
 use crate::light::codes::lamp::{DIRECTIONAL, POINT};
+use crate::recording::NO_HIT;
 use crate::verify::choices::Choices;
 use crate::verify::lit::kernel::{Kernel, Vertex};
 use crate::verify::number::{Number, Vector, sin_cos_eighth};
-use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::Interval;
 
 /// A tangent frame: two unit vectors perpendicular to a third and to each other.

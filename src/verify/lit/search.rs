@@ -5,6 +5,8 @@
 use glam::{DVec3, Vec4};
 
 use crate::image::NO_ID;
+use crate::recording::NO_HIT;
+use crate::recording::lit::{NO_EMITTER, PathState, flag, slot};
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
 use crate::verify::checker::Checker;
 use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
@@ -12,9 +14,7 @@ use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, searched};
 use crate::verify::lit::kernel::Hit;
-use crate::verify::lit::recording::{NO_EMITTER, PathState, flag, slot};
 use crate::verify::number::Number;
-use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::{Line, Slack};
 

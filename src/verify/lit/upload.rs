@@ -10,16 +10,17 @@ use crate::image::color::{LinearRgb, luminance};
 use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
 use crate::light::{LightKind, SkyLight, codes};
+use crate::recording::lit::{LitInputs, UploadedLighting, flag};
+use crate::recording::{NO_HIT, UploadError};
 use crate::render::{
     DepthCue, Integrator, LightSampling, Occlusion, PathTracing, RenderSettings, Studio,
 };
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::hit::Candidates;
-use crate::verify::lit::recording::{LitInputs, UploadedLighting, flag};
 use crate::verify::lit::sampling::ENERGIES;
-use crate::verify::recording::{LEAST_MARGIN, NO_HIT, UploadError, check_view};
 use crate::verify::rounding::{FLUSH, U, are_near, is_near};
+use crate::verify::uploaded::{LEAST_MARGIN, check_view};
 
 /// Compares the recording with the scene and the settings.
 pub(crate) fn check(

@@ -3,10 +3,10 @@
 
 use crate::image::NO_ID;
 use crate::light::codes::material::{DIELECTRIC, EMISSIVE};
+use crate::recording::lit::{PathState, flag, slot};
 use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, Vertex, unit};
-use crate::verify::lit::recording::{PathState, flag, slot};
 use crate::verify::lit::sampling::{Axes, Material, axes_around};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, U};

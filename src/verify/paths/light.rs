@@ -5,14 +5,14 @@ use crate::camera::sampling;
 use crate::light::codes::lamp::{DIRECTIONAL, HEAD};
 use crate::light::codes::material::DIELECTRIC;
 use crate::light::codes::sampling::{CHANCE, MULTIPLE};
+use crate::recording::NO_HIT;
+use crate::recording::lit::{NO_EMITTER, UploadedSky, flag, slot};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, unit};
-use crate::verify::lit::recording::{NO_EMITTER, UploadedSky, flag, slot};
 use crate::verify::lit::sampling::{Lamp, axes_around, cone_direction, cone_of_sphere, pi};
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 use crate::verify::paths::kernel::Surface;
-use crate::verify::recording::NO_HIT;
 
 /// A sample of a light source, seen from a surface.
 struct LightSample {

@@ -13,10 +13,10 @@ use super::error::{RunFileError, hex};
 use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
 use crate::light::environment::Environment;
+use crate::recording::UploadedView;
+use crate::recording::lit::{LitInputs, UploadedLighting, UploadedSky};
 use crate::render::RenderSettings;
 use crate::text::shortened;
-use crate::verify::lit::recording::{LitInputs, UploadedLighting, UploadedSky};
-use crate::verify::recording::UploadedView;
 
 /// The metadata key of the digest of the request.
 const REQUEST: &str = "request_sha256";

@@ -4,11 +4,11 @@
 use std::cell::RefCell;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use crate::scene::Scene;
-use crate::verify::lit::recording::{
+use crate::recording::Recording;
+use crate::recording::lit::{
     LitInputs, LitRecording, PathState, RecordedFilm, RecordedSample, RecordedSurface, StudioLight,
 };
-use crate::verify::recording::Recording;
+use crate::scene::Scene;
 use crate::verify::run_file::container::{Array, Container, contradiction, in_pieces};
 use crate::verify::run_file::error::RunFileError;
 use crate::verify::run_file::lit_inputs;

@@ -80,7 +80,7 @@ use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use super::recording::Recording;
+use crate::recording::Recording;
 use crate::scene::Scene;
 use container::{Array, sink_into};
 pub(super) use error::hex;

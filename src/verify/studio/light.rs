@@ -3,8 +3,8 @@
 
 use crate::image::color::LUMINANCE;
 use crate::light::codes::lamp::{DIRECTIONAL, HEAD, SPHERE};
+use crate::recording::lit::{flag, slot};
 use crate::verify::lit::kernel::Kernel;
-use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::{cone_of_sphere, mirrors_brdf, pi};
 use crate::verify::number::{Number, Vector};
 

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
+use crate::recording::lit::{flag, slot};
 use crate::verify::camera::{BoxCrossing, SMALLEST_COMPONENT, SlabCrossing};
 use crate::verify::hit::Candidates;
 use crate::verify::lit::kernel::Kernel;
-use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::{Lamp, axes_around, cosine_direction};
 use crate::verify::lit::search::{Entry, Obstacle, is_same};
 use crate::verify::number::{Number, Vector};

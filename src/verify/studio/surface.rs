@@ -3,10 +3,10 @@
 
 use crate::image::NO_ID;
 use crate::light::codes::material::{EMISSIVE, LAMBERT};
+use crate::recording::lit::{flag, slot};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, Vertex};
-use crate::verify::lit::recording::{flag, slot};
 use crate::verify::lit::sampling::Material;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;

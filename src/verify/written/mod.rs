@@ -17,11 +17,12 @@ pub use samples::{Samples, WrittenError, WrittenPicture};
 
 use samples::{LegalSample, PictureCheck};
 
-use super::certificate::{CHUNK, KEPT, Outcome, Verdict, channel_name, pixel_at};
+use super::certificate::{CHUNK, KEPT, Outcome, Verdict, channel_name};
 use super::checker::Checker;
 use super::hit::LegalHits;
 use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
+use crate::recording::pixel_at;
 use crate::render::PrimarySettings;
 
 /// A pixel that no conforming device may have produced.

@@ -5,14 +5,15 @@ use glam::DVec3;
 use crate::camera::View;
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
+use crate::recording::RequestedCamera;
 use crate::render::PrimarySettings;
 use crate::verify::camera::CameraModel;
 use crate::verify::certificate::Verdict;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
-use crate::verify::recording::{RequestedCamera, UploadedView};
 use crate::verify::rounding::{Interval, PAD, U};
 use crate::verify::sphere::{LegalNormals, exactly, legal_color};
+use crate::verify::uploaded::expected_view;
 
 /// Legal colours: the colours of one side of a sphere, or the colour of a miss.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,7 @@ impl<'a> PictureCheck<'a> {
     ) -> Self {
         let requested = RequestedCamera::of(view.camera);
         let uploaded =
-            UploadedView::expected(&requested, checker.scene.origin(), checker.candidates.bounds());
+            expected_view(&requested, checker.scene.origin(), checker.candidates.bounds());
         let origin = DVec3::from(uploaded.origin.map(f64::from)).length();
         let [min, max] =
             [uploaded.scene_min, uploaded.scene_max].map(|v| DVec3::from(v.map(f64::from)));

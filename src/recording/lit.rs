@@ -1,9 +1,8 @@
 //! The common parts of recordings of lit pictures: the inputs of the device, and the states of paths.
 
+use super::{RequestedCamera, UploadError, UploadedView, pixel_at};
 use crate::camera::film::Film;
 use crate::render::RenderSettings;
-use crate::verify::certificate::pixel_at;
-use crate::verify::recording::{RequestedCamera, UploadError, UploadedView};
 
 /// The view and the settings of a lit picture, and the inputs of the device for a rectangle of it.
 #[derive(Clone, Debug, PartialEq)]
