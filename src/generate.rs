@@ -1,7 +1,7 @@
-//! Generated scenes for measurements and experiments: spheres from a kind, a count and a seed.
+//! Generated scenes for measurements and experiments. A kind, a count and a seed determine the spheres.
 //!
-//! The same kind, count and seed give the same bytes on every machine: whatever is not an integer is computed in f64
-//! with only +, −, ·, / and √, whose rounding IEEE 754 defines, and is rounded to f32 at the end.
+//! The same kind, count and seed give the same bytes on every machine. Numbers that are not integers are computed in
+//! f64 with only +, −, ·, / and √, whose rounding IEEE 754 defines, and are rounded to f32 at the end.
 
 use glam::DVec3;
 
@@ -14,22 +14,22 @@ use crate::parallel;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// Centres are uniform in the cube, radii uniform between a half and all of 0.5/∛n.
+    /// Uniform centres in the cube, and uniform radii between a half and all of 0.5/∛n.
     Random,
     /// Touching spheres on a face-centred cubic lattice of m³ cells, with the smallest m for which 4·m³ ≥ n. Cells are
-    /// ordered by x, then y, then z; each has the corner and the middles of the faces across x, y and z. Spheres beyond
-    /// the n-th are left out. The seed has no effect.
+    /// ordered by x, then y, then z. Each has a sphere at its corner and at the middles of the faces across x, y and z.
+    /// Spheres beyond the n-th are left out. The seed has no effect.
     Lattice,
-    /// n/1000 clusters, at least one, whose centres are uniform in the cube; sphere i belongs to cluster i modulo the
-    /// number of clusters. Offsets are nearly normal, the sum of twelve uniform numbers (Irwin–Hall), with standard
-    /// deviations log-uniform in [0.005, 0.08]; radii are log-uniform in [10⁻⁶, 10⁻²].
+    /// n/1000 clusters, at least one, whose centres are uniform in the cube. Sphere i belongs to cluster i modulo the
+    /// number of clusters. Offsets are nearly normal, the sum of twelve uniform numbers (Irwin–Hall). Their standard
+    /// deviations are log-uniform in [0.005, 0.08]. Radii are log-uniform in [10⁻⁶, 10⁻²].
     Clusters,
-    /// Haines' sphereflake: every sphere has nine children of a third of its radius, in breadth-first order. Spheres
-    /// beyond the n-th are left out. The seed has no effect.
+    /// Haines' sphereflake, in which every sphere has nine children of a third of its radius, in breadth-first order.
+    /// Spheres beyond the n-th are left out. The seed has no effect.
     Sphereflake,
 }
 
-/// Why spheres cannot be generated.
+/// The reason why spheres cannot be generated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
@@ -57,7 +57,7 @@ impl Kind {
         }
     }
 
-    /// Generates `count` spheres (x, y, z, radius); a count of zero is not an error.
+    /// Generates `count` spheres (x, y, z, radius). A count of zero is not an error.
     ///
     /// # Errors
     /// Returns an error if `count` exceeds [`MAX_COUNT`], or if there is not enough memory.
@@ -87,7 +87,7 @@ impl Kind {
     }
 }
 
-/// Checks that a scene can have so many spheres.
+/// Checks that a scene can have `count` spheres.
 ///
 /// # Errors
 /// Returns an error if `count` exceeds [`MAX_COUNT`].
@@ -125,7 +125,7 @@ fn lattice(i: u64, cells: u64) -> [f64; 4] {
     let edge = 1.0 / cells as f64;
     // An offset of a quarter of a cell centres the lattice in the cube.
     let [x, y, z] = [0, 1, 2].map(|axis| (cell[axis] as f64 + halves[axis] + 0.25) * edge);
-    // The distance of neighbours is half the diagonal of a face.
+    // The distance between neighbours is half the diagonal of a face.
     [x, y, z, edge * std::f64::consts::SQRT_2 / 4.0]
 }
 
@@ -144,7 +144,7 @@ fn in_cluster(uniform: &Uniform, i: u64, [x, y, z, deviation]: [f64; 4]) -> [f64
     [x + offset(0), y + offset(1), z + offset(2), radius]
 }
 
-/// The smallest m for which 4·m³ ≥ n; 1 for n = 0.
+/// The smallest m for which 4·m³ ≥ n. It is 1 for n = 0.
 fn cells_per_side(count: u64) -> u64 {
     let mut cells = 1_u64;
     while 4 * cells * cells * cells < count {
@@ -153,7 +153,7 @@ fn cells_per_side(count: u64) -> u64 {
     cells
 }
 
-/// The cube root of a count by Newton's method, from above; 1 for a count of 0.
+/// The cube root of a count by Newton's method, from above. It is 1 for a count of 0.
 fn cube_root(count: u64) -> f64 {
     let n = count.max(1) as f64;
     let mut root = n;
@@ -222,7 +222,7 @@ impl Standard {
         self.kind().spheres(self.count(), Self::SEED)
     }
 
-    /// The camera: its view plane is at distance 1.5 and has the half extent (1, 1).
+    /// The camera. Its view plane is at distance 1.5 and has the half extent (1, 1).
     ///
     /// # Errors
     /// This never fails, because the values are in range.
@@ -234,7 +234,7 @@ impl Standard {
         PinholeCamera::new(Pose::looking_at(eye, look_at, [0.0, 1.0, 0.0])?, 1.5, [1.0, 1.0])
     }
 
-    /// The film: 1024×1024.
+    /// The film of 1024×1024 pixels.
     ///
     /// # Errors
     /// This never fails, because the size is in range.
@@ -243,18 +243,18 @@ impl Standard {
     }
 }
 
-/// The number of children of every sphere: sphere i has the children 9·i + 1 to 9·i + 9.
+/// The number of children of every sphere. Sphere i has the children 9·i + 1 to 9·i + 9.
 const CHILDREN: u64 = 9;
 
 /// The radius of a child relative to its parent.
 const SCALE: f64 = 1.0 / 3.0;
 
-/// The generator of the sphereflake of Eric Haines' Standard Procedural Databases, of any number of spheres.
+/// The generator of the sphereflake from Eric Haines' Standard Procedural Databases, for any number of spheres.
 ///
-/// E. Haines, "A proposal for standard graphics environments", IEEE Computer Graphics and Applications 7(11), 1987; the
-/// directions of the children are those of its program `balls`. Two things differ: the first sphere is in the middle of
-/// the unit cube and has the radius ¼, so that the whole flake, which extends to twice its radius, fits into the cube;
-/// and spheres are in breadth-first order.
+/// E. Haines, "A proposal for standard graphics environments", IEEE Computer Graphics and Applications 7(11), 1987. The
+/// directions of the children are those of its program `balls`. Two things differ. The first sphere is in the middle of
+/// the unit cube and has the radius ¼, so that the whole flake, which extends to twice its radius, fits into the cube.
+/// Spheres are in breadth-first order.
 struct Sphereflake {
     /// Directions of the children from a parent whose axis is z.
     directions: [DVec3; CHILDREN as usize],
@@ -267,7 +267,7 @@ impl Sphereflake {
 
     /// Centre and radius of the i-th sphere.
     fn sphere(&self, i: u64) -> [f64; 4] {
-        // The child to choose at each level, from the last level to the first; 2⁶⁴ spheres have fewer than 24 levels.
+        // The child to choose at each level, from the last level to the first. 2⁶⁴ spheres have fewer than 24 levels.
         let mut path = [0_usize; 24];
         let mut depth = 0;
         let mut sphere = i;
@@ -286,7 +286,7 @@ impl Sphereflake {
     }
 }
 
-/// Direction of a child from a parent whose axis is z: three groups of three, a third of a turn apart.
+/// The direction of a child from a parent whose axis is z. There are three groups of three, a third of a turn apart.
 fn direction(child: usize) -> DVec3 {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let corner =
@@ -303,12 +303,12 @@ fn direction(child: usize) -> DVec3 {
     DVec3::new(v.x * cosine - v.y * sine, v.x * sine + v.y * cosine, v.z)
 }
 
-/// Applies the rotation that takes z to `axis` by the shortest way to a vector.
+/// Rotates a vector by the shortest rotation that takes z to `axis`.
 fn turned(v: DVec3, axis: DVec3) -> DVec3 {
     if axis.z <= -1.0 {
         return DVec3::new(-v.x, v.y, -v.z);
     }
-    // Rodrigues' formula; the length of `about` is the sine.
+    // Rodrigues' formula. The length of `about` is the sine.
     let about = DVec3::Z.cross(axis);
     v * axis.z + about.cross(v) + about * (about.dot(v) / (1.0 + axis.z))
 }
@@ -319,10 +319,10 @@ const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The number of slots of each index.
 const SLOTS: u64 = 32;
 
-/// The random numbers of `SplitMix64`, accessed by slot rather than in sequence: its n-th state is the seed plus n
+/// The random numbers of `SplitMix64`, accessed by slot rather than in sequence. Its n-th state is the seed plus n
 /// steps.
 ///
-/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the constants are
+/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014. The constants are
 /// those of S. Vigna's splitmix64.c. The seed is mixed once first, so that neighbouring seeds give unrelated numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Uniform {
@@ -334,19 +334,19 @@ impl Uniform {
         Self { seed: mix(seed.wrapping_add(STEP)) }
     }
 
-    /// 64 random bits; `slot` must be less than [`SLOTS`].
+    /// 64 random bits. `slot` must be less than [`SLOTS`].
     pub(crate) fn bits(&self, index: u64, slot: u64) -> u64 {
         let n = index.wrapping_mul(SLOTS).wrapping_add(slot).wrapping_add(1);
         mix(self.seed.wrapping_add(n.wrapping_mul(STEP)))
     }
 
-    /// A uniform random number: a multiple of 2⁻⁵³ in [0, 1).
+    /// A uniform random number, which is a multiple of 2⁻⁵³ in [0, 1).
     pub(crate) fn number(&self, index: u64, slot: u64) -> f64 {
         (self.bits(index, slot) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// The sum of twelve uniform 16-bit numbers minus its mean: mean 0, standard deviation 1 (except for 2⁻³²), and
-    /// never beyond ±6 (Irwin–Hall). It uses three slots from `slot` on.
+    /// The sum of twelve uniform 16-bit numbers minus its mean (Irwin–Hall). It has the mean 0 and the standard
+    /// deviation 1 (except for 2⁻³²), and is never beyond ±6. It uses three slots from `slot` on.
     fn nearly_normal(&self, index: u64, slot: u64) -> f64 {
         let quarters = |bits: u64| (0..4).map(move |k| (bits >> (16 * k)) & 0xffff);
         let sum: u64 = (0..3).flat_map(|k| quarters(self.bits(index, slot + k))).sum();
@@ -362,7 +362,7 @@ fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// 2ˣ for 0 ≤ x < 60, by the exponential series of the fraction: the error after 20 terms is below the resolution of
+/// 2ˣ for 0 ≤ x < 60, by the exponential series of the fraction. The error after 20 terms is below the resolution of
 /// f64. `f64::exp2` differs between platforms.
 fn power_of_two(x: f64) -> f64 {
     let whole = x.floor();

@@ -1,4 +1,4 @@
-//! Loops that run on all cores where there are threads, with the same results on any number of them.
+//! Loops that run on all cores if there are threads, with the same results for any number of threads.
 
 use std::collections::TryReserveError;
 use std::ops::Range;
@@ -6,17 +6,17 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-/// The number of items that a thread takes at a time: large enough to be worth a task, small enough that short lists
-/// stay on one thread.
+/// The number of items that a thread takes at a time. It is large enough to be worth a task, and small enough that
+/// short lists stay on one thread.
 const CHUNK: usize = 1 << 16;
 
-/// Calls `f` with every index of `0..count`. This is the only loop that is compiled with rayon: another one for each
-/// closure would be a sixth of the library.
+/// Calls `f` with every index of `0..count`. This is the only loop that is compiled with rayon. With one for each
+/// closure, they would be a sixth of the library.
 fn each_index(count: usize, f: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(f);
 }
 
-/// The number of threads that loops run on.
+/// The number of threads that run loops.
 #[must_use]
 pub fn threads() -> usize {
     rayon::current_num_threads()
@@ -28,7 +28,7 @@ pub fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
     extended(Vec::with_capacity(count), count, chunk, f)
 }
 
-/// The results of `f` for `0..count`, in order, like [`map`], but for cheap results.
+/// The results of `f` for `0..count`, in order. It is like [`map`], but for cheap results.
 ///
 /// # Errors
 /// Returns an error if there is not enough memory for `count` results.
@@ -41,7 +41,7 @@ pub fn try_map<R: Send>(
     Ok(extended(list, count, CHUNK / 8, f))
 }
 
-/// An empty list with the results of `f` for `0..count`, of which a thread takes `chunk` at a time.
+/// Fills an empty list with the results of `f` for `0..count`. A thread takes `chunk` of them at a time.
 #[expect(
     unsafe_code,
     reason = "the results are written where they stay, so that nothing is copied or written twice"
@@ -89,7 +89,7 @@ pub fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
     for_each(items.chunks_mut(CHUNK).collect(), |chunk| chunk.iter_mut().for_each(&f));
 }
 
-/// Runs two tasks, at the same time if they are `large`.
+/// Runs two tasks, in parallel if they are `large`.
 pub fn both<A: Send, B: Send>(
     large: bool,
     first: impl FnOnce() -> A + Send,
@@ -104,7 +104,7 @@ pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
 
-/// Splits a slice at the ascending indices `ends`, the last of which is the length of the slice.
+/// Splits a slice at the ascending indices `ends`. The last of them is the length of the slice.
 pub fn split_mut<T>(mut slice: &mut [T], ends: impl IntoIterator<Item = usize>) -> Vec<&mut [T]> {
     let mut start = 0;
     ends.into_iter()

@@ -1,23 +1,23 @@
-//! Balls: a coarse centre and radius of a sphere that is listed in a cell, in 31 bits. A ray that misses the ball needs
-//! no test of the sphere. The WGSL twin is `shaders/accel/balls.wgsl`.
+//! Balls: a ball is a coarse centre and radius of a sphere listed in a cell, packed into 31 bits. A ray that misses the
+//! ball needs no test of the sphere. The WGSL twin is `shaders/accel/balls.wgsl`.
 //!
-//! Lengths are in quanta, of which a side of the cell has [`QUANTA`]. A ball's centre has three coordinates from 0 to
-//! 255, counted from a side's length before the cell's corner, so that it lies in the 27 cells around. The radius is
-//! kept as its square, as a number with 4 bits of exponent and 3 bits of mantissa, from 1 to 61440.
+//! Lengths are in quanta; a side of the cell has [`QUANTA`] of them. A ball's centre has three coordinates from 0 to
+//! 255, counted from one side's length before the cell's corner, so that it lies in the 3×3×3 cells around the cell.
+//! The radius is stored as its square, from 1 to 61440, with 4 bits of exponent and 3 bits of mantissa.
 //!
 //! # Why no sphere is lost
-//! A ball must be met by every ray that, according to the sphere test, hits its sphere at a distance at which the ray is
-//! in the cell. The terms are those of `slab.rs`, for a device that rounds as it likes: u = 2⁻²⁴ D, and the margin m is
-//! 128 u. The point P at that distance is within r + 51 u of the sphere's centre, in the cell up to 17 u, and on the part
-//! of the ray between the distances at which the walk enters and leaves the cell. The ray's position in the cell, start +
+//! A ball must be met by every ray that, according to the sphere test, hits its sphere at a distance that lies in the
+//! cell. The terms are those of `slab.rs`, for a device that rounds as it likes: u = 2⁻²⁴ D, and the margin m is 128 u.
+//! The point P at that distance is within r + 51 u of the sphere's centre, in the cell up to 17 u, and on the part of
+//! the ray between the distances at which the walk enters and leaves the cell. The ray's position in the cell, start +
 //! t · speed − cell, is off by 17 u (two roundings each of start and of t · speed, two of the sum, and the quotient in
-//! `per_cell`), the length of that part by 11 u of a cell's part of D, and the builder's position of the centre by 4 u. The
-//! distance between the ball's centre and that part of the ray is therefore at most |ball's centre − sphere's centre| + r +
-//! m, which is the ball's radius.
+//! `per_cell`), the length of that part by 11 u of a cell's part of D, and the builder's position of the centre by 4 u.
+//! The distance between the ball's centre and that part of the ray is therefore at most |ball's centre − sphere's
+//! centre| + r + m, which is the ball's radius.
 //!
-//! The test itself computes squares of vectors v whose components are below 170 quanta, since the ray's position is in the
-//! cell: v·v − (v·d)² and the square of what lies beyond the part. Its ten roundings, and the direction's length, which may
-//! be off by 11 · 2⁻²³, move the result by less than 32 · 2⁻²³ v·v, which is 0.34; [`SLACK`] is more than that.
+//! The test itself computes squares of vectors v whose components are below 170 quanta, since the ray's position is in
+//! the cell: v·v − (v·d)² and the square of the length beyond it. Its ten roundings, and the direction's length, which
+//! may be off by 11 · 2⁻²³, move the result by less than 32 · 2⁻²³ v·v, which is 0.34; [`SLACK`] is more than that.
 //!
 //! A sphere whose ball would need a larger radius has a ball that contains the whole cell, so that every ray meets it.
 
@@ -26,48 +26,48 @@ use glam::Vec3;
 /// The number of quanta along a side of a cell: three cells have 255.
 pub(crate) const QUANTA: f32 = 85.0;
 
-/// The largest coordinate of a ball's centre.
+/// The largest coordinate of a ball's centre, in quanta.
 const LARGEST: f32 = 255.0;
 
-/// The coordinates of the middle of the cell.
+/// The coordinates of the middle of the cell, in quanta.
 const MIDDLE: u32 = 128;
 
-/// The square of the radius is greater by this, for the rounding errors of the test.
+/// Added to the square of the radius to allow for the rounding errors of the test.
 const SLACK: f32 = 1.0;
 
-/// The number of bits of a coordinate. The radius follows the three coordinates.
+/// The number of bits of a coordinate. The bits of the radius follow those of the three coordinates.
 pub(crate) const COORDINATE_BITS: u32 = 8;
 
-/// The largest radius, and the number of bits of its mantissa.
+/// The largest encoded radius, and the number of bits of its mantissa.
 const LARGEST_RADIUS: u32 = (1 << 7) - 1;
 const MANTISSA_BITS: u32 = 3;
 
-/// The place in an f32 of a radius: the lowest bits of the exponent and the highest of the mantissa.
+/// The position of an encoded radius in an f32: the lowest exponent bits and the highest mantissa bits.
 const RADIUS_SHIFT: u32 = f32::MANTISSA_DIGITS - 1 - MANTISSA_BITS;
 
-/// By how much a ball is shifted to bring its radius there, and the bits of the radius there.
+/// The right shift that moves the radius of a packed ball to that position, and the mask of its bits there.
 pub(crate) const RADIUS_TO_FLOAT: u32 = 3 * COORDINATE_BITS - RADIUS_SHIFT;
 pub(crate) const RADIUS: u32 = LARGEST_RADIUS << RADIUS_SHIFT;
 
-/// The number of balls in a vector of a kernel. A list is filled up to a multiple of it with its last element.
+/// The number of balls in a vector of a kernel. A list is padded to a multiple of it by repeating its last element.
 pub(crate) const BALLS_PER_VECTOR: usize = 4;
 
-/// The cell of a list, by which its balls are made.
+/// The cell of a list, which is the reference frame of its balls.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BallFrame {
     corner: Vec3,
     margin: f32,
-    /// Quanta for each unit of length.
+    /// Quanta per unit of length.
     per_length: f32,
 }
 
 impl BallFrame {
-    /// The frame of a cell with this corner, which has the smallest coordinates, and side, for the margin of the scene.
+    /// The frame of a cell with the given corner of smallest coordinates and edge length, for the margin of the scene.
     pub(super) fn new(corner: Vec3, size: f32, margin: f32) -> Self {
         Self { corner, margin, per_length: QUANTA / size }
     }
 
-    /// The ball of a sphere.
+    /// Packs the ball of a sphere.
     pub(super) fn ball(&self, [x, y, z, radius]: [f32; 4]) -> u32 {
         let at = (Vec3::new(x, y, z) - self.corner) * self.per_length + QUANTA;
         // Casts round towards zero. They are much faster than calls of `round`.
@@ -89,8 +89,8 @@ fn pack([x, y, z]: [u32; 3], radius: u32) -> u32 {
     x | y << COORDINATE_BITS | z << (2 * COORDINATE_BITS) | radius << (3 * COORDINATE_BITS)
 }
 
-/// The centre of a ball, counted from a cell's side before the corner, and the square of its radius, in quanta. The
-/// highest bit has no meaning here.
+/// Unpacks a ball's centre, counted from one cell's side before the corner, and the square of its radius, in quanta.
+/// Ignores the highest bit.
 #[cfg(test)]
 fn unpack(ball: u32) -> (Vec3, f32) {
     let coordinate = |axis: u32| (ball >> (axis * COORDINATE_BITS) & 255) as f32;
@@ -98,7 +98,7 @@ fn unpack(ball: u32) -> (Vec3, f32) {
     (Vec3::new(coordinate(0), coordinate(1), coordinate(2)), squared)
 }
 
-/// The part of a ray in a cell, in quanta.
+/// The segment of a ray in a cell, in quanta.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PartInCell {
     origin: Vec3,
@@ -107,12 +107,12 @@ pub(super) struct PartInCell {
 }
 
 impl PartInCell {
-    /// The part from a point, in units of the cell's side from its corner, of a length in the same units.
+    /// Makes the segment from a point, relative to the cell's corner, and a length, both in units of the cell's side.
     pub(super) fn new(from: Vec3, direction: Vec3, length: f32) -> Self {
         Self { origin: (from + 1.0) * QUANTA, direction, length: length * QUANTA }
     }
 
-    /// A bit for each of four balls that the part meets.
+    /// Returns a mask with a bit for each of four balls, set if the segment meets the ball.
     #[inline]
     pub(super) fn meets_four(&self, balls: &[u32; BALLS_PER_VECTOR]) -> u32 {
         let axis = |axis: u32, from: f32| {
@@ -137,7 +137,7 @@ impl PartInCell {
 mod tests {
     use super::*;
 
-    /// Spheres of all sizes in and around cells of all sizes: the ball contains the sphere and the margin, or the cell.
+    /// Spheres of all sizes in and around cells of all sizes: a ball contains its sphere and the margin, or the cell.
     #[test]
     fn a_ball_contains_its_sphere() {
         let mut rng = fastrand::Rng::with_seed(1);
@@ -164,7 +164,7 @@ mod tests {
                 assert!((at - middle).length() + 0.87 * f64::from(size) < reach);
                 around_cells += 1;
             } else if squared > 64.0 {
-                // The radius is not needlessly large: half a diagonal of a quantum, a sixteenth, and the slack.
+                // The radius is not larger than needed: half a quantum's diagonal, a sixteenth, and the slack.
                 let inside = center.clamp(corner - size, corner + 2.0 * size) == center;
                 assert!(!inside || reach < 1.08 * (f64::from(radius + margin) + quantum));
             }

@@ -1,5 +1,5 @@
-//! Bricks: parts of a scene that each fit into a device's bindings and each have an acceleration structure. They are built
-//! one after the other, so that not all of them have to be in memory.
+//! Bricks: a brick is a part of a scene that fits into a device's bindings, with its own acceleration structure. Bricks
+//! are built one after the other, so that not all of them have to be in memory.
 use std::collections::VecDeque;
 
 use glam::Vec3;
@@ -25,12 +25,12 @@ pub enum Index {
     Grid(Grid),
     /// A tree with eight children for each node.
     WideTree(WideTree),
-    /// The least coordinates and the greatest of a box for each sphere, from which a driver builds a structure of its own
-    /// for ray queries. The kernels are in `shaders/accel/ray_query.wgsl`. The host searches without one.
+    /// One box for each sphere, as its smallest and largest coordinates. A driver builds its own structure from the
+    /// boxes for ray queries. The kernels are in `shaders/accel/ray_query.wgsl`. The host searches without a structure.
     ///
-    /// Vulkan says of a box only that it is reported if the ray meets it, not how the meeting is rounded. So each box holds
-    /// its sphere and the margin of trees, which is more than the error of any arithmetic that rounds as WGSL allows
-    /// (`slab.rs`); whether a driver's own arithmetic is as good is for the certificate to say.
+    /// Vulkan guarantees only that a box is reported if the ray meets it, not how that test is rounded. So each box
+    /// holds its sphere inflated by the margin of trees, which exceeds the error of any arithmetic that rounds as WGSL
+    /// allows (`slab.rs`). Only a certificate can show whether a driver's own arithmetic is as good.
     RayQuery(Vec<[f32; 6]>),
 }
 
@@ -39,14 +39,14 @@ pub enum Index {
 pub struct Brick {
     /// The acceleration structure of the spheres.
     pub index: Index,
-    /// Centre (x, y, z) in the scene's frame, and radius, in the order of the structure.
+    /// Centre (x, y, z) in the scene's frame, and radius. The order is that of the structure.
     pub spheres: Vec<[f32; 4]>,
     /// Index of each sphere in input order.
     pub ids: Vec<u32>,
 }
 
 impl Brick {
-    /// Whether the index is a grid of which some cells have grids of their own.
+    /// Whether the index is a grid in which some cells have grids of their own.
     pub(crate) fn is_nested(&self) -> bool {
         matches!(&self.index, Index::Grid(grid) if grid.is_nested())
     }
@@ -69,13 +69,13 @@ impl Accel {
         self.structure
     }
 
-    /// The structure and the primitive for which kernels that search the bricks are made.
+    /// The structure and the primitive that kernels must support to search the bricks.
     #[must_use]
     pub fn kind(&self) -> BrickKind {
         BrickKind { structure: self.structure, primitive: Primitive::Sphere }
     }
 
-    /// The bricks; at least one, which may be empty.
+    /// The bricks. There is at least one, which may be empty.
     #[must_use]
     pub fn bricks(&self) -> &[Brick] {
         &self.bricks
@@ -95,7 +95,7 @@ impl Accel {
     }
 }
 
-/// The boxes for ray queries of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
+/// Makes the boxes for ray queries of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
 fn query_boxes(spheres: &[[f32; 4]], margin: f32) -> Vec<[f32; 6]> {
     let of_item = |item: &Item| {
         let ([x, y, z], reach) = (item.center, item.reach);
@@ -104,26 +104,26 @@ fn query_boxes(spheres: &[[f32; 4]], margin: f32) -> Vec<[f32; 6]> {
     Item::all(spheres, &Margins::one(margin)).iter().map(of_item).collect()
 }
 
-/// The bricks of a planned structure. Each is built when it is asked for; until then only the ids of its spheres are
-/// kept, in 4 bytes each.
+/// The bricks of a planned structure. The iterator builds each brick when it is asked for. Until then it keeps only the
+/// ids of the spheres, in 4 bytes each.
 #[derive(Debug)]
 pub struct Bricks<'a> {
     plan: &'a AccelPlan,
     spheres: &'a [[f32; 4]],
-    /// For each brick that has not been built, the indices of its spheres in input order, in ascending order.
+    /// For each brick that has not been built, its spheres' indices in input order, ascending.
     parts: VecDeque<Vec<u32>>,
     may_part_equals: bool,
 }
 
 impl AccelPlan {
-    /// Divides the spheres, which must be those of the plan, into the planned bricks. There is at least one, which may
-    /// be empty.
+    /// Divides the spheres, which must be those of the plan, into the planned bricks. There is at least one brick,
+    /// which may be empty.
     #[must_use]
     pub fn bricks<'a>(&'a self, spheres: &'a [[f32; 4]]) -> Bricks<'a> {
         let count = spheres.len();
         let per_brick = count.div_ceil(self.brick_count).max(1);
         let Division { parts, may_part_equals } = match self.structure {
-            // Without a structure, bricks are consecutive spheres in the order of ids.
+            // Without a structure, each brick holds consecutive spheres in the order of ids.
             Structure::List => Division {
                 // The number of spheres fits into u32.
                 parts: ranges(count, per_brick)
@@ -142,7 +142,7 @@ impl AccelPlan {
         Bricks { plan: self, spheres, parts, may_part_equals }
     }
 
-    /// Builds the planned structure; `spheres` must be those of the plan. [`AccelPlan::bricks`] needs less memory.
+    /// Builds the planned structure. `spheres` must be those of the plan. [`AccelPlan::bricks`] needs less memory.
     #[must_use]
     pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
         let bricks = self.bricks(spheres);
@@ -154,14 +154,13 @@ impl AccelPlan {
 }
 
 impl Bricks<'_> {
-    /// Returns the bounding box of all spheres of the plan in the scene's frame, inflated as that of
-    /// [`Accel::bounds`].
+    /// Returns the bounding box of all spheres of the plan in the scene's frame, inflated as in [`Accel::bounds`].
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.plan.statistics.inflated_bounds()
     }
 
-    /// The planned structure. Where it is a grid, some cells of some bricks may have grids of their own.
+    /// The planned structure. If it is a grid, some cells of some bricks may have grids of their own.
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.plan.structure
@@ -205,19 +204,19 @@ impl Bricks<'_> {
 
 #[cfg(feature = "gpu")]
 impl Bricks<'_> {
-    /// The boxes of the bricks that have not been built, in order.
+    /// The bounds of the bricks that have not been built, in order.
     pub(crate) fn boxes(&self) -> Vec<BrickBounds> {
         self.parts.iter().map(|ids| BrickBounds::of_ids(self.spheres, ids)).collect()
     }
 
-    /// Keeps the bricks with these numbers, in this order. Those that were built before have no number.
+    /// Keeps the bricks with these numbers, in this order. Numbers count only the bricks that have not been built.
     pub(crate) fn keep(&mut self, numbers: &[usize]) {
         let mut parts: Vec<Option<Vec<u32>>> = self.parts.drain(..).map(Some).collect();
         let kept = numbers.iter().filter_map(|number| parts.get_mut(*number)?.take());
         self.parts = kept.collect();
     }
 
-    /// Leaves out the next brick.
+    /// Skips the next brick without building it.
     pub(crate) fn leave_out(&mut self) {
         self.parts.pop_front();
     }
@@ -238,8 +237,8 @@ impl Iterator for Bricks<'_> {
 
 impl ExactSizeIterator for Bricks<'_> {}
 
-/// The bounding boxes of the spheres of a brick and of their centres, in the scene's frame. Both are empty if there are
-/// no spheres.
+/// The bounding boxes of a brick's spheres and of their centres, in the scene's frame. Both are empty if there are no
+/// spheres.
 #[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BrickBounds {
@@ -254,12 +253,12 @@ impl BrickBounds {
     pub(crate) const EMPTY: Self =
         Self { center_min: Vec3::MAX, center_max: Vec3::MIN, min: Vec3::MAX, max: Vec3::MIN };
 
-    /// The boxes of the spheres of a brick.
+    /// Computes the bounds of the given spheres.
     pub(crate) fn of_spheres(spheres: &[[f32; 4]]) -> Self {
         Self::joined(map_chunks(spheres, |_, spheres| spheres.iter().fold(Self::EMPTY, Self::with)))
     }
 
-    /// The boxes of the spheres with the given indices.
+    /// Computes the bounds of the spheres with the given indices.
     pub(crate) fn of_ids(spheres: &[[f32; 4]], ids: &[u32]) -> Self {
         let with = |all: Self, id: &u32| all.with(&spheres[*id as usize]);
         Self::joined(map_chunks(ids, |_, ids| ids.iter().fold(Self::EMPTY, with)))

@@ -1,10 +1,11 @@
-//! Cubic cells, and the cells that the surface of a sphere overlaps: by a full search, and of most spheres as some of eight.
+//! Cubic cells, and two searches for the cells that a sphere's surface overlaps: a full one, and a fast one for most
+//! spheres.
 
 use std::ops::Range;
 
 use glam::{Vec3, Vec3A};
 
-/// The number of cells along x for which distances to a sphere are computed once and reused in every row.
+/// The number of cells along x whose distances to a sphere are computed once and reused in every row.
 const KNOWN: usize = 4;
 
 /// A box of equal cubic cells.
@@ -23,7 +24,7 @@ impl Cells {
         self.counts.iter().map(|count| *count as usize).product()
     }
 
-    /// The cell that contains a point; for points outside, the nearest cell.
+    /// The cell that contains a point. For points outside, the nearest cell.
     fn coordinates(&self, at: Vec3) -> [u32; 3] {
         let cells = (at - self.min) / self.size;
         let [width, height, depth] = self.counts;
@@ -40,13 +41,13 @@ impl Cells {
         (z as usize * height + y as usize) * width + x as usize
     }
 
-    /// The number of rows of cells along x; those of a layer follow each other.
+    /// The number of rows of cells along x. The rows of a layer are consecutive.
     pub(super) fn rows(&self) -> usize {
         self.counts[1] as usize * self.counts[2] as usize
     }
 
-    /// Calls `f` with the first and the last row, in each layer, of a box of cells that contains all within `margin` of
-    /// the sphere's surface. Rows ascend.
+    /// Calls `f` with the first and the last row, in each layer, of a box of cells. The box contains all points within
+    /// `margin` of the sphere's surface. Rows ascend.
     pub(super) fn for_each_range_of_rows(
         &self,
         &[x, y, z, radius]: &[f32; 4],
@@ -62,9 +63,9 @@ impl Cells {
         }
     }
 
-    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface, in some rows. If the cells
-    /// cover only a part of the sphere, it is not within them: the clamped range of cells may contain cells that the exact
-    /// test rejects.
+    /// Calls `f` with the index of every cell within `margin` of the sphere's surface, in the given rows. `is_within`
+    /// must be false if the cells cover only a part of the sphere. The clamped range of cells may then contain cells
+    /// that the exact test rejects.
     ///
     /// Cells that are completely inside are left out, because a ray cannot hit the sphere there. A large sphere is
     /// therefore listed only in the cells that its surface crosses, although all cells inside are examined.
@@ -98,10 +99,9 @@ impl Cells {
             (near * near, far * far)
         };
         let (outer, inner) = (outer * outer, inner * inner);
-        // The distances of the first cells along x, which are the same in every row; most spheres overlap no other
-        // cells.
+        // The distances of the first cells along x are the same in every row. Most spheres overlap no other cells.
         let known: [(f32, f32); KNOWN] = std::array::from_fn(|i| along(0, first[0] + i as u32));
-        // Other layers have none of the rows.
+        // Other layers contain none of the rows.
         let layers = first[2].max(rows.start / height)..=last[2].min((rows.end - 1) / height);
         for k in layers {
             let (near_z, far_z) = along(2, k);
@@ -126,9 +126,9 @@ impl Cells {
 /// The number of cells with edge length `size` that the surface of a sphere of this radius overlaps, averaged over all
 /// positions.
 ///
-/// By Minkowski sums: the centres of the cells that overlap a ball fill the volume size³ + 6 size² r + 3π size r² + 4/3
-/// π r³ (Steiner's formula for a cube). Subtracted is approximately a ball whose radius is smaller by half the diagonal
-/// of a cell, because the cells inside it are completely inside the sphere.
+/// The formula uses Minkowski sums. The centres of the cells that overlap a solid sphere fill the volume size³ + 6
+/// size² r + 3π size r² + 4/3 π r³ (Steiner's formula for a cube). A solid sphere whose radius is smaller by half a
+/// cell's diagonal is subtracted, because the cells inside it are about those completely inside the sphere.
 pub(super) fn mean_overlapped_cells(size: f32, radius: f32) -> f32 {
     const BALL: f32 = 4.188_790_2;
     let r = radius / size;
@@ -136,13 +136,13 @@ pub(super) fn mean_overlapped_cells(size: f32, radius: f32) -> f32 {
     1.0 + r * (6.0 + r * (9.424_778 + r * BALL)) - BALL * inside * inside * inside
 }
 
-/// The number of cells along each side of a block: the spheres of a block fit into a processor's L1 cache, or into two
+/// The number of cells along each side of a block. The spheres of a block fit into a processor's L1 cache, or into two
 /// pages.
 const BLOCK: usize = 4;
 
-/// A box of cells, with what their search computes from it. The cells of points are found on vectors: as fast as a processor
-/// divides, because a grid's builder asks for several cells of every sphere. The result is that of dividing each coordinate, to
-/// the bit.
+/// A box of cells, with precomputed values for searching it. A grid's builder looks up several cells of every sphere,
+/// so the cells of points are computed on vectors, as fast as a processor divides. The result equals that of dividing
+/// each coordinate, to the bit.
 #[derive(Clone, Copy)]
 pub(super) struct CellVectors {
     pub(super) min: Vec3A,
@@ -167,25 +167,25 @@ impl CellVectors {
         }
     }
 
-    /// The coordinates of the cell that contains a point, not yet rounded down; for points outside, those of the nearest
-    /// cell.
+    /// The coordinates of the cell that contains a point, not yet rounded down. For points outside, those of the
+    /// nearest cell.
     pub(super) fn coordinates(&self, at: Vec3A) -> Vec3A {
         ((at - self.min) / self.size).max(Vec3A::ZERO).min(self.last)
     }
 
-    /// The index of a cell.
+    /// The index of the cell with the given coordinates.
     pub(super) fn index(&self, coordinates: Vec3A) -> usize {
         let [x, y, z] = whole(coordinates);
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// An upper bound for [`Self::index_in_blocks`].
+    /// An upper bound of [`Self::index_in_blocks`].
     pub(super) fn len_in_blocks(&self) -> usize {
         self.blocks.iter().product::<usize>() * BLOCK.pow(3)
     }
 
-    /// An index of the cell of a sphere's centre, such that cells that are close in space, along any axis, have close
-    /// indices: block by block.
+    /// An index of the cell of a sphere's centre, block by block, so that cells close in space along any axis have
+    /// close indices.
     pub(super) fn index_in_blocks(&self, &[x, y, z, _]: &[f32; 4]) -> usize {
         let [x, y, z] = whole(self.coordinates(Vec3A::new(x, y, z)));
         let [width, height, _] = self.blocks;
@@ -194,23 +194,23 @@ impl CellVectors {
     }
 }
 
-/// Rounds coordinates down, which are not negative and less than 2²⁴.
+/// Rounds down coordinates, which must be at least 0 and less than 2²⁴.
 fn whole(coordinates: Vec3A) -> [usize; 3] {
     // A cast to i32 is faster than one to larger integers.
     coordinates.to_array().map(|x| x as i32 as usize)
 }
 
-/// The cells that the surface of a sphere overlaps, in 32 bits. A grid's builder needs them three times: to assign spheres to
-/// slabs, to count, and to fill lists. It finds them once, with the arithmetic of [`Cells::for_each_near`], on vectors.
+/// The cells that the surface of a sphere overlaps, in 32 bits. A grid's builder needs them three times: to assign
+/// spheres to slabs, to count, and to fill lists. It finds them once, on vectors, as [`Cells::for_each_near`] does.
 ///
-/// The cell with the smallest coordinates of eight that form a cube, and a bit for each of them that a sphere overlaps. Bit i of
-/// a cell's number is set if it is the second along axis i. No bit is set if the sphere may overlap other cells as well,
-/// and [`Cells::for_each_near`] must tell which.
+/// The value holds the first of eight cells that form a cube, which has the smallest coordinates, and a bit for each
+/// cell that the sphere overlaps. Bit i of a cell's number is set if it is the second along axis i. If the sphere may
+/// overlap other cells as well, no bit is set, and [`Cells::for_each_near`] must find the cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Octet(u32);
 
 impl Octet {
-    /// The cells of a grid, of which there are at most 2²⁴, that lie within `margin` of the sphere's surface.
+    /// Finds the cells of a grid, which has at most 2²⁴, that lie within `margin` of the sphere's surface.
     pub(super) fn of(&[x, y, z, radius]: &[f32; 4], cells: &CellVectors, margin: f32) -> Self {
         let center = Vec3A::new(x, y, z);
         let (outer, inner) = (radius + margin, (radius - margin).max(0.0));
@@ -232,7 +232,7 @@ impl Octet {
             (near * near, far * far)
         };
         let ((near, far), (second_near, second_far)) = (along(first), along(second));
-        // No distance to a second cell that is not there is short enough.
+        // A second cell that does not exist is too far away.
         let second_near = Vec3A::select(last.cmpgt(first), second_near, Vec3A::INFINITY);
         let (near, far) = ([near, second_near], [far, second_far]);
         let (outer, inner) = (outer * outer, inner * inner);
@@ -246,7 +246,7 @@ impl Octet {
         Self(start << 8 | overlapped)
     }
 
-    /// Whether the cells are known.
+    /// Whether the overlapped cells are known.
     pub(super) fn is_known(self) -> bool {
         self.0 & 255 != 0
     }
@@ -261,7 +261,7 @@ impl Octet {
         self.first() + strides.0[(self.0 & 255 | 1).ilog2() as usize]
     }
 
-    /// Calls `f` with the overlapped cells. `strides` are the differences between cells that are neighbours along axes.
+    /// Calls `f` with the overlapped cells. `strides` are those of the same grid.
     pub(super) fn for_each(self, strides: &Strides, mut f: impl FnMut(usize)) {
         let mut left = self.0 & 255;
         while left != 0 {
@@ -271,7 +271,7 @@ impl Octet {
     }
 }
 
-/// The differences between the index of each of eight cells and that of the first.
+/// For each of the eight cells, the difference between its index and that of the first.
 pub(super) struct Strides([usize; 8]);
 
 impl Strides {
@@ -287,7 +287,7 @@ impl Strides {
 mod tests {
     use super::*;
 
-    /// Cells of all numbers, and spheres of all sizes in and around them, of which some end at cells' sides.
+    /// Cells of all numbers, and spheres of all sizes in and around them. Some spheres end exactly at cells' sides.
     #[test]
     fn cells_are_those_of_the_full_search() {
         let mut rng = fastrand::Rng::with_seed(1);

@@ -1,6 +1,6 @@
-//! Every structure against its spheres, by brute force: each sphere is in it once, no walk of it leaves it, goes on for ever
-//! or needs more than a kernel's stack, and a cell or a box that comes within the margin of a sphere's surface has the
-//! sphere. And damage is found. That rays find their spheres is for `cpu/search_tests.rs` and `tests/gpu/structures.rs`.
+//! Checks every structure against its spheres by brute force. Each sphere is in it once. No walk misses a sphere, runs
+//! for ever or needs more than a kernel's stack. A cell or box within the margin of a sphere's surface has the sphere.
+//! Damage is found. `cpu/search_tests.rs` and `tests/gpu/structures.rs` check that rays find their spheres.
 
 use fastrand::Rng;
 use glam::DVec3;
@@ -20,16 +20,16 @@ mod spheres;
 
 use spheres::Spheres;
 
-/// What rounding may take of the margin of a grid, and how far away from a cell a listed sphere may be, in margins.
+/// The share of a grid's margin that rounding leaves, and how far a listed sphere may be from its cell, in margins.
 const MUST_LIST: f64 = 0.8;
 const MAY_LIST: f64 = 2.0;
 
-/// Fails with what is said unless it holds.
+/// Fails with a message if a condition does not hold.
 fn ensure(holds: bool, what: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(what()) }
 }
 
-/// Checks a brick of a plan with this margin.
+/// Checks a brick of a plan with the given margin.
 fn check(brick: &Brick, margin: f32) -> Result<(), String> {
     let Brick { index, spheres, ids } = brick;
     ensure(spheres.len() == ids.len(), || "a sphere without an id".to_owned())?;
@@ -101,7 +101,7 @@ impl GridCheck<'_> {
         cell_at.iter().try_for_each(|cell| self.check_cell(cell))
     }
 
-    /// What an empty word says of the cells ahead.
+    /// Checks how many cells ahead an empty word declares empty.
     fn check_reach(&self, place: [usize; 3], empty: u32) -> Result<(), String> {
         let counts = self.grid.cell_counts.map(|count| count as usize);
         for octant in 0..8 {
@@ -123,7 +123,7 @@ impl GridCheck<'_> {
         Ok(())
     }
 
-    /// A cell's list, and that it has every sphere that comes near and no other.
+    /// Checks that a cell's list has every sphere near the cell and no other.
     fn check_cell(&self, cell: &Cell) -> Result<(), String> {
         let Grid { references, balls, .. } = self.grid;
         let at: Vec<usize> = match cell.word & word::KIND {
@@ -155,7 +155,7 @@ impl GridCheck<'_> {
             ensure(is_met, || format!("the ball of sphere {} is too small", id(shape_index)))?;
         }
         for (shape_index, sphere) in self.spheres.iter().enumerate() {
-            // Of equal spheres, a long list has the first.
+            // A long list keeps only the first of equal spheres.
             let is_there = || {
                 let bits = |sphere: &[f32; 4]| sphere.map(f32::to_bits);
                 let same = |other: &usize| bits(&self.spheres[*other]) == bits(sphere);
@@ -171,7 +171,7 @@ impl GridCheck<'_> {
 }
 
 impl Cell {
-    /// Whether the surface of a sphere comes as near as `margin`.
+    /// Whether the surface of a sphere is within `margin` of the cell.
     fn is_near(&self, sphere: [f32; 4], margin: f64) -> bool {
         let (low, high) = (self.corner, self.corner + self.side);
         let (centre, radius) = (centre(sphere), f64::from(sphere[3]));
@@ -180,7 +180,7 @@ impl Cell {
         near <= radius + margin && far >= radius - margin
     }
 
-    /// Whether points of the cell near the surface of a sphere are in its ball.
+    /// Whether points of the cell near a sphere's surface are in its ball.
     fn meets(&self, ball: u32, sphere: [f32; 4], margin: f64) -> bool {
         let towards = [0.0, 0.5, 1.0].map(|share| self.corner + share * self.side);
         let corners =
@@ -242,12 +242,12 @@ fn check_tree(tree: &WideTree, spheres: &[[f32; 4]], ids: &[u32]) -> Result<(), 
     ensure(is_level, || format!("{deepest} levels, not {}", tree.levels))
 }
 
-/// The limits of the grids that are checked: fewer cells than plans allow, because each is compared with each sphere.
+/// The limits of the grids in these checks: fewer cells than plans allow, because each is compared with each sphere.
 fn budget(spheres: &Spheres) -> GridBudget {
     GridBudget { listed: 10 * spheres.len() + 64, cells: 16 * spheres.len() + 64 }
 }
 
-/// The only brick of a scene in a structure, and the margin.
+/// Builds the only brick of a scene in a structure. Returns it with the margin.
 fn built(spheres: &Spheres, structure: Structure) -> (Brick, f32) {
     let plan = AccelPlan::of(spheres, structure, 1 << 30);
     let margin = plan.statistics.margin();
@@ -261,7 +261,7 @@ fn built(spheres: &Spheres, structure: Structure) -> (Brick, f32) {
     (bricks.remove(0), margin)
 }
 
-/// Crowds, for grids inside cells, and spheres in a corner, for lists in the first level and empty cells around.
+/// Crowded spheres, for grids inside cells, and spheres in a corner, for first-level lists and empty cells around them.
 fn mixed() -> Spheres {
     let mut spheres = spheres::clusters(5, 200);
     spheres.extend(spheres::scaled(&spheres::random(150, 21, |_| 0.03), 40.0));
@@ -316,7 +316,7 @@ fn every_structure_has_its_spheres() {
     assert!(nested > 1, "{nested}");
 }
 
-/// Damages a grid, in which a list ends at an index.
+/// Damages a grid, given the index of the last element of a list.
 type Damage = fn(&mut Grid, usize);
 
 #[test]
@@ -363,7 +363,7 @@ fn damage_to_a_tree_is_found() {
         check(&brick, margin)
     };
     assert_eq!(damaged(&mut |_| {}), Ok(()));
-    // Boxes are as small as the cells of their grids allow, so that one cell less is too small for most.
+    // Boxes are as small as the cells of their grids allow, so most become too small if they lose one cell.
     let mut small = 0;
     for _ in 0..200 {
         let (slot, axis, is_high) = (rng.usize(0..8), rng.usize(0..3), rng.bool());
@@ -391,7 +391,7 @@ fn damage_to_a_tree_is_found() {
     assert!(damaged(&mut |tree| tree.nodes[leaf].0[5] += 1).is_err());
 }
 
-/// The depths of trees are proven; this checks the arithmetic.
+/// A proof bounds the depths of trees. This checks its arithmetic.
 #[test]
 fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert_eq!([1, 24, 25, 192, 193].map(levels_by_halves), [1, 1, 2, 2, 3]);

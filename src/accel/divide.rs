@@ -1,6 +1,6 @@
 //! Division of spheres among bricks, on all cores. Many spheres are divided by cuts that halve a sample of them. Each
-//! sphere is then read once, whatever the number of bricks, while exact cuts read it several times for each doubling of
-//! that number.
+//! sphere is then read once for any number of bricks, while exact cuts read it several times for each doubling of that
+//! number.
 use glam::Vec3A;
 
 use super::split::Extent;
@@ -15,9 +15,9 @@ pub(super) struct Division {
     pub(super) may_part_equals: bool,
 }
 
-/// Divides spheres into parts of about the same number, by repeated median cuts across the longest side: those of a
-/// sample if there are many spheres, otherwise exact ones. The centres of each part lie in a box that no other part
-/// enters.
+/// Divides spheres into parts of about the same number, by repeated median cuts across the longest side. The cuts halve
+/// a sample if there are many spheres, and are exact otherwise. The centres of each part lie in a box that no other
+/// part enters.
 pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Division {
     if let Some(parts) = divide_by_sample(spheres, parts) {
         return Division { parts, may_part_equals: false };
@@ -25,7 +25,7 @@ pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Division {
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
 
-/// Divides a list of ascending ids; the ids of each part ascend as well.
+/// Divides a list of ascending ids. The ids of each part ascend as well.
 fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     if parts <= 1 {
         return Division { parts: vec![ids], may_part_equals: false };
@@ -42,12 +42,12 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     let (mut left, mut right) =
         (Vec::with_capacity(middle), Vec::with_capacity(ids.len() - middle));
     drop(ids);
-    // Chunks go one by one, so that not all of them are there twice.
+    // Chunks are moved one by one, so that not all of them exist twice.
     for (more_left, more_right) in chunks {
         left.extend(more_left);
         right.extend(more_right);
     }
-    // Spheres with equal centres are parted only if they have the coordinate of the first on the right.
+    // Spheres with equal centres are separated only if they have the coordinate of the first on the right.
     let is_on_cut = |id: &u32| first_right.is_some_and(|first| key(id).0 == first.0);
     let mut on_the_cut: Vec<u32> = left.iter().copied().filter(is_on_cut).collect();
     if !on_the_cut.is_empty() {
@@ -60,7 +60,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     all
 }
 
-/// Whether any two of the spheres have equal centres. Zeros of both signs are equal.
+/// Whether any two of the spheres have equal centres. Positive and negative zero are equal.
 fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
     let center = |id: &u32| {
         let [x, y, z, _] = spheres[*id as usize];
@@ -71,7 +71,7 @@ fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
     centers.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// Maps a float to an integer with the same order; zeros of both signs give the same integer.
+/// Maps a float to an integer with the same order. Positive and negative zero give the same integer.
 fn ascending(x: f32) -> u32 {
     let bits = equal_bits(x);
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -95,34 +95,34 @@ fn longest_side(spheres: &[[f32; 4]], ids: &[u32]) -> usize {
     (0..3).max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or(0)
 }
 
-/// The number of spheres from which on a sample is used.
+/// The number of spheres from which a sample is used.
 const MANY: usize = 1 << 22;
 
-/// The number of spheres of the sample. One of twelve parts then differs from the mean by 0.3 %, as a standard deviation.
+/// The number of spheres of the sample. With twelve parts, a part's size has a standard deviation of 0.3 %.
 const SAMPLED: usize = 1 << 20;
 
 /// The number of spheres that one task handles.
 const CHUNK: usize = 1 << 18;
 
-/// The largest number of spheres in one of `parts` parts of `count` spheres: with a sample, 2 % more than the mean.
+/// The largest number of spheres in one of `parts` parts of `count` spheres: with a sample, the mean plus 2 %.
 pub(super) fn largest_part(count: usize, parts: usize) -> usize {
     let mean = count.div_ceil(parts.max(1));
     if parts > 1 && count >= MANY { mean + mean / 50 } else { mean }
 }
 
-/// A cut across an axis, or a part of the spheres. A walk takes as many steps to each part, without a branch that depends on
-/// the sphere, because a processor guesses half of such branches wrong.
+/// A cut across an axis, or a part of the spheres. Every walk takes the same number of steps without branching on the
+/// sphere, because a processor mispredicts half of such branches.
 #[derive(Clone, Copy)]
 struct Node {
     axis: usize,
     /// Centres with a smaller coordinate are on the left.
     at: f32,
-    /// The nodes on the left and on the right. Those of a part are the part itself.
+    /// The nodes on the left and on the right. For a part, both are the part itself.
     next: [u32; 2],
     part: u16,
 }
 
-/// Cuts as a tree, of which the first node is the root.
+/// Cuts as a tree. The first node is the root.
 #[derive(Default)]
 struct Tree {
     nodes: Vec<Node>,
@@ -130,8 +130,8 @@ struct Tree {
     depth: usize,
 }
 
-/// Divides spheres into parts of about the same number: the ids of each part, in ascending order. Spheres with equal
-/// centres are in the same part. Returns `None` if there are few spheres, or if a part would have more than
+/// Divides spheres into parts of about the same number. Returns the ids of each part, in ascending order. Spheres with
+/// equal centres are in the same part. Returns `None` if there are few spheres, or if a part would have more than
 /// [`largest_part`], for example because many spheres have the same coordinate.
 pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec<Vec<u32>>> {
     if parts <= 1 || parts > usize::from(u16::MAX) || spheres.len() < MANY {
@@ -162,7 +162,7 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
         return None;
     }
     let mut all: Vec<Vec<u32>> = totals.iter().map(|total| vec![0; *total]).collect();
-    // For each chunk, the places of its ids in every part.
+    // The places for each chunk's ids in every part.
     let mut tasks: Vec<_> = chunks.into_iter().map(|chunk| (chunk, Vec::new())).collect();
     for (part, ids) in all.iter_mut().enumerate() {
         let mut end = 0;
@@ -177,7 +177,7 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
     }
     for_each(tasks, |(chunk, mut targets)| {
         for id in chunk {
-            // There is a place for each, and the number of spheres fits into u32.
+            // There is a place for each id, and the number of spheres fits into u32.
             if let Some(place) = targets[usize::from(part_of[id])].next() {
                 *place = id as u32;
             }
@@ -197,8 +197,8 @@ impl Tree {
         node.part
     }
 
-    /// Cuts a sample across the longest side of its box until there are so many parts, numbered from `first`. Returns the
-    /// number of the node.
+    /// Cuts a sample across the longest side of its box until there are `parts` parts, numbered from `first`. Returns
+    /// the index of the node.
     fn halve(
         &mut self,
         sample: &mut [[f32; 3]],
@@ -231,7 +231,7 @@ impl Tree {
 mod tests {
     use super::*;
 
-    /// Compares with sorting, for spheres of which many share a coordinate, and for zeros of both signs.
+    /// Compares with sorting, for spheres many of which share a coordinate, and for positive and negative zero.
     #[test]
     fn parts_are_those_of_a_sort() {
         let coordinates = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];
@@ -292,7 +292,7 @@ mod tests {
             let mut all = divided.concat();
             all.sort_unstable();
             assert!(all.into_iter().eq(0..spheres.len() as u32));
-            // The first cut is across the longest side, so some plane parts the first half from the others.
+            // The first cut is across the longest side, so some plane separates the first half from the others.
             let z = |ids: &Vec<u32>| ids.iter().map(|id| spheres[*id as usize][2]).collect();
             let sides: Vec<Vec<f32>> = divided.iter().map(z).collect();
             let (left, right) = sides.split_at(parts / 2);
@@ -302,7 +302,7 @@ mod tests {
         }
     }
 
-    /// What a sample cannot divide is left to exact cuts.
+    /// Exact cuts handle what a sample cannot divide.
     #[test]
     fn few_spheres_and_equal_coordinates_are_not_divided() {
         assert_eq!(divide_by_sample(&random(1000), 3), None);

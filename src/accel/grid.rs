@@ -48,17 +48,17 @@ pub(crate) mod word {
     }
 }
 
-/// Marks the last reference of a list, and the last ball.
+/// Marks the last reference of a list, and its last ball.
 pub(crate) const LAST: u32 = 1 << 31;
 
-/// The largest number of cells of a brick: cell indices are computed in f32, which is exact up to this number.
+/// The largest number of cells of a brick. Cell indices are computed in f32, which is exact up to this number.
 pub(super) const MAX_CELLS: usize = 1 << 24;
 
-/// The largest number of cells of the first level of a grid; the others are left to the second level.
+/// The largest number of cells of the first level of a grid. The others are left to the second level.
 pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
 
-/// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
-/// the time hardly changes between eight and sixteen.
+/// The cost of a step from cell to cell, as a number of list elements. Measured on lavapipe with a million random
+/// spheres, where the time hardly changes between eight and sixteen.
 pub(super) const STEP_COST: f32 = 12.0;
 
 /// Limits for the size of a grid.
@@ -70,7 +70,7 @@ pub(crate) struct GridBudget {
     pub cells: usize,
 }
 
-/// The number of elements that a list of `len` spheres takes: whole vectors of balls.
+/// The number of elements of a list of `len` spheres, padded to whole vectors of balls.
 pub(super) fn elements(len: usize) -> usize {
     len.next_multiple_of(BALLS_PER_VECTOR)
 }
@@ -84,18 +84,18 @@ pub struct Grid {
     pub cell_size: f32,
     /// The number of first-level cells along each axis.
     pub cell_counts: [u32; 3],
-    /// One word for each cell: first those of the first level, x fastest, padded to a multiple of eight; then those of
-    /// the grids inside cells, each with 8ᵏ words.
+    /// One word for each cell. Those of the first level come first, x fastest, padded to a multiple of eight. Those of
+    /// the grids inside cells follow, each with 8ᵏ words.
     pub cells: Vec<u32>,
-    /// Indices of spheres, list after list; the last element of each list has its highest bit set.
+    /// Indices of spheres, list after list. The last element of each list has its highest bit set.
     pub references: Vec<u32>,
-    /// Beside each reference a ball around the sphere in four bytes: only spheres whose balls a ray meets are loaded and
-    /// tested. The last ball of each list has its highest bit set. Lists are filled up to a multiple of four.
+    /// For each reference, a ball around the sphere in four bytes. Only spheres whose balls a ray meets are loaded and
+    /// tested. The last ball of each list has its highest bit set. Lists are padded to a multiple of four.
     pub balls: Vec<u32>,
 }
 
 impl Grid {
-    /// The number of first-level cells; their words are followed by up to seven unused ones.
+    /// The number of first-level cells. Up to seven unused words follow theirs.
     #[must_use]
     pub fn first_level_len(&self) -> usize {
         self.cell_counts.iter().map(|count| *count as usize).product()

@@ -1,5 +1,5 @@
-//! Building grids by counting sort, in time proportional to the number of spheres and cells: the choice of cells, their words
-//! and lists, and how many cells ahead of an empty cell are empty, so that a ray may cross them in one step.
+//! Building grids by counting sort, in time proportional to the number of spheres and cells: the choice of cells, their
+//! words and lists, and the number of empty cells ahead of each empty cell, which a ray can cross in one step.
 
 use glam::Vec3;
 
@@ -10,21 +10,21 @@ use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_sort::{CHUNK, Lists, Overlaps, sort_by_cell};
 use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
-/// The largest number of spheres whose radii the choice of the cell size looks at.
+/// The largest number of spheres whose radii are examined to choose the cell size.
 const RADII: usize = 4096;
 
-/// A grid, with its spheres in the order that the grid refers to, and their ids.
+/// A grid, its spheres in the order that its references use, and their ids.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BuiltGrid {
     /// The cells.
     pub grid: Grid,
-    /// Centre and radius.
+    /// Centre and radius of each sphere.
     pub spheres: Vec<[f32; 4]>,
     /// Index of each sphere in input order.
     pub ids: Vec<u32>,
 }
 
-/// Builds a grid over the spheres with the given ids, which ascend.
+/// Builds a grid of the spheres with the given ids, which must ascend.
 ///
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
@@ -43,7 +43,7 @@ pub(crate) fn build_grid(
     }
     let (sorted, sorted_ids) = sort_by_cell(own, ids, &cells);
     let mut overlaps = Overlaps::new(&sorted, &cells, margin);
-    // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
+    // The size was chosen for spheres at random positions. Spheres that are aligned with the cells may overlap more
     // cells.
     while overlaps.total() > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
@@ -55,7 +55,7 @@ pub(crate) fn build_grid(
     BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
 }
 
-/// The spheres with the given ids, and their bounding box, inflated by the margin.
+/// Gathers the spheres with the given ids. Returns them with their bounding box, inflated by the margin.
 fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Vec3, Vec3)) {
     let mut own = vec![[0.0; 4]; ids.len()];
     let chunks: Vec<_> = own.chunks_mut(CHUNK).zip(ids.chunks(CHUNK)).collect();
@@ -76,15 +76,15 @@ fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Ve
     (own, (min - margin, max + margin))
 }
 
-/// Chooses the first level of cells for all these spheres.
+/// Chooses the first level of cells for the given spheres.
 fn first_level(spheres: &[[f32; 4]], (min, max): (Vec3, Vec3), budget: GridBudget) -> Cells {
     let stride = spheres.len().div_ceil(RADII).max(1);
     let radii: Vec<f32> = spheres.iter().step_by(stride).map(|sphere| sphere[3]).collect();
     cells_of_size(min, max, first_level_size(&radii, spheres.len(), max - min, budget))
 }
 
-/// Chooses the cell size with the smallest expected cost of a ray, for a number of spheres of which a sample has the
-/// given radii: a ray of length L takes about L/size steps, each with the elements of one cell's list.
+/// Chooses the cell size with the smallest expected cost of a ray, for `count` spheres, of which a sample has the given
+/// radii. A ray of length L takes about L/size steps, each with the elements of one cell's list.
 fn first_level_size(radii: &[f32], count: usize, extent: Vec3, budget: GridBudget) -> f32 {
     let longest = extent.max_element();
     // Prevents a volume of zero for flat scenes.
@@ -108,9 +108,9 @@ fn first_level_size(radii: &[f32], count: usize, extent: Vec3, budget: GridBudge
     best.map_or(longest, |(_, size)| size)
 }
 
-/// The expected number of elements of the lists of cells that spheres overlap so many times.
+/// The expected number of list elements in `cells` cells that spheres overlap `overlaps` times in all.
 fn expected_elements(overlaps: f64, cells: f64) -> f64 {
-    // Lists that are filled up have one and a half more on average.
+    // Padding adds one and a half elements to each list on average.
     overlaps + 1.5 * cells.min(overlaps)
 }
 
@@ -123,7 +123,7 @@ fn coarser(cells: &Cells, max: Vec3) -> Cells {
     cells_of_size(cells.min, max, cells.size * 1.1)
 }
 
-/// A range of cells under construction: its words, with start indices relative to its own lists and words.
+/// A range of cells under construction. Start indices in its words are relative to its own lists and words.
 #[derive(Default)]
 struct BuiltCells {
     /// Words of the first level.
@@ -182,16 +182,16 @@ fn assemble(
     joined(cells, &parts)
 }
 
-/// A grid with these words and lists.
+/// Makes a grid from its words and lists.
 fn grid(cells: &Cells, words: Vec<u32>, references: Vec<u32>, balls: Vec<u32>) -> Grid {
     let Cells { min, size: cell_size, counts: cell_counts } = *cells;
     Grid { min, cell_size, cell_counts, cells: words, references, balls }
 }
 
-/// A longer list keeps only one of several equal spheres.
+/// Lists longer than this keep only one of several equal spheres.
 const LONG: usize = 32;
 
-/// Removes duplicates of a sphere from a long list, except the first, which has the smallest id.
+/// Removes duplicates of spheres from a long list. The first, which has the smallest id, stays.
 fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     if list.len() > LONG {
         let mut seen = std::collections::HashSet::with_capacity(list.len());
@@ -239,14 +239,14 @@ fn joined(cells: &Cells, parts: &[BuiltCells]) -> Grid {
     grid(cells, all_words, all_references, all_balls)
 }
 
-/// Splits the first elements off a slice.
+/// Takes the first `len` elements off a slice.
 fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(slice).split_at_mut(len);
     *slice = rest;
     first
 }
 
-/// References, list after list, and a ball beside each.
+/// References, list after list, and a ball for each.
 #[derive(Default)]
 struct BuiltLists {
     references: Vec<u32>,
@@ -258,7 +258,7 @@ impl BuiltLists {
         Self { references: Vec::with_capacity(listed), balls: Vec::with_capacity(listed) }
     }
 
-    /// Appends the list of a cell with this frame, and returns the word of the cell.
+    /// Appends the list of a cell with the given frame, and returns the cell's word.
     fn append(&mut self, list: &[u32], spheres: &[[f32; 4]], frame: BallFrame) -> u32 {
         if list.is_empty() {
             return word::EMPTY;
@@ -272,7 +272,7 @@ impl BuiltLists {
     }
 }
 
-/// Writes a list that is not empty, with its balls, and fills it up with its last element.
+/// Writes a list that is not empty, with its balls, and pads it with its last element.
 fn write_list(
     list: &[u32],
     spheres: &[[f32; 4]],
@@ -293,7 +293,7 @@ fn write_list(
     }
 }
 
-/// A grid with one level, of which the lists are copied once, straight to their places.
+/// Makes a grid with one level. Each list is copied only once, straight to its place.
 fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid {
     let Lists { shape_indices, starts } = lists;
     let elements = |cell: usize| elements((starts[cell + 1] - starts[cell]) as usize);
@@ -335,7 +335,7 @@ fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid
     grid(cells, words, references, balls)
 }
 
-/// The largest number of cells beyond the first that a step may cross.
+/// The largest number of cells beyond the first that a step can cross.
 const MAX_AHEAD: u8 = word::REACH as u8;
 
 /// The fraction of empty cells below which skipping is not worthwhile.
@@ -344,8 +344,8 @@ const WORTH_IT: f32 = 0.25;
 /// Writes into every empty word of the first level, for each of the eight octants of ray directions, how many cells
 /// ahead along all three axes are empty as well, in three bits each.
 ///
-/// By dynamic programming, as for the largest square of ones in a matrix: the empty cube that starts at a cell is one
-/// larger than the smallest of those that start at its seven neighbours ahead. Everything outside the grid is empty.
+/// Uses dynamic programming, as for the largest square of ones in a matrix. The empty cube that starts at a cell is one
+/// larger than the smallest of those at its seven neighbours ahead. Everything outside the grid is empty.
 fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     let counts = counts.map(|count| count as usize);
     let len = counts.iter().product();
@@ -366,8 +366,8 @@ fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     }
 }
 
-/// For every empty cell, the number of empty cells ahead of it. Bit i of the octant is set for a ray that descends
-/// along axis i.
+/// The number of empty cells ahead of every empty cell, for one octant of ray directions. Bit i of the octant is set
+/// for a ray that descends along axis i.
 fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> {
     let [width, height, depth] = counts;
     // For each cell, the side of the empty cube that starts there.

@@ -1,4 +1,4 @@
-//! The choice of first-level cells that get a grid of their own, and how fine it is.
+//! The choice of first-level cells that get grids of their own, and of how fine these are.
 
 use glam::Vec3;
 
@@ -7,7 +7,7 @@ use super::cells::{Cells, mean_overlapped_cells};
 use super::grid::{GridBudget, STEP_COST, elements, word};
 use crate::parallel::{map_parts, ranges};
 
-/// The length of a list from which a grid may be worthwhile: even the coarsest grid costs two steps.
+/// The length of a list from which a grid may be worthwhile. Even the coarsest grid costs two steps.
 const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
 
 /// The finest level of a grid inside a cell: 2⁵ cells along an axis.
@@ -16,11 +16,11 @@ const MAX_LEVEL: u8 = 5;
 /// The largest number of inner cells, and of inner list elements, for each element of the list that they replace.
 const MOST_GROWTH: usize = 64;
 
-/// A grid is worth its memory if its cost for a ray is less than this fraction of the cost of the list.
+/// A grid is worth its memory if a ray's cost in it is less than this fraction of the list's cost.
 const GAIN: f32 = 0.9;
 
-/// Two levels are worthwhile if they save this fraction of the cost of all cells: a kernel that supports two levels is
-/// slower in all of them, by a tenth.
+/// Two levels are worthwhile if they save this fraction of the cost of all cells, because a kernel that supports two
+/// levels is slower by a tenth in every cell.
 const WORTH_IT: f32 = 0.1;
 
 /// A grid inside a cell that would reduce the cost of rays.
@@ -36,14 +36,14 @@ struct Candidate {
     saved: f32,
 }
 
-/// The crowded cells that get a grid of their own within the budget.
+/// The crowded cells that get grids of their own within the budget.
 pub(super) struct DenseCells {
-    /// For every cell, the level of the grid inside; 0 for no grid.
+    /// For every cell, the level of the grid inside it. 0 means no grid.
     levels: Vec<u8>,
 }
 
 impl DenseCells {
-    /// Chooses cells from the lists of sphere indices; the longest lists come first.
+    /// Chooses cells from the lists of sphere indices. The longest lists come first.
     pub(super) fn of(
         cells: &Cells,
         spheres: &[[f32; 4]],
@@ -98,15 +98,14 @@ impl DenseCells {
     }
 }
 
-/// The largest allowed number of list elements inside a cell, for the number that is expected if spheres are spread
-/// evenly.
+/// The largest allowed number of list elements inside a cell, given the number expected if spheres are spread evenly.
 fn max_listed(expected: f32, cells: usize) -> usize {
     let most = (expected * 2.0) as usize + 64;
     most + (BALLS_PER_VECTOR - 1) * cells.min(most)
 }
 
-/// The lists of the grid inside a cell: indices of spheres, in the order of the list from which they are made, which is
-/// that of ids. `None` if the lists are longer than [`max_listed`] allows.
+/// Makes the lists of the grid inside a cell. They hold indices of spheres and keep the order of the cell's list, which
+/// is that of ids. Returns `None` if the lists are longer than [`max_listed`] allows.
 pub(super) fn inner_lists(
     cells: &Cells,
     cell: usize,
@@ -128,8 +127,7 @@ pub(super) fn inner_lists(
     (listed <= most).then_some(lists)
 }
 
-/// The candidate with the level at which a ray costs least, if it is cheaper than the list. The caller fills in `cell`
-/// and `len`.
+/// Finds the level at which a ray costs least, if it is cheaper than the list. The caller fills in `cell` and `len`.
 fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<Candidate> {
     let list_cost = STEP_COST + list.len() as f32;
     let mut least = GAIN * list_cost;
@@ -160,8 +158,8 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
     best
 }
 
-/// The expected number of elements of the lists inside a cell with edge length `size`: of all inner cells that a sphere
-/// overlaps, the fraction that lies in this cell.
+/// The expected number of elements of the lists inside a cell with edge length `size`. Each sphere counts the fraction
+/// of its overlapped inner cells that lie in this cell.
 fn expected_listed(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) -> f32 {
     let of = |shape_index: &u32| {
         let radius = spheres[*shape_index as usize][3];
@@ -176,7 +174,7 @@ pub(super) fn inner_cells(cells: &Cells, cell: usize, level: u8) -> Cells {
     Cells { min: corner(cells, cell), size: cells.size / side as f32, counts: [side; 3] }
 }
 
-/// The corner of a cell with the smallest coordinates.
+/// The corner of a cell that has the smallest coordinates.
 pub(super) fn corner(cells: &Cells, cell: usize) -> Vec3 {
     let [width, height, _] = cells.counts.map(|count| count as usize);
     let coordinates = [cell % width, cell / width % height, cell / (width * height)];

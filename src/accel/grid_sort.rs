@@ -1,8 +1,8 @@
-//! Sorting spheres by cell, and the lists of all cells, on all cores. The results do not depend on the number of cores.
+//! Sorting spheres by cell, and making lists for all cells, on all cores. The number of cores changes no result.
 //!
 //! A counting sort of all spheres at once would write every sphere far from the one before, and wait for memory each
-//! time. Here spheres are first moved into buckets, of so few cells that the spheres of a bucket fit into a processor's
-//! L2 cache, and then sorted bucket by bucket. Both steps keep the order of ids.
+//! time. Here spheres are first moved into buckets. A bucket covers so few cells that its spheres fit into a
+//! processor's L2 cache. Then each bucket is sorted. Both steps keep the order of ids.
 //!
 //! Lists are made slab by slab. A slab is a range of rows of cells. Only one task at a time writes to it, so that counting needs no atomic operations,
 //! which take several times as long. Each sphere is looked at in every slab that it may overlap.
@@ -18,8 +18,8 @@ pub(super) const CHUNK: usize = 1 << 14;
 /// The number of spheres that one task moves into buckets.
 const MOVED: usize = 1 << 17;
 
-/// The number of spheres in a bucket, on average, and the largest number of buckets: a task writes to all of them by
-/// turns, so their ends must fit into a cache.
+/// The average number of spheres in a bucket, and the largest number of buckets. A task writes to all buckets by turns,
+/// so their ends must fit into a cache.
 const IN_BUCKET: usize = 1 << 13;
 const MOST_BUCKETS: usize = 1 << 10;
 
@@ -27,19 +27,19 @@ const MOST_BUCKETS: usize = 1 << 10;
 type Item = ([f32; 4], u32, u32);
 
 /// Sorts spheres with ascending ids by the cells of their centres, block by block, so that spheres that are close in
-/// space are close in memory; within a cell, by id. Returns the spheres and their ids.
+/// space are close in memory. Spheres of one cell are sorted by id. Returns the spheres and their ids.
 pub(super) fn sort_by_cell(
     spheres: Vec<[f32; 4]>,
     ids: &[u32],
     cells: &Cells,
 ) -> (Vec<[f32; 4]>, Vec<u32>) {
     let buckets = spheres.len().div_ceil(IN_BUCKET).clamp(1, MOST_BUCKETS);
-    // The number of cells of a bucket is a power of two.
+    // The number of cells per bucket is a power of two.
     let cells = CellVectors::of(cells);
     let shift = cells.len_in_blocks().div_ceil(buckets).next_power_of_two().trailing_zeros();
     let buckets = (cells.len_in_blocks() >> shift) + 1;
     let (items, ends) = into_buckets(&spheres, ids, &cells, shift, buckets);
-    // The memory of the spheres is used again, because fresh memory is slow to come by.
+    // The memory of the spheres is used again, because allocating fresh memory is slow.
     let (mut sorted, mut sorted_ids) = (spheres, vec![0; ids.len()]);
     let targets = split_mut(&mut sorted, ends.iter().copied());
     let targets = targets.into_iter().zip(split_mut(&mut sorted_ids, ends.iter().copied()));
@@ -72,7 +72,7 @@ fn into_buckets(
         counts
     });
     let mut items: Vec<Item> = vec![([0.0; 4], 0, 0); spheres.len()];
-    // The places of a chunk in each bucket follow those of the chunk before.
+    // The places of a chunk in each bucket follow those of the previous chunk.
     let (mut end, mut ends) = (0, Vec::with_capacity(buckets));
     let mut ends_of_places = Vec::with_capacity(buckets * chunks.len());
     for bucket in 0..buckets {
@@ -92,7 +92,7 @@ fn into_buckets(
         let cells = *cells;
         for (sphere, id) in spheres[chunk.clone()].iter().zip(&ids[chunk]) {
             let cell = cells.index_in_blocks(sphere);
-            // The places were counted by the same function.
+            // The places were counted by the same function, so there is one for each sphere.
             if let Some(place) = targets[cell >> shift].next() {
                 *place = (*sphere, *id, cell as u32);
             }
@@ -101,7 +101,7 @@ fn into_buckets(
     (items, ends)
 }
 
-/// Sorts the spheres of a bucket of consecutive cells by cell: a counting sort.
+/// Sorts the spheres of a bucket of consecutive cells by cell, with a counting sort.
 fn sort_bucket(
     items: &[Item],
     first: usize,
@@ -127,20 +127,20 @@ fn sort_bucket(
     }
 }
 
-/// The number of slabs: several for each core of most machines. In more, more spheres would overlap two of them.
+/// The number of slabs: several for each core of most machines. With more, more spheres would overlap two slabs.
 const SLABS: usize = 32;
 
 /// The number of spheres that one task assigns to slabs.
 const ASSIGNED: usize = 1 << 16;
 
-/// The lists of all cells: indices of spheres in the order of ids.
+/// The lists of all cells. They hold indices of spheres in the order of ids.
 pub(super) struct Lists {
     pub(super) shape_indices: Vec<u32>,
     /// The start of each cell's list, and the end of the last.
     pub(super) starts: Vec<u32>,
 }
 
-/// The spheres that overlap cells, counted for each cell.
+/// The number of spheres that overlap each cell, and the data to list them.
 pub(super) struct Overlaps<'a> {
     cells: Cells,
     spheres: &'a [[f32; 4]],
@@ -150,10 +150,10 @@ pub(super) struct Overlaps<'a> {
     counts: Vec<u32>,
 }
 
-/// A range of rows of cells, and what may overlap it.
+/// A range of rows of cells, and the spheres that may overlap it.
 struct Slab {
     rows: Range<usize>,
-    /// Consecutive spheres that may overlap the slab. Spheres are sorted by cell, so most are in a few long ranges.
+    /// Ranges of spheres that may overlap the slab. Spheres are sorted by cell, so most are in a few long ranges.
     spheres: Vec<Range<u32>>,
 }
 
@@ -171,7 +171,7 @@ impl<'a> Overlaps<'a> {
         all
     }
 
-    /// The number of elements of lists with so many spheres each.
+    /// The number of elements of all lists together.
     pub(super) fn total(&self) -> u64 {
         self.counts.iter().map(|count| elements(*count as usize) as u64).sum()
     }
@@ -207,15 +207,15 @@ impl<'a> Overlaps<'a> {
         Lists { shape_indices, starts }
     }
 
-    /// Fills the lists of a slab: the second half of a counting sort. `starts` has the number of spheres of each cell,
-    /// and becomes the starts of their lists, counted from that of the slab's first.
+    /// Fills the lists of a slab: the second half of a counting sort. On entry, `starts` has the number of spheres of
+    /// each cell. On return, it has the starts of their lists, counted from the start of the slab's first list.
     fn fill_slab(&self, slab: &Slab, ids: &[u32], lists: &mut [u32], starts: &mut [u32]) {
         let mut end = 0;
         for count in starts.iter_mut() {
             end += *count;
             *count = end;
         }
-        // Elements with their ids, by which each list is sorted.
+        // Elements combined with their ids, by which each list is sorted.
         let mut keys = vec![0_u64; lists.len()];
         self.for_each_near(slab, |shape_index, cell| {
             let end = &mut starts[cell];
@@ -223,7 +223,7 @@ impl<'a> Overlaps<'a> {
             let id = u64::from(ids[shape_index as usize]);
             keys[*end as usize] = id << 32 | u64::from(shape_index);
         });
-        // The ends have been counted down, so they are starts now. The lists are sorted from the last to the first.
+        // The ends have been counted down and are starts now. The lists are sorted from the last to the first.
         let mut end = lists.len();
         for start in starts.iter().rev() {
             keys[*start as usize..end].sort_unstable();
@@ -235,7 +235,7 @@ impl<'a> Overlaps<'a> {
         }
     }
 
-    /// Calls `f` with every sphere and every cell of the slab that it overlaps, counted from the slab's first.
+    /// Calls `f` with every sphere and every cell of the slab that it overlaps. Cells count from the slab's first.
     fn for_each_near(&self, slab: &Slab, mut f: impl FnMut(u32, usize)) {
         let Self { cells, spheres, margin, octets, .. } = self;
         let strides = Strides::of(cells);
@@ -261,18 +261,18 @@ impl<'a> Overlaps<'a> {
 }
 
 impl Slab {
-    /// The first cell.
+    /// The index of the first cell.
     fn start(&self, cells: &Cells) -> usize {
         self.rows.start * cells.counts[0] as usize
     }
 
-    /// The cell after the last.
+    /// The index of the cell after the last.
     fn end(&self, cells: &Cells) -> usize {
         self.rows.end * cells.counts[0] as usize
     }
 }
 
-/// Divides the rows of cells into slabs, and assigns the spheres.
+/// Divides the rows of cells into slabs, and assigns the spheres to them.
 fn assign(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> (Vec<Octet>, Vec<Slab>) {
     let rows = ranges(cells.rows(), cells.rows().div_ceil(SLABS));
     let rows_of_slab = rows.first().map_or(1, Range::len);
@@ -298,7 +298,7 @@ fn assign(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> (Vec<Octet>, Vec<
                 });
                 continue;
             }
-            // Most spheres are in the slab of the one before.
+            // Most spheres are in the same slab as the previous one.
             let first = octet.first();
             if !(here * cells_of_slab..(here + 1) * cells_of_slab).contains(&first) {
                 here = first / cells_of_slab;

@@ -1,6 +1,6 @@
-//! A walk of a grid in f64, which leaves the test of spheres to the caller.
+//! A walk of a grid in f64. The caller tests the spheres.
 //!
-//! # Why it leaves out no sphere
+//! # Why it misses no sphere
 //! The terms are those of `wide_tree_visit.rs`: if `intersect` of `src/cpu/sphere.rs` accepts the distance t, the point
 //! of the ray at t, or one before it, is within w of the sphere's surface, where w = (128 u + 8 β) D bounds all errors of
 //! that test and of the walk: the test computes a point of the surface, or the quotient of its third case, which is no
@@ -8,28 +8,28 @@
 //! accepts only rays for which twice w is at most a quarter of the grid's margin, which is more than 2⁻¹⁹ of the longest
 //! side of all cells ([`LEAST_MARGIN`]): 2⁻¹⁷ of the scene's diagonal, and cells reach less than twice as far. So:
 //!
-//! 1. *Cells.* The walk enters every cell that the ray crosses, up to a rounding of less than 8 u D. The sphere is listed in
-//!    the cell of that point and in all cells within its margin, because lists hold all spheres whose surfaces come within
-//!    the margin of the cell. A ray along the plane between two cells may be on the far side of it by rounding; as no cell is left
-//!    before it is entered, such a ray goes to the next cell at once.
-//! 2. *Balls.* The budget of `ball.rs` is the same but for the ray's position in the cell, its direction and the length of
-//!    its part, which are computed in f64 and rounded to f32: each of the roundings moves the part by less than 2⁻²⁴ of two
-//!    cells' sides, together less than 2⁻²¹ of a side, a quarter of the margin.
-//! 3. *The end.* A walk ends behind a cell that the ray leaves at or after the limit. Spheres that the ray hits at the limit
-//!    are in the lists of the cell in which the limit lies.
+//! 1. *Cells.* The walk enters every cell that the ray crosses, up to a rounding of less than 8 u D. The sphere is
+//!    listed in the cell of that point and in all cells within its margin, because lists hold all spheres whose
+//!    surfaces come within the margin of the cell. A ray along the plane between two cells may be on the far side of it
+//!    by rounding. Since no cell is left before it is entered, such a ray goes to the next cell at once.
+//! 2. *Balls.* The budget of `ball.rs` is the same, except for the ray's position in the cell, its direction and the
+//!    length of its part, which are computed in f64 and rounded to f32. Each rounding moves the part by less than 2⁻²⁴
+//!    of two cells' sides, together less than 2⁻²¹ of a side, a quarter of the margin.
+//! 3. *The end.* A walk ends after a cell that the ray leaves at or after the limit. Spheres that the ray hits at the
+//!    limit are in the lists of the cell that contains the limit.
 
 use glam::{DVec3, Vec3};
 
 use super::ball::{BALLS_PER_VECTOR, PartInCell};
 use super::grid::{Grid, LAST, word};
 
-/// The margin of every grid, as a part of its longest side, is at least this.
+/// The margin of every grid is at least this fraction of its longest side.
 const LEAST_MARGIN: f64 = 1.0 / (1 << 19) as f64;
 
-/// The smallest magnitude of a direction's component; smaller ones are replaced by it, as in `wide_tree_visit.rs`.
+/// The smallest magnitude of a direction's component. Smaller ones are replaced by it, as in `wide_tree_visit.rs`.
 const SMALLEST: f64 = 1e-18;
 
-/// A ray prepared for a grid, in units of the grid's cells for positions.
+/// A ray prepared for a grid. Positions are in units of the grid's cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridRay {
     /// The distance to plane p of an axis is base + p · delta.
@@ -43,7 +43,7 @@ pub(crate) struct GridRay {
 }
 
 impl Grid {
-    /// Prepares a ray. `None` if it starts so far away that rounding errors are not small beside the margin.
+    /// Prepares a ray. Returns `None` if it starts so far away that rounding errors are not small beside the margin.
     pub(crate) fn ray(&self, origin: DVec3, direction: DVec3) -> Option<GridRay> {
         let (min, size) = (self.min.as_dvec3(), f64::from(self.cell_size));
         let extent = DVec3::from(self.cell_counts.map(f64::from)) * size;
@@ -65,9 +65,9 @@ impl Grid {
         })
     }
 
-    /// Calls `offer` with every sphere for which `intersect` in f64 finds a distance of at most `limit`, by its place in
-    /// the order that the grid refers to. The return value of `offer` is the new limit, below zero to end the walk. Some
-    /// spheres are offered several times.
+    /// Calls `offer` with every sphere for which `intersect` in f64 finds a distance of at most `limit`. The sphere is
+    /// given by its place in the order that the grid's references use. `offer` returns the new limit, or a negative
+    /// number to end the walk. Some spheres are offered several times.
     #[inline]
     pub(crate) fn visit(&self, ray: &GridRay, mut limit: f64, mut offer: impl FnMut(usize) -> f64) {
         let GridRay { base, delta, start, speed, .. } = *ray;
@@ -124,7 +124,7 @@ impl Grid {
         }
     }
 
-    /// The same in the grid inside a cell, which the ray crosses between two distances.
+    /// Does the same in the grid inside a cell, which the ray crosses between the two distances `t` and `t_leave`.
     #[inline]
     fn visit_inner(
         &self,
@@ -164,7 +164,7 @@ impl Grid {
         PartInCell::new(from.as_vec3(), ray.direction, (length * ray.per_cell * side) as f32)
     }
 
-    /// Offers the spheres of a list whose balls are met.
+    /// Offers the spheres of a list whose balls the ray meets.
     #[inline]
     fn offer_list(
         &self,

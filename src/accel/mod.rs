@@ -1,8 +1,8 @@
-//! Acceleration structures: built from spheres in the scene's frame, and stored as plain data.
+//! Acceleration structures, built from the spheres in the scene's frame and stored as plain data.
 //!
-//! The kernels in `shaders/` walk this data in f32, with a sphere test that gives every structure the answer of testing
-//! all spheres, distance and id, to the bit. On the CPU, `grid_visit` and `wide_tree_visit` walk it in f64 for callers
-//! that bring their own test.
+//! The kernels in `shaders/` walk this data in f32. Their sphere test gives every structure the same answer as testing
+//! all spheres: the same distance and id, to the bit. On the CPU, `grid_visit` and `wide_tree_visit` walk it in f64,
+//! and the caller supplies the sphere test.
 
 pub(crate) mod ball;
 mod bricks;

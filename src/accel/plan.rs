@@ -1,4 +1,4 @@
-//! Plans: which structure is built, why, and how large it may become. Plans are made before anything is allocated.
+//! Plans: which structure is built, why, and how large it can become. Plans are made before anything is allocated.
 
 use glam::Vec3;
 
@@ -8,26 +8,26 @@ use super::statistics::{Crowd, SceneStatistics};
 use super::structure::{AccelChoice, Structure};
 use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WideNode};
 
-/// The number of spheres up to which no structure is worth its cost.
+/// Up to this number of spheres, no structure is worth its cost.
 const FEW: usize = 32;
 
-/// The number of spheres, in a cube of about the smallest cell of a nested grid, above which a tree is better.
+/// Above this number of spheres in a cube of about the smallest cell of a nested grid, a tree is better.
 const MAX_IN_A_CUBE: f32 = 256.0;
 
-/// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
-/// in Mesa 22.3 silently leaves a loop.
+/// The number of spheres that one dispatch tests without a structure. It is below the 65,535 iterations after which
+/// lavapipe in Mesa 22.3 silently leaves a loop.
 pub(crate) const LIST_LEN: usize = 3 << 14;
 
-/// The largest binding on most devices; larger lists could not be indexed with 30 bits.
+/// The largest binding on most devices. Larger lists could not be indexed with 30 bits.
 const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
-/// The bytes of a box for ray queries.
+/// The size of a box for ray queries, in bytes.
 const BOX_BYTES: usize = size_of::<[f32; 6]>();
 
 /// The planned size of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedBuffer {
-    /// What the buffer holds.
+    /// The content of the buffer.
     pub name: &'static str,
     /// The largest number of bytes, in all bricks together.
     pub bytes: u64,
@@ -48,7 +48,7 @@ impl PlannedBuffer {
 pub struct AccelPlan {
     /// The statistics on which the decision is based.
     pub statistics: SceneStatistics,
-    /// The spheres that are not outliers, if there are outliers.
+    /// The crowd, which is all spheres that are not outliers. `None` if there are no outliers.
     pub crowd: Option<Crowd>,
     /// The structure that will be built.
     pub structure: Structure,
@@ -72,8 +72,8 @@ impl AccelPlan {
         Self::decided(spheres, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice))
     }
 
-    /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels, and
-    /// a scene without spheres always has a list.
+    /// Makes a plan for the given structure, whatever it costs, for example to measure it. A grid may be built with two
+    /// levels. A scene without spheres always has a list.
     #[must_use]
     pub fn of(spheres: &[[f32; 4]], structure: Structure, binding_bytes: u64) -> Self {
         let structure = match structure {
@@ -96,7 +96,7 @@ impl AccelPlan {
         let count = statistics.count;
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
-        // Where bricks are not all of the same size, this takes one more brick at most.
+        // If bricks differ in size, this takes one more brick at most.
         while most_in_brick(structure, count, brick_count) > most_per_brick {
             brick_count += 1;
         }
@@ -109,15 +109,15 @@ impl AccelPlan {
         plan
     }
 
-    /// The same plan with another margin of the boxes for ray queries, as a multiple of [`SceneStatistics::margin`]. With
-    /// less than 1 spheres may be missed: to measure when a driver begins to.
+    /// The same plan with another margin of the boxes for ray queries, as a multiple of [`SceneStatistics::margin`].
+    /// Below 1, spheres may be missed. Use it to measure when a driver begins to miss some.
     #[must_use]
     pub fn with_box_margin(self, box_margin: f32) -> Self {
         Self { box_margin, ..self }
     }
 
-    /// The same plan for spheres that are a part of a scene with this box, in its frame: rays start in that box, and the
-    /// margin is that of the whole scene.
+    /// The same plan for spheres that are a part of a scene with the given box, in the scene's frame. Rays start in
+    /// that box, and the margin is that of the whole scene.
     #[must_use]
     pub fn within(mut self, (min, max): (Vec3, Vec3)) -> Self {
         // The margin of a crowd is for rays that start in the box of these spheres.
@@ -138,8 +138,8 @@ impl AccelPlan {
     }
 
     /// The largest number of bytes of host memory that [`AccelPlan::bricks`] needs, in addition to the scene itself, if
-    /// each brick is dropped before the next is built. `left` is the number of bytes that something else keeps of a
-    /// brick that was dropped, for example a software device, and `copying` of the brick that was built last.
+    /// each brick is dropped before the next is built. `left` is the number of bytes that something else, for example a
+    /// software device, keeps of each dropped brick. `copying` is the same for the brick built last.
     #[cfg(feature = "gpu")]
     #[must_use]
     pub(crate) fn host_bytes_by_brick(&self, left: u64, copying: u64) -> u64 {
@@ -148,7 +148,7 @@ impl AccelPlan {
         let one = brick + self.building_bytes().max(copying);
         // The ids of bricks that have not been built.
         let ids = |left: u64| if bricks > 1 { 4 * self.per_brick() * left } else { 0 };
-        // Each brick adds as much as the one before, so that either the first or the last needs the most.
+        // Each brick adds the same amount, so either the first or the last needs the most.
         let first = ids(bricks - 1) + one;
         let last = one + (bricks - 1) * left;
         self.dividing_bytes().max(first).max(last)
@@ -158,8 +158,8 @@ impl AccelPlan {
         most_in_brick(self.structure, self.statistics.count, self.brick_count) as u64
     }
 
-    /// The number of bytes that dividing the spheres takes: their ids, and while they are cut in two, two copies of
-    /// them, of which one is in growing vectors.
+    /// The number of bytes needed to divide the spheres: their ids, and during a cut two more copies of the ids, one of
+    /// them in growing vectors.
     fn dividing_bytes(&self) -> u64 {
         let ids = 4 * self.statistics.count as u64;
         match self.structure {
@@ -175,10 +175,10 @@ impl AccelPlan {
         match self.structure {
             Structure::List => 0,
             Structure::RayQuery => per_brick * 44,
-            // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
+            // The spheres of a brick, their ids twice, and the builder's data for each sphere. Growing vectors leave
             // some memory unused.
             Structure::WideTree => per_brick * 72,
-            // Sorted spheres with their ids; lists of indices, twice, and of balls.
+            // Sorted spheres with their ids, lists of indices twice, and lists of balls.
             Structure::Grid | Structure::NestedGrid => {
                 per_brick * 24 + 12 * self.budget.listed as u64
             }
@@ -197,7 +197,7 @@ impl AccelPlan {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
             }
-            // What the driver builds from the boxes is known to it alone.
+            // Only the driver knows the size of what it builds from the boxes.
             Structure::RayQuery => {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("boxes", BOX_BYTES as u64 * per_brick));
@@ -218,7 +218,7 @@ impl AccelPlan {
     }
 }
 
-/// The structure for a choice, and why.
+/// Decides which structure to build, and says why.
 fn decide(
     statistics: &SceneStatistics,
     crowd: Option<&Crowd>,
@@ -256,9 +256,9 @@ fn decide(
 }
 
 fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBudget {
-    // In u64, because these products exceed the 32 bits of a browser's addresses.
+    // Uses u64, because these products exceed the 32 bits of a browser's addresses.
     let count = count as u64;
-    // Small scenes may have more cells and list elements for each sphere, because the total is small.
+    // Small scenes may have more cells and list elements per sphere, because the total is small.
     if structure != Structure::Grid {
         return GridBudget { listed: 0, cells: 0 };
     }
@@ -280,7 +280,7 @@ fn node_bytes(structure: Structure, count: u64) -> u64 {
     per_sphere as u64 * count + root as u64
 }
 
-/// The largest number of spheres in one of several bricks.
+/// The largest number of spheres in one of `bricks` bricks.
 fn most_in_brick(structure: Structure, count: usize, bricks: usize) -> usize {
     match structure {
         Structure::List => count.div_ceil(bricks),
@@ -300,7 +300,7 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
         };
         let grid = (4 * words).max(16 * count as u64);
         let bytes = grid.max(node_bytes(structure, count as u64));
-        // A grid with fewer cells than suit its spheres has longer lists, which cost more than another brick.
+        // A grid with too few cells for its spheres has longer lists, which cost more than another brick.
         bytes <= binding_bytes && budget.cells <= MAX_FIRST_LEVEL
     };
     if structure == Structure::List {
@@ -319,7 +319,7 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
 mod tests {
     use super::*;
 
-    /// However much a binding holds, bricks are only as large as suits the number of cells of a grid.
+    /// Bricks are only as large as suits the number of cells of a grid, whatever a binding holds.
     #[test]
     fn the_largest_grids_have_as_many_cells_as_suit_them() {
         for mebibytes in [128, 1024, 2048] {
@@ -329,7 +329,7 @@ mod tests {
         }
     }
 
-    /// Streaming needs less memory than building all, and no more than all of it for a single brick.
+    /// Building one brick at a time needs less memory than building all, and no more for a single brick.
     #[cfg(feature = "gpu")]
     #[test]
     fn one_brick_at_a_time_needs_less_memory() {
@@ -339,7 +339,7 @@ mod tests {
         assert_eq!(one.host_bytes_by_brick(0, 0), one.host_bytes());
         assert!(several.brick_count >= 10);
         assert!(several.host_bytes_by_brick(0, 0) < several.host_bytes() / 2);
-        // A software device keeps what was copied.
+        // A software device keeps the copied data.
         let brick = several.device_bytes() / several.brick_count as u64;
         assert!(several.host_bytes_by_brick(brick, 0) > several.device_bytes());
     }

@@ -1,14 +1,14 @@
-//! Why no box test loses a sphere, and the constants that this needs. The WGSL twin is `shaders/accel/slab.wgsl`.
+//! Why no box test misses a hit sphere, and the constants of the proof. The WGSL twin is `shaders/accel/slab.wgsl`.
 //!
 //! # The margin
 //! The result of a tree must equal that of testing every sphere, to the bit, although both the sphere test and the box
-//! test have rounding errors. Boxes are therefore those of spheres inflated by a margin m, which the host sets to 2⁻¹⁷
-//! D, where D is the diagonal of the scene's box and every ray starts in that box. In units of u = 2⁻²⁴ D, m is 128. A
-//! device may do what WGSL allows (`src/verify/rounding.rs`): either neighbour is a result, which is off by 2 u if it is a
-//! length of D, a quotient is off by 7 u and a root by 10 u; products and sums may be fused, and sums taken in any order.
-//! Let L be the vector from the ray's origin o to the centre, and r the radius; |L| + r ≤ D, because the sphere is in the
-//! box. Let the direction d be of length 1 + ε; |ε| ≤ 11 · 2⁻²³ (half of three roundings of its square; a root, a
-//! reciprocal and a product). Squares of errors are left out; all of them together are less than 1 u.
+//! test have rounding errors. So boxes are made for spheres inflated by a margin m. The host sets m to 2⁻¹⁷ D. Here D
+//! is the diagonal of the scene's box, and every ray starts in that box. In units of u = 2⁻²⁴ D, m is 128. A device may
+//! do what WGSL allows (`src/verify/rounding.rs`): a result is either neighbour of the exact value, off by 2 u for a
+//! length of D; a quotient is off by 7 u and a root by 10 u; products and sums may be fused, and sums taken in any
+//! order. Let L be the vector from the ray's origin o to the centre, and r the radius; |L| + r ≤ D, because the sphere
+//! is in the box. Let the direction d be of length 1 + ε; |ε| ≤ 11 · 2⁻²³ (half of three roundings of its square; a
+//! root, a reciprocal and a product). Squares of errors are left out; all of them together are less than 1 u.
 //!
 //! 1. *A ray that hits according to the test comes within r + 9 u of the centre.* Rounding L, b d and their difference
 //!    moves the foot vector f by 2 u and 3 u. The errors of b and ε move it along the ray, across f, so that |f| only
@@ -39,19 +39,19 @@
 //! finds 22 u.
 //!
 //! # Smaller margins
-//! In an 8-wide tree of a scene with outliers (`statistics.rs`), spheres inside the box of the crowd have the margin of that
-//! box, 2⁻¹⁷ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens all boxes
-//! by w = 2⁻¹⁷ F − 2⁻¹⁷ D', if that is more than 0. For such a sphere, |L| + r ≤ F or r ≤ D'/2, so that 1 and 2 hold with
-//! the larger of F and D' instead of D; what boxes are wider is at least 128 u of it. In 3, a plane is moved by 17 u of
-//! that length, 2 u more for the sum with w, and by the errors that grow with the node. The node's grid starts up to its
-//! side W outside of the crowd's box, its planes are less than 1.01 W from there and up to 1.01 W outside of the box. So
-//! three roundings of W, two of 1.01 W, and one and the reciprocal of 1.01 W add less than 20 · 2⁻²⁴ W. Children's boxes
-//! are wider by [`NODE_PART`] W, which is more. Other spheres have the scene's margin, and all boxes around them contain
-//! it.
+//! In an 8-wide tree of a scene with outliers (`statistics.rs`), spheres inside the box of the crowd have the margin of
+//! that box, 2⁻¹⁷ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens
+//! all boxes by w = 2⁻¹⁷ F − 2⁻¹⁷ D', if that is more than 0. For such a sphere, |L| + r ≤ F or r ≤ D'/2, so that 1 and
+//! 2 hold with the larger of F and D' instead of D; the extra width of boxes is at least 128 u of it. In 3, a plane is
+//! moved by 17 u of that length, 2 u more for the sum with w, and by the errors that grow with the node. The node's
+//! grid starts up to its side W outside of the crowd's box, its planes are less than 1.01 W from there and up to 1.01 W
+//! outside of the box. So three roundings of W, two of 1.01 W, and one and the reciprocal of 1.01 W add less than 20 ·
+//! 2⁻²⁴ W. Children's boxes are wider by [`NODE_PART`] W, which is more. Other spheres have the scene's margin, and all
+//! boxes around them contain it.
 
-/// The smallest magnitude of a direction's component in box tests; smaller components are replaced by it, with their
+/// The smallest magnitude of a direction's component in box tests. Smaller components are replaced by it, with their
 /// sign. WGSL has no infinities, and with lengths up to 2⁵⁹ the distance to a plane stays below 2¹⁰⁰.
 pub const SMALLEST_COMPONENT: f32 = 1.0 / (1_u64 << 40) as f32;
 
-/// By how much the box of a child is wider than what it contains, as a part of each side of its node's grid.
+/// Extra width of a child's box on each side, as a fraction of that side of its node's grid.
 pub(super) const NODE_PART: f64 = 1.0 / (1 << 19) as f64;

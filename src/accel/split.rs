@@ -1,13 +1,13 @@
 //! Splitting a set of spheres in two at the lowest expected cost of rays.
 //!
 //! The method is the surface area heuristic with bins of Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies" (2007), along the longest axis of the centres only. If it finds no split, as among coincident centres,
-//! and wherever a tree must not become deeper, the set is split in half by number.
+//! Hierarchies" (2007), along the longest axis of the centres only. The set is split in half by number if this finds no
+//! split, as among coincident centres, and wherever a tree must not become deeper.
 use glam::{Vec3, Vec3A};
 
 use super::statistics::Margins;
 
-/// A box in the scene's frame, in f32; [`Extent::EMPTY`] contains nothing.
+/// A box in the scene's frame, in f32. [`Extent::EMPTY`] contains nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub(super) low: Vec3A,
@@ -40,7 +40,7 @@ impl Extent {
         size.x * size.y + size.y * size.z + size.z * size.x
     }
 
-    /// The axis, 0 to 2, along which the box is longest; the first axis if several are equal.
+    /// The axis, 0 to 2, along which the box is longest. If several are equal, the first of them.
     #[inline]
     pub(super) fn longest_axis(self) -> usize {
         let size = self.high - self.low;
@@ -54,7 +54,7 @@ impl Extent {
     }
 }
 
-/// A sphere while a tree is built, with the data needed for sorting and for bounding boxes.
+/// A sphere during the building of a tree, with the data needed for sorting and for bounding boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) center: [f32; 3],
@@ -90,7 +90,7 @@ impl Item {
         Extent { low: center - reach, high: center + reach }
     }
 
-    /// The bounding box of the items, and that of their centres.
+    /// The bounding box of the items, and the bounding box of their centres.
     pub(super) fn extents(items: &[Self]) -> (Extent, Extent) {
         items.iter().fold((Extent::EMPTY, Extent::EMPTY), |(boxes, centers), item| {
             (boxes.union(item.extent()), centers.with_point(item.center()))
@@ -110,7 +110,7 @@ impl Item {
 
 const BINS: usize = 16;
 
-/// A set of spheres, the bounding box of these, and that of their centres.
+/// A set of spheres, their bounding box, and the bounding box of their centres.
 #[derive(Debug)]
 pub(super) struct Cluster<'a> {
     pub(super) items: &'a mut [Item],
@@ -141,7 +141,7 @@ impl<'a> Cluster<'a> {
         let axis = self.centers.longest_axis();
         let low = self.centers.low[axis];
         let scale = BINS as f32 / (self.centers.high[axis] - low);
-        // The conversion saturates, and turns NaN into 0.
+        // The conversion saturates and turns NaN into 0.
         let bin_of = |item: &Item| (((item.center[axis] - low) * scale) as usize).min(BINS - 1);
         let mut bins = [Bin::EMPTY; BINS];
         for item in self.items.iter() {
@@ -184,7 +184,7 @@ impl Bin {
     }
 }
 
-/// The first bin after the cheapest split, and the union of the bins before and after it; `None` if all spheres are in
+/// The first bin after the cheapest split, and the unions of the bins before and after it. `None` if all spheres are in
 /// one bin, or every cost overflows.
 fn cheapest_cut(bins: &[Bin; BINS]) -> Option<(usize, Bin, Bin)> {
     let mut after = [Bin::EMPTY; BINS + 1];

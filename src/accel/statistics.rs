@@ -1,10 +1,10 @@
-//! Statistics of a scene's spheres, from one pass over them, and outliers: a few spheres far away from all others, the
-//! crowd.
+//! Statistics of a scene's spheres, from one pass over them, and outliers. Outliers are a few spheres far away from all
+//! others, which form the crowd.
 //!
-//! Outliers make the box of a scene large, and its margin with it: 2⁻¹⁷ of the diagonal is 8 % of a crowd beside which a
-//! sphere lies ten thousand times as far away. Rays that start near the crowd do not need so much for its spheres,
-//! because errors grow with the distance from a ray's origin to a centre (`slab.rs`). So a tree takes as margin of the
-//! crowd's spheres that of the crowd's box, and widens its boxes for rays that start farther away (`widening` in `shaders/accel/wide_tree.wgsl`).
+//! Outliers enlarge a scene's box and its margin. If a sphere is ten thousand times as far away as the crowd is large,
+//! 2⁻¹⁷ of the diagonal is 8 % of the crowd. Rays that start near the crowd need less for its spheres, because errors
+//! grow with the distance from a ray's origin to a centre (`slab.rs`). So a tree gives the crowd's spheres the margin
+//! of the crowd's box, and widens boxes for rays from farther away (`widening` in `shaders/accel/wide_tree.wgsl`).
 use glam::Vec3;
 
 use crate::parallel::map_chunks;
@@ -16,7 +16,7 @@ pub struct SceneStatistics {
     pub count: usize,
     /// The corner of the spheres' bounding box with the smallest coordinates, in the scene's frame.
     pub min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner of the bounding box with the largest coordinates, in the scene's frame.
     pub max: Vec3,
     /// The smallest radius.
     pub radius_min: f32,
@@ -25,7 +25,7 @@ pub struct SceneStatistics {
     /// The mean radius.
     pub radius_mean: f32,
     /// The estimated number of different spheres whose centres lie in the densest cube, if the box is divided into
-    /// equal cubes, 4096 along the longest side. Estimated from a sample; 0 if the sample is too small for an estimate.
+    /// equal cubes, 4096 along the longest side. 0 if the sample is too small for an estimate.
     pub densest: f32,
 }
 
@@ -56,8 +56,8 @@ impl SceneStatistics {
         Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, densest }
     }
 
-    /// More than the largest error of the f32 arithmetic of a ray that starts in the box, as a distance from a sphere's
-    /// surface, on any device that rounds as WGSL allows: 2⁻¹⁷ of the box's diagonal. `slab.rs` adds up the errors.
+    /// An upper bound of the rounding errors of a ray that starts in the box, as a distance from a sphere's surface, on
+    /// any device that rounds as WGSL allows. It is 2⁻¹⁷ of the box's diagonal. `slab.rs` adds up the errors.
     #[must_use]
     pub fn margin(&self) -> f32 {
         margin_of(self.min, self.max)
@@ -70,18 +70,18 @@ impl SceneStatistics {
     }
 }
 
-/// The margin as a part of a diagonal.
+/// The margin as a fraction of the diagonal.
 const MARGIN_PART: f32 = 1.0 / (1 << 17) as f32;
 
-/// The margin of a scene with this box, as [`SceneStatistics::margin`] explains it.
+/// The margin of a scene with the given box, as [`SceneStatistics::margin`] explains.
 pub(crate) fn margin_of(min: Vec3, max: Vec3) -> f32 {
     let diagonal = (max - min).length();
-    // Coordinates have a rounding error before any arithmetic.
+    // Coordinates are rounded before any arithmetic.
     let farthest = min.abs().max(max.abs()).max_element();
     (diagonal * MARGIN_PART).max(farthest * (1.0 / (1 << 22) as f32))
 }
 
-/// Estimates [`SceneStatistics::densest`] from a sample, of which several spheres must be in one cube.
+/// Estimates [`SceneStatistics::densest`] from a sample. Several sampled spheres must be in one cube.
 fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
     const SAMPLES: usize = 1 << 16;
     const SEVERAL: usize = 8;
@@ -98,44 +98,44 @@ fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
         })
         .collect();
     sample.sort_unstable();
-    // A list keeps only one of several equal spheres.
+    // A list keeps only one of several equal spheres, so duplicates do not count.
     sample.dedup();
     let most = sample.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).max().unwrap_or(0);
     if most < SEVERAL { 0.0 } else { (most * stride) as f32 }
 }
 
-/// At most one sphere in so many is an outlier, and at most [`MOST`] in all.
+/// The number of spheres per outlier is at least `ONE_IN`, and there are at most [`MOST`] outliers.
 const ONE_IN: usize = 1000;
 const MOST: usize = 4096;
 
-/// The diagonal of the scene's box is at least so many times that of the crowd's.
+/// The diagonal of the scene's box is at least this many times that of the crowd's box.
 const SEVERAL_TIMES: f32 = 8.0;
 
-/// The number of margins in a side of the smallest cell that is worth its lists.
+/// The number of margins along a side of the smallest cell that is worth its lists.
 const CELL_MARGINS: f32 = 8.0;
 
-/// The number of spheres in the sample from which the place of the crowd is estimated.
+/// The size of the sample from which the place of the crowd is estimated.
 const SAMPLES: usize = 1 << 14;
 
-/// One in so many spheres of the sample is left out at each end of each axis: more than there are outliers.
+/// At each end of each axis, one in this many sampled spheres is left out: more than there are outliers.
 const LEFT_OUT: usize = 100;
 
-/// By how many of its longest sides the box of the others in the sample is widened on each side.
+/// The box of the remaining sampled spheres is widened on each side by this many of its longest sides.
 const SIDES: f32 = 2.0;
 
-/// All spheres of a scene but a few outliers.
+/// All spheres of a scene except a few outliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crowd {
     /// The number of spheres that are not in the crowd.
     pub outliers: usize,
     /// The corner of the box of the crowd's spheres with the smallest coordinates, in the scene's frame.
     pub min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner of that box with the largest coordinates.
     pub max: Vec3,
 }
 
 impl Crowd {
-    /// The crowd in a scene that has outliers.
+    /// Finds the crowd in a scene. `None` if there are no outliers.
     pub(super) fn find(spheres: &[[f32; 4]], statistics: &SceneStatistics) -> Option<Self> {
         let most = (spheres.len() / ONE_IN).min(MOST);
         if most == 0 {
@@ -166,10 +166,10 @@ impl Crowd {
         ((1..=most).contains(&crowd.outliers) && is_small).then_some(crowd)
     }
 
-    /// Whether the scene's margin, which a grid has for all spheres, is not small beside the distance between neighbours in
-    /// the crowd.
+    /// Whether the scene's margin, which a grid uses for all spheres, is too large beside the distance between
+    /// neighbours in the crowd.
     pub(super) fn is_lost_in_margin(&self, statistics: &SceneStatistics) -> bool {
-        // About the distance between neighbours, and as large as a cell.
+        // About the distance between neighbours, which is also about the size of a cell.
         let spacing = (self.max - self.min).max_element() / (statistics.count as f32).cbrt();
         statistics.margin() * CELL_MARGINS > spacing
     }
@@ -191,7 +191,7 @@ fn corners(&[x, y, z, radius]: &[f32; 4]) -> (Vec3, Vec3) {
     (center - radius, center + radius)
 }
 
-/// The box of most spheres of a sample, widened by several times its size.
+/// The box of most spheres of a sample, widened on each side by several times its size.
 fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
     let stride = spheres.len().div_ceil(SAMPLES).max(1);
     let sample: Vec<(Vec3, Vec3)> = spheres.iter().step_by(stride).map(corners).collect();
@@ -218,7 +218,7 @@ fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
 /// The margin of each sphere of a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Margins {
-    /// The margin of spheres that are not in the crowd.
+    /// The margin of spheres that are not in the crowd's box.
     pub(super) all: f32,
     pub(crate) crowd: Option<Crowd>,
 }
@@ -251,7 +251,7 @@ mod tests {
         (0..count).map(|_| [rng.f32(), rng.f32(), rng.f32(), 0.01]).collect()
     }
 
-    /// Far away in one axis or in all, first or last, alike or not.
+    /// Outliers are far away along one axis or all, the first or the last spheres, alike or not.
     #[test]
     fn few_spheres_far_away_are_outliers() {
         let inside = crowd(20_000);
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(found(&[[0.0, 0.0, 0.0, 1.0], [1e4, 0.0, 0.0, 1.0]]), None);
     }
 
-    /// Around a crowd at one place, which has the size of a sphere; and a sphere around the crowd.
+    /// A crowd of equal spheres has the size of one sphere. A large sphere around it is an outlier, too.
     #[test]
     fn equal_spheres_and_large_ones() {
         let equal = vec![[3.0, 2.0, 1.0, 0.5]; 2_000];

@@ -15,8 +15,8 @@ pub enum AccelChoice {
     Tree,
     /// No structure: every sphere is tested. Slow; serves as the reference for the others.
     List,
-    /// What the driver builds from boxes and searches by ray queries, in hardware or not: an experiment, for devices that
-    /// have them and are opened for it.
+    /// A structure that the driver builds from boxes and searches by ray queries, in hardware or not. This is an
+    /// experiment for devices that support ray queries and are opened with them.
     RayQuery,
 }
 
@@ -44,22 +44,22 @@ pub enum Structure {
     NestedGrid,
     /// A compressed tree with eight children for each node.
     WideTree,
-    /// A structure that the driver builds from boxes, and searches by ray queries; not all devices have these.
+    /// A structure that the driver builds from boxes and searches by ray queries, which not all devices support.
     RayQuery,
 }
 
 impl Structure {
-    /// All structures for which there are kernels; the last needs more than any device has.
+    /// All structures for which there are kernels. The last one needs ray queries, which not all devices support.
     pub(crate) const WITH_KERNELS: &'static [Self] =
         &[Self::List, Self::Grid, Self::NestedGrid, Self::WideTree, Self::RayQuery];
 
-    /// All structures that any device can search: not [`Structure::RayQuery`]. [`AccelChoice::Auto`] chooses among them.
+    /// All structures that any device can search, without [`Structure::RayQuery`]. [`AccelChoice::Auto`] chooses one.
     pub const ALL: &'static [Self] = match Self::WITH_KERNELS {
         [any @ .., Self::RayQuery] => any,
         all => all,
     };
 
-    /// The same structure, with nested grids if it is a grid and `is_nested`.
+    /// The same structure, but with nested grids if it is a grid and `is_nested` is true.
     pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
         match self {
             Self::Grid if is_nested => Self::NestedGrid,
@@ -67,7 +67,7 @@ impl Structure {
         }
     }
 
-    /// The choice of a user that leads to this structure.
+    /// The user's choice that leads to this structure.
     #[must_use]
     pub const fn choice(self) -> AccelChoice {
         match self {
@@ -91,7 +91,7 @@ impl Structure {
     }
 
     /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
-    /// spheres; `None` for the list, which always terminates.
+    /// spheres. `None` for the list, which always terminates.
     #[must_use]
     pub const fn instead(self) -> Option<AccelChoice> {
         match self {
@@ -103,7 +103,7 @@ impl Structure {
     }
 }
 
-/// The kind of shapes in a brick. All shapes of a brick have the same kind, so that each kernel handles a single kind.
+/// The kind of shapes in a brick. All shapes of a brick have the same kind, so each kernel handles a single kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Primitive {

@@ -1,8 +1,8 @@
 //! The compressed 8-wide tree, which needs few bytes per sphere and few nodes per ray.
 //!
 //! The format follows Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
-//! BVHs" (2017): the boxes of up to eight children on a grid of 256³ cells over the node, and the children in slots
-//! that tell in which octant of the node they lie, so that one table of bits orders them for every direction.
+//! BVHs" (2017). The boxes of up to eight children are stored on a grid of 256³ cells over the node. A child's slot
+//! tells in which octant of the node it lies, so that one table of bits orders the children for every direction.
 //! Differences: the count of a leaf is a number, not unary; hits remain in slots until they are ordered at once; and an
 //! inner child needs no byte of its own.
 use glam::Vec3A;
@@ -13,15 +13,15 @@ use super::statistics::Margins;
 
 /// A tree whose nodes have up to eight children, and the order of the spheres in its leaves.
 ///
-/// Node 0 is the root; children come after their parents, and those of one node are consecutive. A tree without spheres
-/// is one node without children, so kernels need no special case.
+/// Node 0 is the root. Children come after their parents, and those of one node are consecutive. A tree without spheres
+/// has one node without children, so kernels need no special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WideTree {
     /// All nodes, as kernels read them.
     pub nodes: Vec<WideNode>,
-    /// For each index in leaf order, the index of the sphere in input order; ascending within a leaf.
+    /// For each position in leaf order, the index of the sphere in input order. Ascending within a leaf.
     pub ids: Vec<u32>,
-    /// The number of nodes on the longest path from the root to the parent of a leaf, both included; at most
+    /// The number of nodes on the longest path from the root to the parent of a leaf, both included. At most
     /// `WIDE_LEVELS`.
     pub levels: u32,
     pub(crate) margins: Margins,
@@ -30,15 +30,15 @@ pub struct WideTree {
 /// The largest number of spheres in a leaf.
 pub(crate) const WIDE_LEAF: usize = 3;
 
-/// The largest number of levels of a tree, and the size of the kernel's stack. `build` proves that no tree has more; a
-/// walk leaves at most one entry on the stack for each level except the first.
+/// The largest number of levels of a tree, and the size of the kernel's stack. A proof at `build` shows that no tree
+/// has more. A walk leaves at most one entry on the stack for each level except the first.
 pub(crate) const WIDE_LEVELS: u32 = 16;
 
 /// The largest number of bytes of nodes per sphere, apart from one more node. Splits by cost stay far below it, unless
-/// spheres are placed so that most splits separate very few; splits in half always stay below it, which a test shows.
+/// spheres are placed so that most splits separate very few. Splits in half always stay below it, as a test shows.
 pub(super) const WIDE_BYTES_PER_SPHERE: usize = 14;
 
-/// In the byte of a leaf: the mask of its first sphere, and the position of its count.
+/// The mask of the first sphere in the byte of a leaf, and the position of the count there.
 pub(crate) const LEAF_FIRST: u32 = 31;
 pub(crate) const LEAF_COUNT_SHIFT: u32 = 5;
 
@@ -82,13 +82,13 @@ impl WideNode {
         Self(words)
     }
 
-    /// A node whose children have these boxes; the children themselves are added later.
+    /// A node whose children have these boxes. The children themselves are added later.
     pub(super) fn with_boxes(boxes: &[Option<Extent>; 8]) -> Self {
         let whole = boxes.iter().flatten().fold(Extent::EMPTY, |all, b| all.union(*b));
         let mut node = Self::empty();
         for axis in 0..3 {
             let [low, high] = [whole.low[axis], whole.high[axis]].map(f64::from);
-            // For what kernels round in proportion to the node's size; `slab.rs` says how much.
+            // Allows for the rounding of kernels, which is proportional to the node's size; `slab.rs` says how much.
             let wider = NODE_PART * (high - low).max(0.0);
             let origin = below(low - wider);
             node.0[axis] = origin.to_bits();
@@ -129,7 +129,7 @@ impl WideNode {
         self.0[3] |= 1 << (24 + slot);
     }
 
-    /// Makes a slot a leaf; `offset` counts from the node's first sphere.
+    /// Makes a slot a leaf. `offset` counts from the node's first sphere.
     pub(super) fn set_leaf(&mut self, slot: usize, offset: usize, count: usize) {
         self.set_byte(6, slot, (count << LEAF_COUNT_SHIFT | offset) as u8);
     }
@@ -182,7 +182,7 @@ impl WideNode {
     }
 }
 
-/// The largest number in f32 that is not above `x`.
+/// The largest f32 that is not above `x`.
 fn below(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
@@ -196,7 +196,7 @@ fn cell_exponent(length: f64) -> u32 {
     if reaches(exponent) { exponent } else { exponent + 1 }
 }
 
-/// Chooses the slot of each child by its box: the children farthest from the centre choose first, and each takes the
+/// Chooses the slot of each child by its box. The children farthest from the centre choose first, and each takes the
 /// free octant that best matches its direction.
 pub(super) fn octant_slots(boxes: &[Extent]) -> [usize; 8] {
     let whole = boxes.iter().fold(Extent::EMPTY, |all, b| all.union(*b)).center();

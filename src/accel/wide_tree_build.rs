@@ -1,6 +1,6 @@
-//! Building the compressed 8-wide tree from the root, level by level.
+//! Building the compressed 8-wide tree, level by level from the root.
 //!
-//! The spheres of a node are split in two, and the parts again, until there are eight parts; parts of at most three
+//! The spheres of a node are split in two, and so are the parts, until there are eight parts. Parts of at most three
 //! spheres are leaves. No binary tree is built first.
 
 use super::split::{Cluster, Extent, Item};
@@ -10,11 +10,11 @@ use super::wide_tree::{
 };
 use crate::parallel::{both, map_parts};
 
-/// The number of spheres up to which a node has only leaves.
+/// Up to this number of spheres, a node has only leaves.
 const LEAVES_ONLY: usize = 8 * WIDE_LEAF;
-/// The number of spheres for which a part becomes a child of its own; fewer waste slots, more waste levels.
+/// The number of spheres for each child of a node. Smaller numbers waste slots, larger ones waste levels.
 const SPHERES_PER_CHILD: usize = 16;
-/// The number of spheres from which a second thread is worth its cost.
+/// From this number of spheres on, a second thread is worth its cost.
 const PARALLEL: usize = 1 << 13;
 /// The number of nodes that are drafts at the same time.
 const DRAFTS: usize = 1 << 14;
@@ -44,8 +44,8 @@ fn max_nodes(count: usize) -> usize {
     1 + count * WIDE_BYTES_PER_SPHERE / size_of::<WideNode>()
 }
 
-/// The number of levels that a tree of `count` spheres needs if every split is in half: the smallest L ≥ 1 with 3 · 8^L
-/// ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c if n ≤ 8 c.
+/// The number of levels that a tree of `count` spheres needs if every split is in half. It is the smallest L ≥ 1 with 3
+/// · 8^L ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c if n ≤ 8 c.
 pub(super) fn levels_by_halves(count: usize) -> u32 {
     let mut levels = 1;
     let mut reach = LEAVES_ONLY;
@@ -56,19 +56,19 @@ pub(super) fn levels_by_halves(count: usize) -> u32 {
     levels
 }
 
-/// Builds a tree: its nodes, the ids in leaf order, and the number of levels.
+/// Builds a tree. Returns its nodes, the ids in leaf order, and the number of levels.
 ///
 /// There are at most [`WIDE_LEVELS`] levels. For every node of level l (from 0) with n spheres, l +
-/// [`levels_by_halves`]`(n)` is at most that number: for the root because there are fewer than 2³² spheres, which need
-/// eleven levels. If it is less, any split is allowed, since a child has fewer spheres than its parent. If it is equal,
-/// splits are in half, and a child needs one level less than its parent.
+/// [`levels_by_halves`]`(n)` is at most that number. It holds for the root because there are fewer than 2³² spheres,
+/// which need eleven levels. If it is less, any split is allowed, since a child has fewer spheres than its parent. If
+/// it is equal, splits are in half, and a child needs one level less than its parent.
 fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
     let most = max_nodes(items.len());
     let by_cost = nodes_by_level(items, false, most);
     if by_cost.0.len() <= most { by_cost } else { nodes_by_level(items, true, usize::MAX) }
 }
 
-/// Builds a tree level by level. Gives up if there are more than `most` nodes.
+/// Builds a tree level by level. Stops early if there are more than `most` nodes.
 fn nodes_by_level(
     items: &mut [Item],
     in_halves: bool,
@@ -107,7 +107,7 @@ fn nodes_by_level(
     (nodes, ids, levels)
 }
 
-/// A node whose children do not have indices yet.
+/// A node whose children have no indices yet.
 struct Draft<'a> {
     node: WideNode,
     /// The ids of the spheres in its leaves.
@@ -166,8 +166,7 @@ fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
     draft
 }
 
-/// Splits a cluster into at most `slots` parts; each side of a split gets a share of the slots in proportion to its
-/// spheres.
+/// Splits a cluster into at most `slots` parts. Each side of a split gets slots in proportion to its spheres.
 fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<Cluster<'a>>) {
     let count = cluster.len();
     if slots == 1 || count <= WIDE_LEAF {
@@ -193,7 +192,7 @@ fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<
     parts.extend(second);
 }
 
-/// Splits a cluster into leaves, all of them full except one.
+/// Splits a cluster into leaves. All of them are full except one.
 fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
     if cluster.len() <= WIDE_LEAF {
         parts.push(cluster);
@@ -209,7 +208,7 @@ fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
 mod tests {
     use super::*;
 
-    /// The sizes of the parts that `cut` makes if it splits in half.
+    /// Appends the sizes of the parts that `cut` makes if it splits in half.
     fn halves(count: usize, slots: usize, parts: &mut Vec<usize>) {
         if slots == 1 || count <= WIDE_LEAF {
             return parts.push(count);
@@ -233,7 +232,7 @@ mod tests {
         }
     }
 
-    /// A bunch of spheres, and others that are each farther away than all before: splits by cost separate them one by
+    /// A bunch of spheres, and others that are each farther away than all before. Splits by cost separate these one by
     /// one.
     #[test]
     fn spheres_that_are_cut_off_one_by_one_do_not_cost_more_than_planned() {

@@ -1,12 +1,12 @@
-//! A walk of the compressed 8-wide tree, which leaves the test of spheres to the caller.
+//! A walk of the compressed 8-wide tree in f64. The caller tests the spheres.
 //!
-//! # Why it leaves out no sphere
+//! # Why it misses no sphere
 //! A caller tests spheres with `intersect` of `src/cpu/sphere.rs`, in f64. Let u be 2⁻⁵³, l the vector from the ray's
 //! origin o to a centre, r the radius, d the direction, β how far |d|² is from one, and D the distance from o to the
 //! farthest point of the box of all spheres. Every sphere lies in that box, so that |l| + r ≤ D. For a ray, all boxes
-//! are wider than they are by the margin, (256 u + 16 β) D. If β is 1/16 or more, they all contain o, and nothing is
-//! left out. Let it be less. If the test accepts the distance t, then the ray is in the sphere, with its radius widened
-//! by (48 u + 4 β) D, at t or enters it before:
+//! are widened by the margin, (256 u + 16 β) D. If β is 1/16 or more, they all contain o, and nothing is left out. Let
+//! it be less. If the test accepts the distance t, then the ray is in the sphere, with its radius widened by (48 u + 4
+//! β) D, at t or enters it before:
 //!
 //! 1. *The line comes near enough.* With the computed b ≈ l·d, the foot vector f = l − b d leads from a point of the
 //!    line to the centre, whatever the error of b. Only the roundings of l, of b d and of the difference are errors:
@@ -22,12 +22,12 @@
 //! 4. *A ray that starts inside*, by the sign of the computed c, starts in the widened sphere. So does one that starts
 //!    on a sphere, whose distance the caller does not compute by the test.
 //!
-//! The box test moves a plane by at most 16 u D: the distance to it is a sum of two products and a distance before which
-//! the ray does not enter the node, with seven roundings of numbers that stand for lengths up to 2 D. All this together
-//! is less than half of the margin, so that there is a point of the ray, at t or before, that is in every box around an
-//! accepted sphere, as they are computed: the box of a node and those of its children. A box is left out only if its
-//! entry is greater than its exit or than the limit. A search among rays that graze spheres, up to 10¹⁶ radii away,
-//! found that less than 4 u D is needed.
+//! The box test moves a plane by at most 16 u D: the distance to it is a sum of two products and a distance before
+//! which the ray does not enter the node, with seven roundings of numbers that stand for lengths up to 2 D. All this
+//! together is less than half of the margin. So there is a point of the ray, at t or before, that is in every computed
+//! box around an accepted sphere: the box of a node and those of its children. A box is left out only if its entry is
+//! greater than its exit or than the limit. A search among rays that graze spheres, up to 10¹⁶ radii away, found that
+//! less than 4 u D is needed.
 //!
 //! The last sum is in f32, four boxes at once: a whole number of cells up to 255 times the size s of a cell along the ray,
 //! plus a start a. With v = 2⁻²⁴, rounding s and a, the product and the sum move a plane by at most
@@ -41,20 +41,20 @@ use glam::{DVec3, Vec4};
 
 use super::wide_tree::{LEAF_COUNT_SHIFT, LEAF_FIRST, WIDE_LEVELS, WideNode, WideTree};
 
-/// The margin relative to the longest vector, for a direction of exactly unit length.
+/// The margin for a direction of exactly unit length, relative to the longest vector.
 const BESIDE: f64 = 128.0 * f64::EPSILON;
 
-/// The smallest magnitude of a direction's component in box tests; smaller ones are replaced by it. Over the longest
-/// distance it moves a ray by far less than the margin.
+/// The smallest magnitude of a direction's component in box tests. Smaller ones are replaced by it. Over the longest
+/// distance, that moves a ray by far less than the margin.
 const SMALLEST: f64 = 1e-18;
 
-/// The longest vector for which boxes are tested: with it, no number of a box test is NaN.
+/// The longest vector for which boxes are tested. Up to it, no number of a box test is NaN.
 const FARTHEST: f64 = 1e36;
 
-/// By how much f32 rounds the distance to a plane, relative to the numbers of which it is the sum.
+/// The error of rounding the distance to a plane to f32, relative to the terms of its sum.
 const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
 
-/// The most nodes that wait: of each level but the last, all children but the one that is visited.
+/// The largest number of waiting nodes: on each level but the last, all children but the visited one.
 const MOST_WAITING: usize = 7 * WIDE_LEVELS as usize + 1;
 
 /// A ray prepared for box tests.
@@ -62,15 +62,15 @@ const MOST_WAITING: usize = 7 * WIDE_LEVELS as usize + 1;
 pub(crate) struct BoxRay {
     origin: DVec3,
     inverse: DVec3,
-    /// By how much boxes are wider for the ray than they are.
+    /// The extra width of all boxes for the ray.
     pub(crate) margin: f64,
-    /// By how much f32 rounds the distance to a plane.
+    /// The relative error of rounding the distance to a plane to f32.
     pub(crate) rounding: f64,
 }
 
 impl BoxRay {
-    /// Prepares a ray for the tree whose spheres lie between two corners. `None` if the ray is not finite, or so far
-    /// away that numbers overflow: no box can be left out then.
+    /// Prepares a ray for a tree whose spheres lie between two corners. Returns `None` if the ray is not finite, or so
+    /// far away that numbers overflow. No box can be skipped then.
     pub(crate) fn new(origin: DVec3, direction: DVec3, [low, high]: [DVec3; 2]) -> Option<Self> {
         let farthest = (low - origin).abs().max((high - origin).abs()).length();
         let bend = (1.0 - direction.length_squared()).abs();
@@ -90,7 +90,7 @@ struct NodeVisit {
 }
 
 impl WideTree {
-    /// Two opposite corners of a box around all boxes of the tree; `None` if there are no spheres.
+    /// Two opposite corners of a box around all boxes of the tree. `None` if there are no spheres.
     pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
         let root = &self.nodes[0];
         let boxes =
@@ -101,8 +101,8 @@ impl WideTree {
     }
 
     /// Calls `offer` with ranges of spheres, in the order of [`WideTree::ids`], that together contain every sphere for
-    /// which `intersect` in f64 finds a distance of at most `limit`. The return value of `offer` is the new limit,
-    /// below zero to end the walk. Near spheres tend to come first.
+    /// which `intersect` in f64 finds a distance of at most `limit`. `offer` returns the new limit, or a negative
+    /// number to end the walk. Near spheres tend to come first.
     #[inline]
     pub(crate) fn visit(
         &self,
@@ -143,7 +143,7 @@ impl WideTree {
                 let child = node.0[4] + (inner & ((1 << slot) - 1)).count_ones();
                 let entry = (base + f64::from(entries[slot])) as f32;
                 let new = NodeVisit { entry: entry * (1.0 - f32::EPSILON), node: child };
-                // The nearest comes last.
+                // Keeps the nearest last.
                 let mut place = count;
                 while place > before && waiting[place - 1].entry < new.entry {
                     waiting[place] = waiting[place - 1];
@@ -166,13 +166,13 @@ impl WideTree {
     }
 }
 
-/// A limit as a distance from where a ray may enter a node, rounded up. If it is before that, nothing in the node counts.
+/// Converts a limit to a distance from `base`, rounded up. If it is negative, nothing in the node counts.
 #[inline(always)]
 fn limit_from(base: f64, limit: f64) -> f32 {
     (limit - base) as f32 * (1.0 + 2.0 * f32::EPSILON) + f32::MIN_POSITIVE
 }
 
-/// The distances to planes of four boxes: `step` for each cell after `start`.
+/// The distances to planes of four boxes: `start`, plus `step` for each cell.
 #[inline(always)]
 fn planes(cells: u32, step: Vec4, start: Vec4) -> Vec4 {
     let [a, b, c, d] = cells.to_le_bytes();
@@ -180,9 +180,9 @@ fn planes(cells: u32, step: Vec4, start: Vec4) -> Vec4 {
 }
 
 impl WideNode {
-    /// The distance from `base` at which the ray enters the box of each slot, widened by the margin and by what rounding
-    /// may lose; and a mask of the slots whose boxes it enters at or before `limit`, which also counts from `base`. The
-    /// ray does not enter the node before `base`.
+    /// The distance from `base` at which the ray enters the box of each slot, and a mask of the slots whose boxes it
+    /// enters at or before `limit`. Boxes are widened by the margin and the largest rounding error. `limit` also counts
+    /// from `base`. The ray does not enter the node before `base`.
     #[inline(always)]
     fn entries(&self, ray: &BoxRay, base: f64, limit: f32) -> ([f32; 8], u32) {
         let (mut first, mut second) = (Vec4::ZERO, Vec4::ZERO);
@@ -212,7 +212,7 @@ impl WideNode {
     }
 }
 
-/// Moves bit s to bit `s ^ octant`: the lowest bit is then the child that a ray of this octant hits first. The WGSL
+/// Moves bit s to bit `s ^ octant`. The lowest set bit is then the child that a ray of this octant hits first. The WGSL
 /// twin is `octant_order` in `shaders/accel/wide_group.wgsl`.
 #[inline]
 fn octant_order(mask: u32, octant: u32) -> u32 {

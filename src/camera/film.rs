@@ -1,8 +1,8 @@
-//! The picture's size, and which relative location belongs to a pixel.
+//! The picture's size, and the relative location of each pixel.
 
 use glam::DVec2;
 
-/// Which row of the picture has y = +1.
+/// The row of the picture that has y = +1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum YAxis {
@@ -26,7 +26,7 @@ impl YAxis {
 
 /// The size of a picture: width and height in pixels, and the direction of y. Row 0 is the top row.
 ///
-/// A film may be a part of another, see [`Film::part`].
+/// A film may be a part of another one, see [`Film::part`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Film {
     width: u32,
@@ -38,7 +38,7 @@ pub struct Film {
     whole: [u32; 2],
 }
 
-/// Why numbers do not make a film, and what would be right.
+/// The reason why numbers do not make a film, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
@@ -52,7 +52,7 @@ impl Default for Film {
 }
 
 impl Film {
-    /// The largest width or height: below 2²³, a pixel centre is exact in f32.
+    /// The largest width or height. Below 2²³, a pixel centre is exact in f32.
     pub const MAX_SIDE: u32 = 1 << 23;
 
     /// A film with y up.
@@ -72,9 +72,9 @@ impl Film {
 
     /// A rectangle of this film, of `size` (width and height) pixels, whose first pixel is at `origin` (column and row).
     ///
-    /// A picture on it has the pixels that a picture on the whole film has there, to the bit, so that several devices or
-    /// machines can render one picture; [`Image::put`](crate::image::Image::put) joins the parts. What looks at
-    /// neighbours of pixels needs the whole picture, so render parts with
+    /// A picture on the part has the same pixels as a picture on the whole film, to the bit. So several devices or
+    /// machines can render one picture. [`Image::put`](crate::image::Image::put) joins the parts. Steps that read
+    /// neighbours of pixels need the whole picture, so render parts with
     /// [`RenderSettings::unfinished`](crate::render::RenderSettings::unfinished).
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl Film {
         Ok(Self { width, height, origin, ..*self })
     }
 
-    /// The film that this is a part of, which is the same film if it is whole.
+    /// The film that contains this part. A whole film returns itself.
     #[must_use]
     pub fn whole(&self) -> Self {
         let [width, height] = self.whole;
@@ -107,7 +107,7 @@ impl Film {
         self.whole == [self.width, self.height]
     }
 
-    /// Column and row of the first pixel in the whole film.
+    /// Column and row in the whole film of this film's first pixel.
     #[must_use]
     pub fn origin(&self) -> [u32; 2] {
         self.origin
@@ -118,7 +118,7 @@ impl Film {
         [self.origin[0] + column, self.origin[1] + row]
     }
 
-    /// The same film with `y_axis` as its direction of y.
+    /// The same film with another direction of y.
     #[must_use]
     pub fn with_y_axis(self, y_axis: YAxis) -> Self {
         Self { y_axis, ..self }

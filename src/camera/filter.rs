@@ -1,13 +1,13 @@
-//! Pixel filters, and how they place samples.
+//! Pixel filters, and the placement of samples by them.
 //!
-//! Samples are not weighted. They are placed with the density of the filter, and each counts for one pixel only: filter
-//! importance sampling (M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE Symposium on
+//! Samples are not weighted. They are placed with the density of the filter, and each counts for one pixel only. This
+//! is filter importance sampling (M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE Symposium on
 //! Interactive Ray Tracing, 2006). Every filter is separable: a product of the same function of x and of y. [`offset`]
 //! has a WGSL twin in `shaders/camera/filter.wgsl`.
 
 use std::f64::consts::PI;
 
-/// A pixel filter: how densely samples are placed around a pixel's centre. Distances are in pixels, along each axis.
+/// A pixel filter: the density of samples around a pixel's centre. Distances are in pixels, along each axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -15,10 +15,10 @@ pub enum PixelFilter {
     /// The same weight everywhere within 0.5, which is the pixel itself.
     Box,
     /// A normal distribution with a standard deviation of 0.5, cut off at a radius of 1.5 and lowered by its value
-    /// there, so that it ends at zero: the default of pbrt-v4.
+    /// there, so that it ends at zero. This is the default of pbrt-v4.
     Gaussian,
-    /// The Blackman-Harris window of four terms (F. J. Harris, "On the Use of Windows for Harmonic Analysis with
-    /// the Discrete Fourier Transform", 1978) with a radius of 1.5: the default of Cycles.
+    /// The Blackman-Harris window of four terms (F. J. Harris, "On the Use of Windows for Harmonic Analysis with the
+    /// Discrete Fourier Transform", 1978) with a radius of 1.5. This is the default of Cycles.
     #[default]
     BlackmanHarris,
 }
@@ -52,7 +52,7 @@ impl PixelFilter {
         }
     }
 
-    /// The relative weight of a sample at a distance in pixels along an axis; it is not normalized.
+    /// The relative weight of a sample at a distance in pixels along an axis. It is not normalized.
     #[must_use]
     pub fn weight(self, distance: f64) -> f64 {
         let radius = self.radius();
@@ -73,12 +73,12 @@ impl PixelFilter {
         }
     }
 
-    /// The table that [`offset`] interpolates: entry k is the distance in pixels from the centre, along an axis, to the
-    /// left of which k/256 of the filter lies. Entries go from −radius to +radius and are symmetric to the bit.
+    /// The table that [`offset`] interpolates. Entry k is the distance in pixels from the centre, along an axis, with
+    /// k/256 of the filter to its left. Entries go from −radius to +radius and are symmetric to the bit.
     #[must_use]
     pub fn offset_table(&self) -> [f32; STEPS + 1] {
         let width = self.radius() / CELLS as f64;
-        // Simpson's rule: the error of a cell is of the order of 10⁻¹⁵ of the whole integral.
+        // Simpson's rule. The error of a cell is of the order of 10⁻¹⁵ of the whole integral.
         let integral = |from: f64, to: f64| {
             let middle = self.weight(0.5 * (from + to));
             (to - from) / 6.0 * (self.weight(from) + 4.0 * middle + self.weight(to))
@@ -115,11 +115,11 @@ impl PixelFilter {
     }
 }
 
-/// The distance in pixels from a pixel's centre, along an axis, at which a sample lies: the inverse of the filter's
+/// The distance in pixels of a sample from a pixel's centre, along an axis. It is the inverse of the filter's
 /// cumulative distribution at `u`/2³².
 ///
-/// Between entries, the table is interpolated linearly, with `u` in steps of 2⁻²⁴. The filter that samples follow is
-/// therefore piecewise constant: each of 256 pieces has 1/256 of the weight, as with the exact filter. The cumulative
+/// Between entries, the table is interpolated linearly, with `u` in steps of 2⁻²⁴. So samples follow a piecewise
+/// constant filter. Each of its 256 pieces has 1/256 of the weight, as with the exact filter. The cumulative
 /// distribution is off by less than 1/512, and by that much only in the tails, where pieces are long.
 #[must_use]
 pub fn offset(table: &[f32; STEPS + 1], u: u32) -> f64 {
@@ -133,8 +133,8 @@ pub fn offset(table: &[f32; STEPS + 1], u: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// The part of a filter to the left of x. For the Gaussian by an alternating series, ∫ exp(−2t²) = ∑ (−2)ⁿ
-    /// x²ⁿ⁺¹/(n! (2n + 1)); for the others by the closed form.
+    /// The fraction of a filter to the left of x. The Gaussian uses an alternating series, ∫ exp(−2t²) = ∑ (−2)ⁿ
+    /// x²ⁿ⁺¹/(n! (2n + 1)), and the others use the closed form.
     fn cumulative(filter: PixelFilter, x: f64) -> f64 {
         let radius = filter.radius();
         let from_center = |x: f64| match filter {
@@ -178,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Entries are as exact as f32 allows: the bound is the change of the distribution over half a unit in the last
+    /// Entries are as exact as f32 allows. The bound is the change of the distribution over half a unit in the last
     /// place.
     #[test]
     fn tables_invert_the_distribution() {
@@ -211,8 +211,8 @@ mod tests {
         }
     }
 
-    /// Where the density of a filter rises or falls from a to b over a piece of length h, the distribution is off by at
-    /// most h |a − b|/4, which is the error if the density jumped half-way.
+    /// If the density of a filter rises or falls from a to b over a piece of length h, the distribution is off by at
+    /// most h |a − b|/4, which is the error if the density jumps half-way.
     #[test]
     fn samples_follow_the_filter() {
         for &filter in PixelFilter::ALL {

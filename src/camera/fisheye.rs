@@ -1,4 +1,4 @@
-//! The fisheye camera: its picture is a disk, and the distance from the middle is the angle from the direction of view.
+//! The fisheye camera. Its picture is a disk, and the distance from the middle is the angle from the direction of view.
 
 use std::f64::consts::TAU;
 
@@ -9,12 +9,12 @@ use crate::geometry::ray::Ray;
 
 /// An equidistant fisheye camera.
 ///
-/// The picture is the largest disk that fits on the film: its diameter is the shorter side of the film. A location at r
+/// The picture is the largest disk that fits on the film. Its diameter is the shorter side of the film. A location at r
 /// times the radius of the disk has a ray at the angle r·angle/2 from the direction of view, tilted towards that
 /// location. Outside the disk there are no rays.
 ///
-/// The camera is meant to stand inside the scene: from farther away than about ten times the size of the scene, f32 no
-/// longer resolves where a ray hits.
+/// The camera is meant to stand inside the scene. From farther away than about ten times the size of the scene, f32 no
+/// longer resolves the point where a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FisheyeCamera {
     pose: Pose,
@@ -24,7 +24,7 @@ pub struct FisheyeCamera {
 }
 
 impl FisheyeCamera {
-    /// The angle across the whole disk if none is given: 180 degrees.
+    /// The default angle across the whole disk: 180 degrees.
     pub const DEFAULT_ANGLE_RADIANS: f64 = std::f64::consts::PI;
 
     /// A camera whose disk spans `angle_radians`, on a film of the given aspect ratio (width over height).
@@ -48,7 +48,7 @@ impl Camera for FisheyeCamera {
         CameraKind::Fisheye
     }
 
-    /// Outside the disk, this is the ray at the nearest point of its edge.
+    /// Returns the ray at the nearest point of the edge if `location` is outside the disk.
     fn ray_in_world(&self, location: DVec2) -> Ray {
         let basis = self.pose.basis();
         let spot = location * self.scale;
@@ -65,7 +65,7 @@ impl Camera for FisheyeCamera {
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
         let (across, ahead) = self.pose.seen(point_in_world);
         let r = across.length().atan2(ahead) / self.half_angle;
-        // Exactly behind the camera the direction across the view is undefined; at the eye there is no direction at
+        // Exactly behind the camera, the direction across the view is undefined. At the eye, there is no direction at
         // all.
         let is_defined = ahead > 0.0 || across != DVec2::ZERO;
         (is_defined && r <= 1.0).then(|| across.normalize_or_zero() * r / self.scale)

@@ -1,4 +1,4 @@
-//! Places a camera so that it sees the whole of a subject.
+//! Framing: placing a camera so that it sees the whole of a subject.
 
 use glam::{DVec2, DVec3};
 
@@ -6,15 +6,14 @@ use crate::geometry::basis::OrthonormalBasis;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::subject::Subject;
 
-/// The free part of the picture beside a framed subject if none is given, on each of the two sides that it comes
-/// closest to: the subject fills 85 % of the tighter direction.
+/// The default free part of the picture on each of the two sides that the subject comes closest to. The subject fills
+/// 85 % of the tighter direction.
 pub const DEFAULT_MARGIN: f64 = 0.075;
 
-/// The largest margin; with one half, nothing would be left of the picture.
+/// The largest margin. With one half, nothing would be left of the picture.
 pub(super) const MOST_MARGIN: f64 = 0.45;
 
-/// The middle and the half extent of the part of the film that a subject is framed in, in relative locations, which go
-/// from −1 to 1.
+/// The middle and the half extent of the part of the film that frames a subject, in relative locations from −1 to 1.
 fn window(subject: &Subject<'_>, margin: f64) -> [DVec2; 2] {
     let [left, right, low, high] = subject.free_sides().map(|side| 2.0 * side.max(margin));
     let middle = 0.5 * DVec2::new(left - right, low - high);
@@ -22,13 +21,13 @@ fn window(subject: &Subject<'_>, margin: f64) -> [DVec2; 2] {
     [middle, half]
 }
 
-/// The eye, relative to the middle of the subject's box, whose picture of the subject touches the margin on two
-/// opposite sides and lies in the middle of the others. `tangents` are the half width and the half height of a view
-/// plane at distance 1.
+/// The eye from which the subject touches the margin on two opposite sides and lies in the middle of the others,
+/// relative to the middle of the subject's box. `tangents` are the half width and the half height of a view plane at
+/// distance 1.
 ///
-/// A sphere appears inside the margin if it lies inside the four planes through the eye and the margin's sides. With
-/// the normal n of such a plane, that is n·c + |n|·r ≤ n·e, so the largest n·c + |n|·r of all spheres says exactly how
-/// far away the eye e must be.
+/// A sphere appears inside the margin if it lies inside the four planes through the eye and the margin's sides. If n is
+/// the normal of such a plane, that means n·c + |n|·r ≤ n·e. So the largest n·c + |n|·r of all spheres gives the exact
+/// distance of the eye e.
 pub(super) fn perspective_eye(
     subject: &Subject<'_>,
     basis: &OrthonormalBasis,
@@ -44,17 +43,16 @@ pub(super) fn perspective_eye(
     x * basis.u() + y * basis.v() + back * basis.w()
 }
 
-/// Two planes through the eye, to the left and the right of the subject or below and above it, which touch it.
+/// Two planes through the eye that touch the subject on its left and right, or below and above it.
 #[derive(Clone, Copy)]
 struct Wedge {
     axis: DVec3,
     w: DVec3,
-    /// The tangent of the angle between the direction of view and the plane halfway between the planes, measured on a
-    /// view plane.
+    /// The tangent of the angle between the direction of view and the plane halfway between the two planes.
     middle: f64,
     /// Half of the distance between the planes on a view plane at distance 1.
     half: f64,
-    /// Where the eye is along `axis` and along `w`.
+    /// The position of the eye along `axis` and along `w`.
     aside: f64,
     back: f64,
 }
@@ -63,7 +61,7 @@ impl Wedge {
     fn new(subject: &Subject<'_>, axis: DVec3, w: DVec3, middle: f64, half: f64) -> Self {
         let [high, low] = [half + middle, half - middle];
         let [right, left] = subject.supports([axis + high * w, -axis + low * w]);
-        // A camera in front of a box stands straight behind its middle, so that it never stands on a corner.
+        // A camera in front of a box stands straight behind the box's middle, so that it never stands on a corner.
         let (aside, back) = match subject.is_box() {
             true => {
                 let back = right.max(left) / half;
@@ -77,8 +75,8 @@ impl Wedge {
         Self { axis, w, middle, half, aside, back }
     }
 
-    /// Where an eye that stands `back` must be along the axis, so that the subject appears in the middle: that of
-    /// narrower planes which meet there.
+    /// The position along the axis of an eye at the distance `back` that sees the subject in the middle. It is the
+    /// `aside` of the wedge whose smaller `half` gives it this `back`.
     fn aside_at(self, subject: &Subject<'_>, back: f64) -> f64 {
         let precise = 1e-9 * back.abs();
         let at = |cotangent: f64| {
@@ -119,8 +117,8 @@ impl Wedge {
     }
 }
 
-/// The middle of a view plane, relative to the middle of the subject's box, and its half extent, of the given aspect
-/// ratio, for parallel rays. The subject lies in front of the plane.
+/// The middle and the half extent of the view plane that frames a subject for parallel rays, with the given aspect
+/// ratio. The middle is relative to that of the subject's box. The subject lies in front of the plane.
 pub(super) fn parallel_extent(
     subject: &Subject<'_>,
     basis: &OrthonormalBasis,
@@ -133,18 +131,18 @@ pub(super) fn parallel_extent(
     let [middle, free] = window(subject, margin);
     let half_height = (half.y / free.y).max(half.x / aspect / free.x);
     let half_extent = DVec2::new(half_height * aspect, half_height);
-    // Where the middle of the view plane is, as seen from that of the subject.
+    // The middle of the view plane relative to that of the subject.
     let aside = -middle * half_extent;
     let middle = (0.5 * (right - left) + aside.x) * u + (0.5 * (top - bottom) + aside.y) * v;
-    // As much room is left in front of the subject as half of its depth.
+    // Leaves half of the subject's depth free in front of the subject.
     let back = near + 0.5 * (near + far);
     (middle + back * w, half_extent)
 }
 
-/// How far behind the centre of the box an eye must stand so that the bounding sphere of the box lies within a cone of
-/// this half angle. If the cone is wider than a half space, this is just outside the bounding sphere.
+/// The distance of an eye behind the centre of the box at which the bounding sphere of the box lies within a cone of
+/// the given half angle. If the cone is wider than a half space, the eye is just outside the bounding sphere.
 pub(super) fn round_distance(bounds: &Bounds, half_angle: f64) -> f64 {
-    /// How much of the picture's radius the bounding sphere may fill.
+    /// The largest fraction of the picture's radius that the bounding sphere fills.
     const FILL: f64 = 0.95;
     let within = (half_angle * FILL).min(std::f64::consts::FRAC_PI_2);
     0.5 * bounds.size().length() / within.sin()

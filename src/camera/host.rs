@@ -5,24 +5,24 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4};
 use super::{Camera, CameraError, CameraKind, CameraVectors, sealed};
 use crate::geometry::ray::Ray;
 
-/// The smallest volume of the box that the unit vectors along right, up and forward span. Below it, most digits of a
+/// The smallest volume of the box spanned by the unit vectors along right, up and forward. Below it, most digits of a
 /// ray in f32 would be rounding errors.
 const LEAST_VOLUME: f64 = 1.0 / 4096.0;
 
-/// The range of the numbers by which clip depth is computed, so that they are normal in f32.
+/// The range of the numbers for computing clip depth, within which they are normal in f32.
 const DEPTH_NUMBERS: std::ops::RangeInclusive<f64> = 1e-18..=1e18;
 
-/// A pinhole or orthographic camera, made of the matrices of a host program.
+/// A pinhole or orthographic camera, made from the matrices of a host program.
 ///
-/// Its rays are those of the host's rasterizer: the ray of a pixel is the line of all points that the two matrices
-/// project to the pixel's centre, and row 0 of a film with y up is the top row of the host's target. That holds for any
-/// camera that two such matrices describe: shifted frusta, pixels that are not square, a view that scales, shears or
-/// mirrors, left-handed and right-handed views. Distances are in units of the space that the view matrix maps from,
-/// which must be that of the scene. To place a scene in the host's world, pass the product of the host's view and the
-/// scene's model matrix as the view.
+/// Its rays match the host's rasterizer. The ray of a pixel is the line of all points that the two matrices project to
+/// the pixel's centre, and row 0 of a film with y up is the top row of the host's target. That holds for any camera
+/// that two such matrices describe: shifted frusta, pixels that are not square, a view that scales, shears or mirrors,
+/// left-handed and right-handed views. Distances are in units of the space that the view matrix maps from, which must
+/// be that of the scene. To place a scene in the host's world, pass the product of the host's view and the scene's
+/// model matrix as the view.
 ///
 /// The ray of a perspective camera starts at the eye, and that of an orthographic camera at the near plane. Near and
-/// far plane otherwise do not change the rays, and do not cut spheres. So the near plane of a perspective camera may be
+/// far planes have no other effect on rays, and do not cut spheres. So a perspective near plane may be oblique.
 /// oblique, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostCamera {
@@ -34,11 +34,11 @@ pub struct HostCamera {
     order: DepthOrder,
 }
 
-/// How clip depth follows from a place on the film and the distance along the unit ray.
+/// The relation of clip depth to a location on the film and the distance along the unit ray.
 ///
-/// For a pinhole camera it is `film · (x, y, 1) + slope · length / distance`, where `length` is that of the vector to
-/// the view plane, `x · right + y · up + forward`. For an orthographic camera it is
-/// `film · (x, y, 1) + slope · distance`.
+/// For a pinhole camera, clip depth is `film · (x, y, 1) + slope · length / distance`, where `length` is that of the
+/// vector to the view plane, `x · right + y · up + forward`. For an orthographic camera it is `film · (x, y, 1) + slope
+/// · distance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClipDepth {
     pub(crate) film: DVec3,
@@ -46,16 +46,16 @@ pub(crate) struct ClipDepth {
 }
 
 impl HostCamera {
-    /// The camera with these matrices, both stored column by column as in WGSL and glam.
+    /// Makes the camera from two matrices, both stored column by column as in WGSL and glam.
     ///
-    /// `view` maps world space to view space: an invertible affine map. `projection` maps view space to the clip space
-    /// of WebGPU, where y is up and depth is from 0 to 1, with either end of the range at the near plane, as `order`
-    /// says. The far plane may be infinitely far away.
+    /// `view` is an invertible affine map from world space to view space. `projection` maps view space to the clip
+    /// space of WebGPU, where y is up and depth is from 0 to 1, and `order` says which end of the range is at the near
+    /// plane. The far plane may be infinitely far away.
     ///
     /// # Errors
-    /// If a number is not finite; if the last row of the view is not (0, 0, 0, 1); if the last row of the projection is
-    /// neither (0, 0, ±1, 0), as for perspective, nor (0, 0, 0, 1); if a matrix is not invertible, or nearly so; if
-    /// depth does not run as `order` says; if the eye or a length of the view plane is out of the range of f32 kernels.
+    /// Returns an error if a number is not finite, a matrix is nearly singular, the last row of the view is not (0, 0,
+    /// 0, 1), that of the projection is neither (0, 0, ±1, 0), as for perspective, nor (0, 0, 0, 1), depth does not run
+    /// as `order` says, or the eye or a length of the view plane is out of the range of f32 kernels.
     pub fn new(
         view: impl Into<HostMatrix>,
         projection: impl Into<HostMatrix>,
@@ -115,7 +115,7 @@ impl HostCamera {
                 depth.to_array()
             )));
         }
-        // With the distance, 1/distance falls.
+        // 1/distance falls as the distance grows.
         let rises = if kind == CameraKind::Pinhole { slope < 0.0 } else { slope > 0.0 };
         if rises != (order == DepthOrder::NearIsZero) {
             let other = match order {
@@ -134,14 +134,14 @@ impl HostCamera {
         Ok(Self { kind, vectors, rows, depth: ClipDepth { film, slope }, order })
     }
 
-    /// Which end of the range of depths is at the near plane.
+    /// The end of the range of depths that is at the near plane.
     #[must_use]
     pub fn depth_order(&self) -> DepthOrder {
         self.order
     }
 
-    /// The host's depth of the point at a distance along the ray of a relative location. It is not clamped: a point in
-    /// front of the near plane, or behind the far plane, has a depth below 0 or above 1.
+    /// The host's depth of the point at a distance along the ray of a relative location. It is not clamped, so a point
+    /// in front of the near plane, or behind the far plane, has a depth below 0 or above 1.
     #[must_use]
     pub fn clip_depth(&self, location: DVec2, distance: f64) -> f64 {
         let ClipDepth { film, slope } = self.depth;
@@ -152,8 +152,8 @@ impl HostCamera {
         }
     }
 
-    /// The distance along the ray of a relative location at which the host's depth is `depth`: the inverse of
-    /// [`HostCamera::clip_depth`]. It is infinite or negative where no point in front of the camera has this depth.
+    /// The distance along the ray of a relative location at which the host's depth is `depth`. It is the inverse of
+    /// [`HostCamera::clip_depth`], and infinite or negative if no point in front of the camera has this depth.
     #[must_use]
     pub fn distance_of(&self, location: DVec2, depth: f64) -> f64 {
         let ClipDepth { film, slope } = self.depth;
@@ -176,7 +176,7 @@ impl HostCamera {
     }
 }
 
-/// A camera in the host's view space. `forward` of an orthographic camera has the length by which depth changes by one.
+/// A camera in the host's view space. The length of `forward` of an orthographic camera changes depth by one.
 struct InView {
     kind: CameraKind,
     origin: DVec3,
@@ -188,8 +188,8 @@ struct InView {
 }
 
 impl InView {
-    /// The vectors for which `x · right + y · up + forward` has the clip coordinates x, y and w = 1, and the eye, which
-    /// has no clip coordinates. `None` if the rows do not say so.
+    /// A camera whose vectors `x · right + y · up + forward` have the clip coordinates x, y and w = 1, and whose eye
+    /// has no clip coordinates. `None` if the rows do not define one.
     fn perspective(x: DVec4, y: DVec4, depth: DVec4, w: DVec4) -> Option<Self> {
         let rows = DMat3::from_cols(x.truncate(), y.truncate(), w.truncate()).transpose();
         let DMat3 { x_axis: right, y_axis: up, z_axis: forward } = inverse(rows)?;
@@ -218,9 +218,9 @@ impl InView {
     }
 }
 
-/// The inverse, unless it has numbers that are not finite.
+/// The inverse of a matrix. `None` if it has numbers that are not finite.
 fn inverse(matrix: DMat3) -> Option<DMat3> {
-    // Rows of very different lengths are usual, so they are scaled to one length first.
+    // Rows of very different lengths are common, so they are first scaled to one length.
     let lengths = DVec3::from_array([0, 1, 2].map(|row| matrix.row(row).length()));
     if lengths.min_element() == 0.0 {
         return None;
@@ -264,16 +264,16 @@ impl Camera for HostCamera {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostMatrix(DMat4);
 
-/// Which end of the range of depths, from 0 to 1, is at the near plane.
+/// The end of the range of depths, from 0 to 1, that is at the near plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DepthOrder {
     /// Depth is 0 at the near plane and grows with the distance.
     NearIsZero,
-    /// Depth is 1 at the near plane and falls with the distance, which is called reversed depth.
+    /// Depth is 1 at the near plane and falls with the distance. This is called reversed depth.
     NearIsOne,
 }
 
-/// Why matrices of a host program do not make a camera, and what would be right.
+/// The reason why matrices of a host program do not make a camera, and what would be right.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]

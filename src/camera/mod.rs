@@ -1,4 +1,4 @@
-//! Cameras: each says which ray belongs to a relative location in the picture.
+//! Cameras, each of which gives the ray that belongs to a relative location in the picture.
 //!
 //! Each camera is one Rust file here, one WGSL part `shaders/camera/NAME.wgsl`, and one row of `camera_table`.
 //! `docs/extending.md` explains how to add one.
@@ -43,19 +43,18 @@ pub use pose::{CameraError, CameraVectors, Pose};
 pub use thin_lens::ThinLensCamera;
 pub use viewpoint::{Viewpoint, ViewpointError, turned};
 
-/// A camera says which ray belongs to a relative location in [−1, 1]².
+/// A camera, which gives the ray that belongs to a relative location in [−1, 1]².
 ///
-/// The trait is sealed: a camera consists of its Rust type and its WGSL part, and only this crate can
-/// join the two.
+/// The trait is sealed. A camera consists of its Rust type and its WGSL part, and only this crate can join the two.
 pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
-    /// The kind of the camera: its row of the camera table.
+    /// The kind of the camera, which is its row of the camera table.
     fn kind(&self) -> CameraKind;
 
-    /// The ray that belongs to `location`, in world space; its direction has unit length. For a camera with a lens,
+    /// The ray that belongs to `location`, in world space. Its direction has unit length. For a camera with a lens,
     /// this is the ray through the centre of the lens.
     fn ray_in_world(&self, location: DVec2) -> Ray;
 
-    /// The ray that belongs to `location` through a point of the lens: `lens` lies in the unit square [0, 1)², and (½,
+    /// The ray that belongs to `location` through a point of the lens. `lens` lies in the unit square [0, 1)², and (½,
     /// ½) is the centre of the lens. A camera without a lens returns the same ray for all points.
     fn ray_through_lens(&self, location: DVec2, lens: DVec2) -> Ray {
         let _ = lens;
@@ -74,7 +73,7 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
         true
     }
 
-    /// The relative location of the ray that hits a point in world space; it may lie outside [−1, 1]². `None` if no ray
+    /// The relative location of the ray that hits a point in world space. It may lie outside [−1, 1]². `None` if no ray
     /// hits the point, or if the camera cannot tell.
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2>;
 
@@ -82,10 +81,10 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
     fn vectors(&self) -> CameraVectors;
 }
 
-/// A camera and a film: what is seen, and in how many pixels.
+/// A camera and a film, which together define a picture's rays and pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The camera, which says which ray belongs to each location in the picture.
+    /// The camera, which gives the ray of each location in the picture.
     pub camera: &'a dyn Camera,
     /// The size of the picture.
     pub film: Film,
@@ -98,7 +97,7 @@ impl<'a> View<'a> {
         Self { camera, film }
     }
 
-    /// The ray through the centre of a pixel, given as column and row; `None` where the camera has no ray.
+    /// The ray through the centre of a pixel, given as column and row. `None` if the camera has no ray there.
     #[must_use]
     pub fn ray_through_center(&self, [column, row]: [u32; 2]) -> Option<Ray> {
         let location = self.film.relative_location(f64::from(column) + 0.5, f64::from(row) + 0.5);
@@ -106,20 +105,20 @@ impl<'a> View<'a> {
     }
 }
 
-/// The one list of cameras. A row is: variant, type, name (in scene files and of the WGSL part), and the type that
-/// reads the camera's table in a scene file.
+/// The single list of cameras. A row holds the variant, the type, the name (in scene files and of the WGSL part), and
+/// the type that reads the camera's table in a scene file.
 macro_rules! camera_table {
     ($apply:ident) => {
         $apply! {
-            /// Every ray starts at the eye; objects shrink with distance.
+            /// Every ray starts at the eye. Objects shrink with distance.
             Pinhole, PinholeCamera, "pinhole", PinholeParameters;
-            /// Every ray has the same direction; objects keep their size.
+            /// Every ray has the same direction. Objects keep their size.
             Orthographic, OrthographicCamera, "orthographic", OrthographicParameters;
-            /// Rays start anywhere on a lens; what is not in focus is blurred.
+            /// Rays start anywhere on a lens. Objects out of focus are blurred.
             ThinLens, ThinLensCamera, "thin-lens", ThinLensParameters;
-            /// Rays go in all directions; longitude runs across the picture and latitude up it.
+            /// Rays go in all directions. Longitude runs across the picture and latitude up it.
             Panorama, PanoramaCamera, "panorama", PanoramaParameters;
-            /// Rays fill a cone, which may be wider than a half space; the picture is a disk.
+            /// Rays fill a cone, which may be wider than a half space. The picture is a disk.
             Fisheye, FisheyeCamera, "fisheye", FisheyeParameters;
         }
     };
@@ -193,7 +192,7 @@ fn checked_fov(radians: f64) -> Result<(), CameraError> {
     )))
 }
 
-/// Returns an error for a margin that would leave too little of the picture.
+/// Returns an error for a margin that leaves too little of the picture.
 fn checked_margin(value: f64) -> Result<f64, CameraError> {
     checked_range("`margin`", value, [0.0, framing::MOST_MARGIN])
 }

@@ -1,4 +1,4 @@
-//! The panorama camera: it sees all directions, with longitude across the picture and latitude up it.
+//! The panorama camera, which sees all directions. Longitude runs across the picture and latitude up it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,22 +7,22 @@ use glam::{DVec2, DVec3};
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, stereo_lengths};
 use crate::geometry::ray::Ray;
 
-/// An equirectangular camera: 360 degrees by 180. On a film twice as wide as high, pixels in the middle are square.
+/// An equirectangular camera of 360 degrees by 180. On a film twice as wide as high, pixels in the middle are square.
 ///
 /// The ray of the relative location (x, y) has the longitude λ = πx, which is 0 forwards along −w and positive to the
 /// right, and the latitude φ = πy/2, which is +π/2 along v: the direction cos φ (sin λ·u − cos λ·w) + sin φ·v.
 ///
-/// For one eye of a stereo pair, rays do not start at the camera but on a circle around it in the plane of u and w
-/// (omni-directional stereo: S. Peleg, M. Ben-Ezra and Y. Pritch, *Omnistereo: panoramic stereo imaging*, IEEE PAMI 23,
-/// 2001), and are turned inwards so that the rays of both eyes intersect at the distance of convergence. Straight up
-/// and down the picture is distorted, as with every camera of this type.
+/// The rays of one eye of a stereo pair start on a circle around the camera in the plane of u and w (omni-directional
+/// stereo: S. Peleg, M. Ben-Ezra and Y. Pritch, *Omnistereo: panoramic stereo imaging*, IEEE PAMI 23, 2001). They are
+/// turned inwards, so that the rays of both eyes intersect at the distance of convergence. Straight up and down the
+/// picture is distorted, as with every camera of this type.
 ///
-/// The camera is meant to stand inside the scene: from farther away than about ten times the size of the scene, f32 no
-/// longer resolves where a ray hits.
+/// The camera is meant to stand inside the scene. From farther away than about ten times the size of the scene, f32 no
+/// longer resolves the point where a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PanoramaCamera {
     pose: Pose,
-    /// How far to the right of the camera rays start, in scene units; zero for a single eye.
+    /// The distance from the camera to the right at which rays start, in scene units. Zero for a single eye.
     aside: f64,
     /// Cosine and sine of the angle by which rays are turned to the left.
     inwards: [f64; 2],
@@ -35,7 +35,7 @@ impl PanoramaCamera {
         Self { pose, aside: 0.0, inwards: [1.0, 0.0] }
     }
 
-    /// The cameras of the left and of the right eye. Rays start half of `separation` to the left and to the right; two
+    /// The cameras of the left and of the right eye. Rays start half of `separation` to the left and to the right. Two
     /// rays of the same location intersect at the distance `convergence`, which may be infinite.
     ///
     /// # Errors
@@ -76,8 +76,8 @@ impl Camera for PanoramaCamera {
         (self.aside == 0.0 && toward != DVec3::ZERO && location.is_finite()).then_some(location)
     }
 
-    /// `right`, `up` and `forward` are unit vectors. The numbers are how far to the right rays start, and the cosine
-    /// and the sine of the angle by which they are turned to the left.
+    /// `right`, `up` and `forward` are unit vectors. The numbers are the distance to the right at which rays start, and
+    /// the cosine and the sine of the angle by which rays are turned to the left.
     fn vectors(&self) -> CameraVectors {
         let [straight, left] = self.inwards;
         self.pose.vectors(DVec2::ONE, [self.aside, straight, left])

@@ -1,4 +1,4 @@
-//! The parameters of a camera of any kind, as a scene file or command-line flags give them.
+//! The parameters of a camera of any kind, as given by scene files or command-line flags.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,8 @@ use super::{
 use crate::exact::{List, Table};
 use crate::geometry::subject::Subject;
 
-/// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file, from which it is deserialized. The
-/// default is a pinhole camera that frames the scene.
+/// The parameters of a camera of any kind, deserialized from the table `[camera.NAME]` of a scene file. The default is
+/// a pinhole camera that frames the scene.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct CameraParameters(ByKind);
@@ -26,11 +26,11 @@ macro_rules! define_camera_parameters {
         }
 
         impl CameraParameters {
-            /// The camera for a film of this aspect ratio; for two eyes, the camera halfway between them. It frames
-            /// the subject if the parameters give no position.
+            /// The camera for a film of the given aspect ratio. For two eyes, the camera halfway between them. It
+            /// frames the subject if the parameters give no position.
             ///
             /// # Errors
-            /// Returns an error if a parameter is out of range, or parameters exclude each other.
+            /// Returns an error if a parameter is out of range, or if parameters exclude each other.
             pub fn camera(
                 &self,
                 aspect: f64,
@@ -66,7 +66,7 @@ macro_rules! define_camera_parameters {
 camera_table!(define_camera_parameters);
 
 impl CameraParameters {
-    /// Returns this camera with its position, its direction and the direction that is up, so that it no longer depends on
+    /// Returns this camera with its position, direction and `up` direction filled in, so that it no longer depends on
     /// the subject.
     ///
     /// # Errors
@@ -93,7 +93,7 @@ impl CameraParameters {
         Ok(placed)
     }
 
-    /// The cameras of the left and of the right eye; `None` unless the parameters ask for two eyes.
+    /// The cameras of the left and of the right eye. `None` unless the parameters ask for two eyes.
     ///
     /// # Errors
     /// Returns the same errors as [`CameraParameters::camera`].
@@ -126,13 +126,13 @@ impl Default for CameraParameters {
     }
 }
 
-/// The table `stereo` of a camera, which asks for one picture for each eye.
+/// The table `stereo` of a camera, which asks for one picture per eye.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct StereoParameters {
     /// Distance between the eyes, in scene units.
     separation: f64,
-    /// Distance, in scene units, at which objects seem to lie in the screen; infinite if left out.
+    /// Distance, in scene units, at which objects seem to lie in the screen. Infinite by default.
     #[serde(default = "infinitely_far")]
     convergence: f64,
 }
@@ -141,7 +141,7 @@ fn infinitely_far() -> f64 {
     f64::INFINITY
 }
 
-/// The pose of a camera that is made, the aspect of its film, and its subject.
+/// The pose and the aspect ratio for a new camera, and its subject.
 struct Site<'a> {
     pose: Pose,
     /// See [`Placement::is_framed`].
@@ -156,7 +156,7 @@ impl<'a> Site<'a> {
     }
 }
 
-/// The margin of a framed picture. A camera with an eye has none.
+/// The margin of a framed picture. A camera with an eye has no margin.
 fn margin_of(margin: Option<f64>, is_framed: bool) -> Result<f64, CameraError> {
     if margin.is_some() && !is_framed {
         return refused(
@@ -184,11 +184,11 @@ struct PinholeParameters {
     half_extent: Option<List<2>>,
     /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
     vertical_fov: Option<f64>,
-    /// The part of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
+    /// The fraction of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
     margin: Option<f64>,
-    /// How much the picture is enlarged about its middle, by a narrower field of view.
+    /// The enlargement of the picture about its middle, by a narrower field of view.
     zoom: Option<f64>,
-    /// Two eyes.
+    /// The settings of two eyes.
     stereo: Option<StereoParameters>,
 }
 
@@ -233,9 +233,9 @@ struct OrthographicParameters {
     up: Option<List<3>>,
     /// Half width and half height of the view plane.
     half_extent: Option<List<2>>,
-    /// The part of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
+    /// The fraction of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
     margin: Option<f64>,
-    /// How much the picture is enlarged about its middle.
+    /// The enlargement of the picture about its middle.
     zoom: Option<f64>,
 }
 
@@ -282,16 +282,16 @@ struct ThinLensParameters {
     aperture_radius: Option<f64>,
     /// F-number (focal length over diameter), given together with `focal_length` instead of `aperture_radius`.
     f_stop: Option<f64>,
-    /// Focal length in scene units; it only turns `f_stop` into a length.
+    /// Focal length in scene units. It only turns `f_stop` into a length.
     focal_length: Option<f64>,
-    /// Distance along the view at which objects are sharp; without it, that of `look_at` or of the scene's middle.
+    /// Distance along the view at which objects are sharp. By default, that of `look_at` or of the scene's middle.
     focus_distance: Option<f64>,
     /// A point that is in focus, instead of `focus_distance`.
     focus_on: Option<List<3>>,
 }
 
 impl ThinLensParameters {
-    /// The pinhole camera through the centre of the lens, without its place.
+    /// The pinhole camera through the centre of the lens, without its position.
     fn pinhole(&self) -> PinholeParameters {
         let Self { distance, half_extent, vertical_fov, margin, zoom, .. } = *self;
         let default = PinholeParameters::default();
@@ -338,13 +338,13 @@ impl ThinLensParameters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 struct PanoramaParameters {
-    /// Position of the camera; without it, the middle of the scene.
+    /// Position of the camera. By default, the middle of the scene.
     eye: Option<List<3>>,
     /// The point in the middle of the picture.
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
-    /// Two eyes.
+    /// The settings of two eyes.
     stereo: Option<StereoParameters>,
 }
 

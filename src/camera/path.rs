@@ -1,4 +1,4 @@
-//! Cameras that move along a path, which is given by keyframes.
+//! Cameras that move along a path given by keyframes.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use super::path_curve::{Curve, Track};
 use super::{CameraError, Pose, Viewpoint, checked_fov, checked_range};
 
-/// What the times of keyframes count.
+/// The unit in which the times of keyframes count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathClock {
     /// Pictures, or the frames of a trajectory, from 0.
@@ -16,7 +16,7 @@ pub enum PathClock {
     Seconds,
 }
 
-/// Where the camera of a keyframe is.
+/// The position and the view of a keyframe's camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KeyPlace {
     /// At a point, in scene units.
@@ -25,38 +25,38 @@ pub enum KeyPlace {
         eye: DVec3,
         /// The point at which the camera looks.
         look_at: DVec3,
-        /// The direction that is up in the picture, if it is not that of the whole path.
+        /// The `up` direction in the picture, if it differs from that of the whole path.
         up: Option<DVec3>,
     },
     /// On a sphere around the subject.
     View {
-        /// From where the camera looks.
+        /// The side or the angles from which the camera looks.
         viewpoint: Viewpoint,
-        /// By how many degrees the camera is turned about the direction that is up, counter-clockwise seen from above.
-        /// Full turns count: from 0 to 720 the camera goes around twice.
+        /// The turn of the camera in degrees about the `up` direction, counter-clockwise seen from above. Full turns
+        /// count: from 0 to 720, the camera goes around twice.
         turn: f64,
     },
 }
 
-/// The camera of one moment.
+/// The camera at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraKey {
     /// The frame or second, see [`PathClock`].
     pub time: f64,
-    /// Where the camera is.
+    /// The position and the view of the camera.
     pub place: KeyPlace,
-    /// Vertical field of view in radians; keys without it do not decide it.
+    /// Vertical field of view in radians. Keys without it do not affect it.
     pub fov_radians: Option<f64>,
-    /// How much the picture is enlarged about its middle; keys without it do not decide it.
+    /// The enlargement of the picture about its middle. Keys without it do not affect it.
     pub zoom: Option<f64>,
 }
 
-/// Why keyframes do not make a path.
+/// The reason why keyframes do not make a path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 #[non_exhaustive]
 pub struct CameraPathError {
-    /// The key that is wrong, counted from 0; `None` if there are not enough keys.
+    /// The wrong key, counted from 0. `None` if there are not enough keys.
     pub key: Option<usize>,
     /// The problem, and what to do.
     pub message: String,
@@ -68,7 +68,7 @@ impl CameraPathError {
     }
 }
 
-/// Keyframes of a camera, checked. [`CameraPath::motion`] makes the motion through them.
+/// The checked keyframes of a camera. [`CameraPath::motion`] makes the motion through them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
     keys: Vec<CameraKey>,
@@ -77,11 +77,11 @@ pub struct CameraPath {
 }
 
 impl CameraPath {
-    /// The largest time, angle and zoom of a key, and the smallest with a minus.
+    /// The largest magnitude of a key's time or angle, and the largest zoom.
     const MOST: f64 = 1e9;
 
-    /// Checks keyframes. With `eases`, the camera starts and ends at rest, so that its velocity is continuous also
-    /// where the path begins and ends.
+    /// Checks keyframes. With `eases`, the camera starts and ends at rest, so that its velocity is also continuous at
+    /// the ends of the path.
     ///
     /// # Errors
     /// Returns an error if there are fewer than two keys, their times do not ascend, a number is not finite or out of
@@ -126,7 +126,7 @@ impl CameraPath {
         &self.keys
     }
 
-    /// What the times of the keys count.
+    /// The unit in which the times of the keys count.
     #[must_use]
     pub fn clock(&self) -> PathClock {
         self.clock
@@ -144,11 +144,11 @@ impl CameraPath {
         self.keys.last().map_or(0.0, |key| key.time)
     }
 
-    /// The motion through the keys, where `up` is the direction that is up for keys that give none, and about which
-    /// views are turned. It need not be a unit vector; without a direction, +y is taken.
+    /// The motion through the keys. `up` is the `up` direction of keys that give none, and the axis about which views
+    /// are turned. It need not be a unit vector. Without a direction, it is +y.
     ///
     /// # Errors
-    /// Returns an error if the directions that are up in two neighbouring keys are opposite.
+    /// Returns an error if the `up` directions of two neighbouring keys are opposite.
     pub fn motion(&self, up: DVec3) -> Result<CameraMotion, CameraPathError> {
         let up = up.try_normalize().unwrap_or(DVec3::Y);
         let track = |value: &dyn Fn(&CameraKey) -> Option<f64>| {
@@ -213,7 +213,7 @@ fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
         }
         KeyPlace::Point { eye, look_at, up } => {
             match Pose::looking_at(eye, look_at, up.unwrap_or(DVec3::Y)) {
-                // Without an `up` of its own, such a key gets another one.
+                // A key without an `up` of its own gets another one in this case.
                 Err(CameraError::UpParallelToView { .. }) if up.is_none() => {}
                 made => made.map(drop).map_err(|error| CameraPathError::of(key, error))?,
             }
@@ -222,7 +222,7 @@ fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
     now.fov_radians.map_or(Ok(()), checked_fov).map_err(|error| CameraPathError::of(key, error))
 }
 
-/// Azimuth and elevation of a key, in radians, with the turns.
+/// Azimuth and elevation of a key in radians, including its turns.
 fn angles(key: &CameraKey, up: DVec3) -> [f64; 2] {
     let KeyPlace::View { viewpoint, turn } = key.place else { return [0.0; 2] };
     let from_y = DQuat::from_rotation_arc(DVec3::Y, up);
@@ -239,11 +239,11 @@ fn angles(key: &CameraKey, up: DVec3) -> [f64; 2] {
     [azimuth + turn.to_radians(), elevation]
 }
 
-/// Eye, target and the unit vector that is up of a key.
+/// The eye, target and `up` unit vector of a key.
 fn points(key: &CameraKey, of_path: DVec3) -> [DVec3; 3] {
     let KeyPlace::Point { eye, look_at, up } = key.place else { return [DVec3::ZERO; 3] };
     let up = up.and_then(DVec3::try_normalize).unwrap_or_else(|| {
-        // Seen from straight above or below, the direction away from azimuth 0, as `Viewpoint::axes` has it.
+        // In a view from straight above or below, the direction away from azimuth 0, as in `Viewpoint::axes`.
         let toward = (look_at - eye).normalize_or_zero();
         let is_vertical = toward.cross(of_path).length() < 1e-6;
         let front = DQuat::from_rotation_arc(DVec3::Y, of_path) * DVec3::Z;
@@ -252,44 +252,44 @@ fn points(key: &CameraKey, of_path: DVec3) -> [DVec3; 3] {
     [eye, look_at, up]
 }
 
-/// The camera of one moment of a motion.
+/// The camera at one moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CameraOnPath {
-    /// Where the camera is.
+    /// The position and the view of the camera.
     pub place: PlaceOnPath,
-    /// Vertical field of view in radians, if a key says it.
+    /// Vertical field of view in radians, if a key gives it.
     pub fov_radians: Option<f64>,
-    /// How much the picture is enlarged about its middle, if a key says it.
+    /// The enlargement of the picture about its middle, if a key gives it.
     pub zoom: Option<f64>,
 }
 
-/// Where the camera is at one moment of a motion.
+/// The position and the view of the camera at one moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaceOnPath {
     /// At a point.
     Point {
         /// Position of the camera.
         eye: DVec3,
-        /// The point at which the camera looks. Between two keys, it may be that of the eye.
+        /// The point at which the camera looks. Between two keys, it may coincide with the eye.
         look_at: DVec3,
-        /// The direction that is up in the picture: a unit vector, perpendicular to the direction of view.
+        /// The `up` direction in the picture: a unit vector, perpendicular to the direction of view.
         up: DVec3,
     },
     /// On a sphere around the subject.
     View {
         /// The direction in which the camera looks: a unit vector.
         direction: DVec3,
-        /// The direction that is up in the picture: a unit vector, perpendicular to `direction`.
+        /// The `up` direction in the picture: a unit vector, perpendicular to `direction`.
         up: DVec3,
     },
 }
 
 /// The smooth motion of a camera through the keys of a path.
 ///
-/// Position and target move on centripetal Catmull–Rom splines. Field of view and zoom are interpolated in logarithms,
-/// and they and the angles of views stay between those of neighbouring keys. Velocities are continuous between the first
-/// and the last key; before and after them the camera stands still.
+/// Position and target move on centripetal Catmull–Rom splines. The logarithms of field of view and zoom are
+/// interpolated. These, and the angles of views, stay between the values of neighbouring keys. Velocities are
+/// continuous between the first and the last key. Before and after them, the camera stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraMotion {
     places: Places,
@@ -299,7 +299,7 @@ pub struct CameraMotion {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Places {
-    /// Eye, target and up.
+    /// The curves of the eye, the target and the `up` direction.
     Points(Box<[Curve; 3]>),
     Views {
         azimuth: Track,
@@ -309,7 +309,7 @@ enum Places {
 }
 
 impl CameraMotion {
-    /// The camera at a time, which is counted as [`CameraPath::clock`] says.
+    /// The camera at a time, in the unit of [`CameraPath::clock`].
     #[must_use]
     pub fn at(&self, time: f64) -> CameraOnPath {
         let place = match &self.places {
@@ -333,8 +333,8 @@ impl CameraMotion {
     }
 }
 
-/// The part of `up` that is perpendicular to the view. Where there is none, which happens at single moments between
-/// keys, any perpendicular direction.
+/// The component of `up` that is perpendicular to the view. At single moments between keys it may be zero. Then any
+/// perpendicular direction.
 fn upright(view: DVec3, up: DVec3) -> DVec3 {
     let Some(view) = view.try_normalize() else { return up.normalize_or(DVec3::Y) };
     let (beside, any) = (up - up.dot(view) * view, view.any_orthonormal_vector());

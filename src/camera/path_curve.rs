@@ -4,8 +4,8 @@ use std::ops::{Add, Mul};
 
 use glam::DVec3;
 
-/// A function of time that takes given values at given times. It is monotone wherever the values are, so it never goes
-/// beyond two neighbours, and has a continuous derivative. Before the first and after the last time it is constant.
+/// A function of time through given values at given times. It is monotone where the values are, so it stays between
+/// neighbours, and has a continuous derivative. Before the first and after the last time it is constant.
 ///
 /// The slopes are those of F. N. Fritsch and J. Butland, A method for constructing local monotone piecewise cubic
 /// interpolants, SIAM Journal on Scientific and Statistical Computing 5(2), 1984, for uneven times as in C. Moler,
@@ -18,8 +18,8 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// The function through `(time, value)`, of which there is at least one, with ascending times. With `ease`, it
-    /// starts and ends at rest.
+    /// The function through at least one `(time, value)`, with ascending times. If `ease` is set, it starts and ends at
+    /// rest.
     pub(super) fn new(points: impl IntoIterator<Item = (f64, f64)>, ease: bool) -> Self {
         let (times, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -51,7 +51,7 @@ impl Track {
     }
 }
 
-/// The slope at an end, from a parabola through three points, which must not lead away from its neighbour.
+/// The slope at an end, from a parabola through three points. It must not lead away from the neighbouring value.
 fn end_slope(steps: [f64; 2], rises: [f64; 2]) -> f64 {
     let [near, far] = steps;
     let slope = ((2.0 * near + far) * rises[0] - near * rises[1]) / (near + far);
@@ -64,15 +64,15 @@ fn end_slope(steps: [f64; 2], rises: [f64; 2]) -> f64 {
     }
 }
 
-/// The weights of two values and of two slopes in a cubic, at a place from 0 to 1.
+/// The weights of two values and two slopes in a cubic, at a position from 0 to 1.
 fn hermite(s: f64) -> [f64; 4] {
     let rest = 1.0 - s;
     let end = s * s * (3.0 - 2.0 * s);
     [1.0 - end, end, s * rest * rest, -s * s * rest]
 }
 
-/// The cubic curve through `values` at `places`, of which there is at least one, with these slopes. Before the first and
-/// after the last place it is constant.
+/// The cubic curve through `values` at `places`, of which there is at least one, with the given slopes. Before the
+/// first and after the last place it is constant.
 fn between<T>(place: f64, places: &[f64], values: &[T], slopes: &[T]) -> T
 where
     T: Copy + Add<Output = T>,
@@ -96,21 +96,21 @@ where
 ///
 /// Its shape is a centripetal Catmull–Rom spline (C. Yuksel, S. Schaefer and J. Keyser, Parameterization and
 /// applications of Catmull–Rom curves, Computer-Aided Design 43(7), 2011), which has no cusps and no loops between two
-/// points however uneven their distances are. A [`Track`] says when which place of it is reached, so that the velocity
-/// is continuous, and nothing moves between two equal points.
+/// points, however uneven their distances are. A [`Track`] gives the position on the curve at each time. So the
+/// velocity is continuous, and nothing moves between two equal points.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    /// The points, of which no two neighbours are equal.
+    /// The points. No two neighbouring points are equal.
     points: Vec<DVec3>,
     /// The parameter of each point.
     knots: Vec<f64>,
-    /// The derivative by the parameter at each point.
+    /// The derivative at each point with respect to the parameter.
     tangents: Vec<DVec3>,
     parameter: Track,
 }
 
 impl Curve {
-    /// The curve through `(time, point)`, of which there is at least one, with ascending times.
+    /// The curve through at least one `(time, point)`, with ascending times.
     pub(super) fn new(all: &[(f64, DVec3)], ease: bool) -> Self {
         let (mut points, mut knots): (Vec<DVec3>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut along = Vec::new();
@@ -126,7 +126,7 @@ impl Curve {
         }
         let chord = |i: usize| (points[i] - points[i - 1]) / (knots[i] - knots[i - 1]);
         let chords: Vec<DVec3> = (1..points.len()).map(chord).collect();
-        // In the middle, the derivative of a parabola through three points; at the ends as well.
+        // The derivative of a parabola through three points, in the middle and at the ends.
         let inner: Vec<DVec3> = (1..chords.len())
             .map(|i| {
                 let whole = (points[i + 1] - points[i - 1]) / (knots[i + 1] - knots[i - 1]);
@@ -168,7 +168,7 @@ mod tests {
         TIMES.into_iter().zip(points).collect()
     }
 
-    /// The left and the right difference quotients at each time are the same, up to what the second derivative adds.
+    /// Checks that the left and right difference quotients agree at each time, up to the second derivative's effect.
     fn assert_smooth(at: impl Fn(f64) -> DVec3, times: &[f64]) {
         let step = 1e-6;
         for &time in times {

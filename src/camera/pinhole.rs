@@ -14,7 +14,7 @@ use crate::geometry::subject::Subject;
 ///
 /// The ray of the relative location (x, y) starts at the eye and has the direction `(x·hx + shift)·u + y·hy·v −
 /// distance·w`, where (hx, hy) is the half extent of the view plane, `distance` is its distance from the eye, and
-/// `shift` is how far its middle lies to the right. `shift` is zero except for one eye of a stereo pair.
+/// `shift` is the distance of its middle to the right. `shift` is zero except for one eye of a stereo pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinholeCamera {
     pub(super) pose: Pose,
@@ -24,7 +24,7 @@ pub struct PinholeCamera {
 }
 
 impl PinholeCamera {
-    /// The vertical field of view if none is given: 30 degrees.
+    /// The default vertical field of view: 30 degrees.
     pub const DEFAULT_FOV_RADIANS: f64 = std::f64::consts::FRAC_PI_6;
 
     /// A camera with every parameter given, in scene units.
@@ -57,7 +57,7 @@ impl PinholeCamera {
         Self::new(pose, 1.0, tangents(fov_radians, aspect)?)
     }
 
-    /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole subject: a box, or
+    /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole subject, which is a box or
     /// [the spheres of a scene](crate::Scene::subject).
     ///
     /// # Errors
@@ -95,8 +95,8 @@ impl PinholeCamera {
     /// are shifted so that a point at the depth `convergence` along −w has the same location in both pictures, and
     /// seems to lie in the screen. An infinite `convergence` shifts nothing.
     ///
-    /// These are asymmetric frusta (P. Bourke, *Calculating stereo pairs*, 1999): turning the cameras inwards instead
-    /// would also move objects up and down in the picture.
+    /// These are asymmetric frusta (P. Bourke, *Calculating stereo pairs*, 1999): turning the cameras inwards would
+    /// also move objects up and down in the picture.
     ///
     /// # Errors
     /// Returns an error if a length is out of range.
@@ -110,7 +110,7 @@ impl PinholeCamera {
         Ok([eye(-0.5 * separation)?, eye(0.5 * separation)?])
     }
 
-    /// The same rays, described by a view plane at another distance.
+    /// The camera with the same rays and the view plane at another distance.
     pub(super) fn with_distance(&self, distance: f64) -> Result<Self, CameraError> {
         let scale = distance / self.distance;
         let shift = self.shift * scale;
@@ -118,7 +118,7 @@ impl PinholeCamera {
         Ok(Self { shift, ..camera })
     }
 
-    /// The same camera with a narrower field of view: the picture is enlarged about its middle.
+    /// The same camera with a narrower field of view, which enlarges the picture about its middle.
     pub(super) fn zoomed(self, zoom: Option<f64>) -> Result<Self, CameraError> {
         let Some(zoom) = zoom else { return Ok(self) };
         let half_extent = checked_half_extent(self.half_extent / checked_length("`zoom`", zoom)?)?;
@@ -144,7 +144,7 @@ impl Camera for PinholeCamera {
             + self.shift * basis.u()
             + location.y * basis.v() * self.half_extent.y
             - self.distance * basis.w();
-        // At least `distance` long, so never zero.
+        // The vector is at least `distance` long, so never zero.
         Ray { origin: self.pose.origin(), direction: toward / toward.length() }
     }
 

@@ -1,12 +1,12 @@
-//! The place of a camera, as a scene file gives it.
+//! The placement of a camera in a scene file.
 
 use glam::DVec3;
 
 use super::{CameraError, Pose};
 use crate::exact::List;
 
-/// Eye, target and up, which the tables of all cameras have. Without an eye the camera is placed so that it sees the whole
-/// scene.
+/// The eye, target and `up`, which the tables of all cameras have. Without an eye, the camera is placed so that it sees
+/// the whole scene.
 pub(super) struct PoseParameters {
     /// Position of the camera.
     pub(super) eye: Option<List<3>>,
@@ -14,14 +14,14 @@ pub(super) struct PoseParameters {
     pub(super) look_at: Option<List<3>>,
     /// The direction in which the camera looks, instead of `look_at`.
     pub(super) direction: Option<List<3>>,
-    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
+    /// The `up` direction in the picture. By default it is +y, or another axis in a view along y.
     pub(super) up: Option<List<3>>,
 }
 
-/// The pose that [`PoseParameters`] describe.
+/// The pose that [`PoseParameters`] give, and how it was found.
 pub(super) struct Placement {
     pub(super) pose: Pose,
-    /// `true` if the position follows from what the camera must see; the pose has only the orientation then.
+    /// Whether the position follows from what the camera must see. If so, the pose has only the orientation.
     pub(super) is_framed: bool,
     pub(super) direction: Option<List<3>>,
     pub(super) up: Option<List<3>>,
@@ -56,7 +56,7 @@ impl PoseParameters {
         self.upright(toward.into(), along, Some(List(toward)), eye.is_none())
     }
 
-    /// Makes a pose with the direction that is up. If none was given, it is +y, or for a view straight down or up the
+    /// Makes a pose with the `up` direction. If none was given, it is +y, or for a view straight down or up the
     /// horizontal direction that [`Viewpoint::axes`](super::Viewpoint::axes) chooses.
     fn upright(
         &self,

@@ -13,7 +13,7 @@ pub struct Pose {
     basis: OrthonormalBasis,
 }
 
-/// Why parameters do not make a camera.
+/// The reason why parameters do not make a camera.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
@@ -51,10 +51,10 @@ pub enum CameraError {
 }
 
 impl Pose {
-    /// The direction of view if none is given: along −z, as in molecule viewers.
+    /// The default direction of view: along −z, as in molecule viewers.
     pub(super) const DEFAULT_DIRECTION: [f64; 3] = [0.0, 0.0, -1.0];
 
-    /// A camera at `eye` that looks at `look_at`; `up` fixes the roll and need be neither a unit vector nor
+    /// A camera at `eye` that looks at `look_at`. `up` fixes the roll, and need be neither a unit vector nor
     /// perpendicular.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl Pose {
         checked_point("the eye", eye)?;
         checked_point("the look-at point", look_at)?;
         checked_direction("up", up)?;
-        // Halved, so that points apart by the least number are the same.
+        // Halved, so that points that differ by the smallest number count as the same.
         let backwards = eye * 0.5 - look_at * 0.5;
         if backwards == DVec3::ZERO {
             let eye = eye.to_array();
@@ -94,13 +94,13 @@ impl Pose {
         checked_point("the eye", eye)?;
         checked_direction("the direction", direction)?;
         checked_direction("up", up)?;
-        // Two finite vectors that are not zero can only be parallel.
+        // Finite vectors that are not zero have no basis only if they are parallel.
         let basis = OrthonormalBasis::from_vectors(-direction, up)
             .ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 
-    /// The same orientation, at a place relative to the centre of a box.
+    /// The same orientation, at a position relative to the centre of a box.
     pub(super) fn framing(self, bounds: &Bounds, offset: DVec3) -> Result<Self, CameraError> {
         let origin = bounds.center() + offset;
         checked_point("the eye", origin).map_err(|_| {
@@ -119,14 +119,14 @@ impl Pose {
         Ok(Self { origin, ..self })
     }
 
-    /// The vectors of a camera that looks along −w, with a view plane of this half extent.
+    /// The vectors of a camera that looks along −w, with a view plane of the given half extent.
     pub(super) fn vectors(&self, half_extent: DVec2, numbers: [f64; 3]) -> CameraVectors {
         let (origin, basis) = (self.origin, self.basis);
         let [right, up] = [basis.u() * half_extent.x, basis.v() * half_extent.y];
         CameraVectors { origin, right, up, forward: -basis.w(), numbers }
     }
 
-    /// A point as seen from the camera: how far to the right, up and forward it is.
+    /// A point relative to the camera: the distances to the right and up, and the distance forward.
     pub(super) fn seen(&self, point: DVec3) -> (DVec2, f64) {
         let (toward, basis) = (point - self.origin, self.basis);
         (DVec2::new(toward.dot(basis.u()), toward.dot(basis.v())), -toward.dot(basis.w()))
@@ -170,10 +170,9 @@ fn checked_direction(parameter: &str, value: DVec3) -> Result<(), CameraError> {
     Ok(())
 }
 
-/// Vectors in world space and numbers, in f64, that describe a camera completely once its kind is known.
+/// The vectors in world space and numbers, in f64, that describe a camera of a known kind completely.
 ///
-/// The exact meaning of `right`, `up`, `forward` and `numbers` is defined by the Rust file and the WGSL part of each
-/// camera.
+/// The Rust file and the WGSL part of each camera define the exact meaning of `right`, `up`, `forward` and `numbers`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CameraVectors {
@@ -185,19 +184,20 @@ pub struct CameraVectors {
     pub up: DVec3,
     /// Vector into the picture.
     pub forward: DVec3,
-    /// Further parameters of the camera; unused ones are zero.
+    /// Further parameters of the camera. Unused ones are zero.
     pub numbers: [f64; 3],
 }
 
 impl CameraVectors {
-    /// Vectors in the order of the fields, as those of a camera, after the checks that hold for cameras of every kind.
+    /// Makes the vectors of a camera from rows in the order of the fields, after the checks that hold for cameras of
+    /// every kind.
     pub(crate) fn checked(rows: [DVec3; 5]) -> Result<Self, CameraError> {
         let [origin, right, up, forward, numbers] = rows;
         checked_point("the origin", origin)?;
         for (parameter, value) in
             [("length of right", right), ("length of up", up), ("length of forward", forward)]
         {
-            // Each is a length in range times a vector that has unit length up to rounding.
+            // Each is a length in range times a vector of unit length, up to rounding.
             let length = value.length();
             if !(0.5 * MIN_LENGTH..=2.0 * MAX_LENGTH).contains(&length) {
                 return Err(CameraError::Length { parameter, value: length });

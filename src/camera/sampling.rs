@@ -1,6 +1,6 @@
-//! Sample points that are computed from their address: pixel, sample, and pair of dimensions.
+//! Sample points, computed from their address, which is the pixel, the sample, and the pair of dimensions.
 //!
-//! Each pair of dimensions uses the first two dimensions of Sobol's sequence, a (0, 2)-sequence in base 2: in every
+//! Each pair of dimensions uses the first two dimensions of Sobol's sequence, a (0, 2)-sequence in base 2. In every
 //! aligned block of 2ᵐ samples, each elementary interval of area 2⁻ᵐ contains exactly one sample. Each pair is shuffled
 //! and scrambled on its own ("padded", as in `PaddedSobolSampler` of pbrt-v4), which keeps this property and makes
 //! pairs and pixels independent of each other. The method is that of B. Burley, "Practical Hash-based Owen Scrambling",
@@ -9,7 +9,7 @@
 //!
 //! All arithmetic is on integers, so that every device gives the same bits. The WGSL twin is `shaders/math/sampling.wgsl`.
 
-/// The seed of a pixel, which makes its sample points differ from those of other pixels; `pixel` is column and row.
+/// The seed of a pixel, given as column and row. It makes the pixel's sample points differ from those of other pixels.
 ///
 /// Hashes are nested as in M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020.
 #[must_use]
@@ -18,9 +18,9 @@ pub fn pixel_seed(pixel: [u32; 2], seed: u32) -> u32 {
     pcg(column.wrapping_add(pcg(row.wrapping_add(pcg(seed)))))
 }
 
-/// One point of a pair of dimensions: two integers that stand for fractions of 2³².
+/// One point of a pair of dimensions: two integers in units of 2⁻³².
 ///
-/// A sample may use many pairs; each purpose has its own number `pair`.
+/// A sample may use many pairs. Each purpose has its own number `pair`.
 #[must_use]
 pub fn pair(pixel_seed: u32, sample: u32, pair: u32) -> [u32; 2] {
     let order = pcg(pixel_seed ^ pcg(pair));
@@ -33,20 +33,20 @@ pub fn pair(pixel_seed: u32, sample: u32, pair: u32) -> [u32; 2] {
         .map(u32::reverse_bits)
 }
 
-/// The number in [0, 1) that the upper 24 bits stand for; f32 represents it exactly.
+/// The number in [0, 1) given by the upper 24 bits. f32 represents it exactly.
 #[must_use]
 pub fn unit(bits: u32) -> f64 {
     f64::from(bits >> 8) / f64::from(1 << 24)
 }
 
-/// The output function RXS-M-XS of the 32-bit PCG after one step of its generator: a bijection.
+/// The bijective output function RXS-M-XS of the 32-bit PCG, after one step of its generator.
 fn pcg(x: u32) -> u32 {
     let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word
 }
 
-/// Flips each bit depending on a hash of the bits below it: Owen scrambling of a fraction whose bits are reversed.
+/// Owen scrambling of a fraction whose bits are reversed: flips each bit depending on a hash of the bits below it.
 fn scramble_reversed(x: u32, seed: u32) -> u32 {
     let x = x ^ x.wrapping_mul(0x3d20_adea);
     let x = x.wrapping_add(seed).wrapping_mul((seed >> 16) | 1);
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// The expected values come from a program in another language that follows the paper's formula.
+    /// Known values from a program in another language that follows the paper's formula.
     #[test]
     fn hashes_of_known_numbers() {
         assert_eq!(pcg(0), 129_708_002);

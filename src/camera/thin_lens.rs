@@ -1,4 +1,4 @@
-//! The thin-lens camera: what is not in focus is blurred.
+//! The thin-lens camera, which blurs objects out of focus.
 
 use glam::{DVec2, DVec3};
 
@@ -12,22 +12,22 @@ use crate::geometry::ray::Ray;
 
 /// A camera with a thin lens.
 ///
-/// The rays of a relative location start on a disk around the eye, perpendicular to the view, and all intersect at one
-/// point: where the pinhole camera's ray hits the plane of focus, which is `focus_distance` away along the view. The
-/// lens does not bend the ray through its centre, so that ray is the pinhole camera's.
+/// The rays of a relative location start on a disk around the eye, perpendicular to the view. All of them intersect
+/// where the pinhole camera's ray hits the plane of focus, which is `focus_distance` away along the view. The lens does
+/// not bend the ray through its centre, so that ray is the pinhole camera's.
 ///
-/// With the plane of focus at f, a point at the distance s from the lens is blurred to a disk that has the diameter
-/// 2·radius·|s − f|/s in the plane of focus, the *circle of confusion* (M. Potmesil and I. Chakravarty, *Synthetic
-/// image generation with a lens and aperture camera model*, ACM Transactions on Graphics 1, 1982).
+/// If the plane of focus is at f, a point at the distance s from the lens is blurred to a disk. Its diameter in the
+/// plane of focus is 2·radius·|s − f|/s. It is called the *circle of confusion* (M. Potmesil and I. Chakravarty,
+/// *Synthetic image generation with a lens and aperture camera model*, ACM Transactions on Graphics 1, 1982).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLensCamera {
-    /// The pinhole camera through the centre of the lens; its view plane is the plane of focus.
+    /// The pinhole camera through the centre of the lens. Its view plane is the plane of focus.
     pinhole: PinholeCamera,
     aperture_radius: f64,
 }
 
 impl ThinLensCamera {
-    /// A pinhole camera with a lens in place of the hole. Lengths are in scene units; the distance is measured along
+    /// A pinhole camera with a lens in place of the hole. Lengths are in scene units. The distance is measured along
     /// the view.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ impl ThinLensCamera {
         Ok(Self { pinhole: pinhole.with_distance(focus_distance)?, aperture_radius })
     }
 
-    /// The same as [`ThinLensCamera::new`], with the plane of focus through a point.
+    /// A thin-lens camera whose plane of focus contains a point.
     ///
     /// # Errors
     /// Returns the same errors as [`ThinLensCamera::new`], and an error if the point does not lie in front of the
@@ -61,8 +61,8 @@ impl ThinLensCamera {
         Self::new(pinhole, aperture_radius, distance)
     }
 
-    /// The aperture radius of a lens: its f-number (ISO 517) is N = f/D, where f is the focal length in scene units and
-    /// D the diameter. The focal length has no other effect: the field of view is the pinhole camera's.
+    /// The aperture radius of a lens with an f-number N = f/D (ISO 517), where f is the focal length in scene units and
+    /// D the diameter. The focal length has no other effect, because the field of view is the pinhole camera's.
     ///
     /// # Errors
     /// Returns an error if the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
@@ -99,8 +99,8 @@ impl Camera for ThinLensCamera {
         self.pinhole.location_of(point_in_world)
     }
 
-    /// The vectors of the pinhole camera whose view plane is the plane of focus. The first two numbers are the radius
-    /// of the lens as a multiple of the lengths of `right` and of `up`.
+    /// The vectors of the pinhole camera whose view plane is the plane of focus. The first two numbers are the lens
+    /// radius as multiples of the lengths of `right` and of `up`.
     fn vectors(&self) -> CameraVectors {
         let [first, second] = (self.aperture_radius / self.pinhole.half_extent).to_array();
         CameraVectors { numbers: [first, second, 0.0], ..self.pinhole.vectors() }

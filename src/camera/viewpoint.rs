@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use glam::{DQuat, DVec3};
 
-/// Where a camera stands, as seen from the scene: on one side of it, or at an azimuth and an elevation.
+/// The direction from the scene to a camera: one side of the scene, or an azimuth and an elevation.
 ///
 /// The text is `x`, `-x`, `y`, `-y`, `z`, `-z`, `iso` (azimuth 45, elevation 35.26: all three axes are equally
 /// foreshortened), or `AZIMUTH,ELEVATION` in degrees. With +y up, the azimuth is counted from +z towards +x, and the
-/// elevation from the horizon upwards. `z` is what molecule viewers begin with.
+/// elevation from the horizon upwards. Molecule viewers begin with `z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Viewpoint {
@@ -20,16 +20,16 @@ pub enum Viewpoint {
         /// Whether the camera stands on the negative side.
         is_negative: bool,
     },
-    /// At two angles in degrees, whatever direction is up.
+    /// At two angles in degrees, for any `up` direction.
     Angles {
-        /// The angle about the direction that is up, counter-clockwise seen from above.
+        /// The angle about the `up` direction, counter-clockwise seen from above.
         azimuth: f64,
         /// The angle above the horizon, from -90 to 90.
         elevation: f64,
     },
 }
 
-/// A text is not the name of a viewpoint.
+/// An error for a text that is not a viewpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "write x, -x, y, -y, z, -z, iso, or AZIMUTH,ELEVATION in degrees, such as 30,20, with an elevation from -90 to 90"
@@ -41,15 +41,15 @@ pub struct ViewpointError;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Viewpoint {
-    /// An oblique view, which shows the shape of three-dimensional data: azimuth 30, elevation 20.
+    /// An oblique view with azimuth 30 and elevation 20, which shows the shape of three-dimensional data.
     pub const OBLIQUE: Self = Self::Angles { azimuth: 30.0, elevation: 20.0 };
 
     /// The view in which all three axes are equally foreshortened.
     pub const ISOMETRIC: Self = Self::Angles { azimuth: 45.0, elevation: 35.264_389_682_754_654 };
 
-    /// The direction in which a camera at this viewpoint looks, and the direction that is up in its picture, after it
-    /// was turned by `turn` degrees about `up`, counter-clockwise seen from above. The second is `up`, except in a view
-    /// from straight above or below: there it is the horizontal direction away from the azimuth.
+    /// The direction of view of a camera at this viewpoint, and its `up` direction in the picture, after a turn by
+    /// `turn` degrees about `up`, counter-clockwise seen from above. The second is `up`, except in a view from straight
+    /// above or below. There it is the horizontal direction away from the azimuth.
     #[must_use]
     pub fn axes(self, up: DVec3, turn: f64) -> [DVec3; 2] {
         let up = up.normalize_or(DVec3::Y);
@@ -73,7 +73,7 @@ impl Viewpoint {
     }
 }
 
-/// A direction, turned about `up` by some degrees, counter-clockwise seen from above.
+/// Turns a direction about `up` by some degrees, counter-clockwise seen from above.
 #[must_use]
 pub fn turned(direction: DVec3, up: DVec3, degrees: f64) -> DVec3 {
     DQuat::from_axis_angle(up.normalize_or(DVec3::Y), degrees.to_radians()) * direction

@@ -4,10 +4,10 @@ use crate::image::Image;
 use crate::image::denoise::{Guides, MissingGuide, PASSES};
 use crate::parallel;
 
-/// A variance of light that is no noise: a miss with no more is background, and stays as it is.
+/// Below this variance, light has no noise. A miss below it is background, and stays as it is.
 const NO_NOISE: f64 = 1e-8;
 
-/// Returns a picture with less noise: light is averaged among pixels of similar shape and colour.
+/// Reduces the noise of a picture by averaging light among pixels of similar shape and colour.
 ///
 /// # Errors
 /// Returns an error if the picture lacks one of the layers [`crate::image::denoise::GUIDES`].
@@ -66,7 +66,7 @@ fn filtered(
     [r / weights, g / weights, b / weights, variance / (weights * weights)]
 }
 
-/// The similarity of two pixels in shape and colour, regardless of their light: 1 for equal pixels, near 0 for
+/// The similarity of two pixels in shape and colour, regardless of their light. 1 for equal pixels, near 0 for
 /// different ones.
 fn likeness(guides: &Guides, a: usize, b: usize, distance: f64) -> f64 {
     let [shape, other] = [a, b].map(|index| guides.shapes[index].map(f64::from));

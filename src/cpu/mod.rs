@@ -1,10 +1,10 @@
-//! The CPU reference: code in f64 that is as simple as possible, so that it can be seen to be correct.
+//! The CPU reference: f64 code that is as simple as possible, so that readers can check it.
 //!
-//! GPU results are judged against it. Each ray tests every sphere, and nothing but scene, camera and film is shared with
-//! the GPU renderer. Where a choice is between clear and fast, it is clear.
+//! GPU results are compared with it. Each ray tests every sphere, and only the scene, camera and film are shared with
+//! the GPU renderer. Clear code is preferred to fast code.
 //!
-//! Where there is no device, the same code renders large scenes: with a [`SearchStructure`], rays test only spheres that they
-//! may hit. The picture is the same, to the bit.
+//! Machines without a GPU use the same code for large scenes. With a [`SearchStructure`], rays test only spheres that
+//! they may hit. The picture is the same, to the bit.
 
 use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
@@ -30,15 +30,15 @@ pub use search::{Search, SearchPlan, SearchStructure};
 
 /// Renders a picture.
 ///
-/// With the integrator `primary`, each pixel shows what the ray through its centre hits. With the other integrators,
-/// colour, alpha and albedo are means over the samples. Depth, normal, position and id come from the ray through the
-/// pixel's centre and its first sphere, whatever its material. The variance is that of the mean luminance.
+/// With the integrator `primary`, each pixel shows the surface that the ray through its centre hits. With the other
+/// integrators, colour, alpha and albedo are means over the samples. Depth, normal, position and id come from the ray
+/// through the pixel's centre and its first sphere, whatever its material. The variance is that of the mean luminance.
 ///
-/// Given a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
-/// [`SearchStructure`] and give a reference to it: the picture is the same, to the bit, and soon finished.
+/// If `search` is a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
+/// [`SearchStructure`] and pass a reference to it. The picture is the same, to the bit, but takes far less time.
 ///
-/// Rows are rendered on all cores; the picture does not depend on how many there are. With lighting, each pixel needs
-/// [`SampledPicture::BYTES_PER_PIXEL`] for its sums meanwhile.
+/// Rows are rendered on all cores. The picture does not depend on their number. With lighting, each pixel also needs
+/// [`SampledPicture::BYTES_PER_PIXEL`] for its sums while it is rendered.
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.
@@ -51,11 +51,11 @@ pub fn render<'a>(
     Ok(render_watched(search, view, settings, layers, &mut |_| Decision::GoOn)?.image)
 }
 
-/// Renders a picture as [`render`] does, with the same pixels, and asks `watch` several times a second how to continue.
+/// Renders a picture as [`render`] does, with the same pixels. Several times a second, it asks `watch` how to continue.
 ///
-/// With lighting, every pixel gets its first sample before any gets its second, and so on in batches, so that the
-/// caller may finish the picture with the samples that it has.
-/// If a picture is finished within a batch, some rows have more samples than others, which the layer of samples tells.
+/// With lighting, every pixel gets its first sample before any gets its second, and so on in batches. So the caller can
+/// finish the picture with the samples taken so far.
+/// If a picture is finished within a batch, some rows have more samples than others, as the layer of samples shows.
 ///
 /// # Errors
 /// Returns an error as [`render`] does, if `watch` stops the work, or if it finishes the picture before every pixel has a
@@ -77,8 +77,8 @@ pub fn render_watched<'a>(
     }
 }
 
-/// Renders a picture by primary rays of a part of a scene ([`Scene::part`](crate::scene::Scene::part)), with what is
-/// needed to put it together with those of the other parts. `None` for settings with light.
+/// Renders a part of a scene ([`Scene::part`](crate::scene::Scene::part)) by primary rays, with the data needed to
+/// merge the result with the pictures of the other parts. Returns `None` if the integrator is not `primary`.
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.

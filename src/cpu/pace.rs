@@ -1,4 +1,4 @@
-//! How much of a picture is rendered between two calls of its caller, and why it may have none.
+//! The pace of a render: how much is rendered between two calls of the caller, and errors of rendering.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use crate::image::ImageTooLarge;
 use crate::parallel;
 use crate::render::SettingsError;
 
-/// Why no picture is rendered.
+/// The reason why a picture cannot be rendered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -22,12 +22,12 @@ pub enum RenderError {
     Stopped,
 }
 
-/// The time between two calls that is aimed at: short enough for a person, long enough that waiting for the last of all
-/// threads does not count.
+/// The intended time between two calls. It is short enough for a person, and so long that waiting for the slowest
+/// thread does not matter.
 const AIM: Duration = Duration::from_millis(60);
 
-/// The most strips that are rendered together. References to the layers of their rows may need more memory than narrow
-/// rows.
+/// The largest number of strips that are rendered together. References to the layers of their rows may need more memory
+/// than narrow rows.
 const MOST: usize = 512;
 
 /// Divides the strips of a picture into bands that take about the same time.
@@ -35,18 +35,18 @@ const MOST: usize = 512;
 pub(super) struct Pace {
     /// The number of strips of the next band.
     strips: usize,
-    /// The least number of strips of a band but the last: one for each thread, so that none of them waits.
+    /// The smallest number of strips of a band, except the last. There is one for each thread, so that no thread waits.
     least: usize,
 }
 
 impl Pace {
-    /// Nothing is known yet, so the first band is as short as possible.
+    /// Starts with the shortest possible band, because nothing is known yet.
     pub(super) fn new() -> Self {
         let least = parallel::threads();
         Self { strips: least, least }
     }
 
-    /// Calls `work` with bands of strips that together are all of `count`, until it returns an error.
+    /// Calls `work` with bands of strips that together cover all `count` strips, until it returns an error.
     pub(super) fn run(
         &mut self,
         count: usize,
@@ -67,13 +67,13 @@ impl Pace {
 
     fn adapt(&mut self, strips: usize, elapsed: Duration) {
         let fitting = strips as f64 * AIM.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
-        // Conversions saturate. A band may have been easier than the next.
+        // Conversions saturate. The next band may be harder than this one.
         self.strips =
             (fitting as usize).clamp(self.least, MOST.max(self.least)).min(4 * self.strips);
     }
 }
 
-/// The time; `None` in a browser, where the standard library has no clock.
+/// The current time. `None` in a browser, where the standard library has no clock.
 fn now() -> Option<Instant> {
     (!cfg!(target_arch = "wasm32")).then(Instant::now)
 }

@@ -1,4 +1,4 @@
-//! Pictures of one ray for each pixel. The WGSL twins are `shaders/primary/trace.wgsl` and `shaders/primary/shade.wgsl`.
+//! Pictures with one ray per pixel. The WGSL twins are `shaders/primary/trace.wgsl` and `shaders/primary/shade.wgsl`.
 
 use std::ops::Range;
 
@@ -13,8 +13,8 @@ use crate::parallel::for_each;
 use crate::render::{Decision, Picture, PrimarySettings, Progress, Shading, Watch};
 use crate::scene::Scene;
 
-/// The nearest hit in front of the ray's origin; of several spheres at the same distance, that with the smallest id.
-/// `None` for a miss. With a reference to a scene, every sphere is tested.
+/// The nearest hit in front of the ray's origin. If several spheres are equally near, the one with the smallest id.
+/// `None` for a miss. If `search` is a reference to a scene, every sphere is tested.
 #[must_use]
 pub fn trace<'a>(search: impl Into<Search<'a>>, ray_in_world: &Ray) -> Option<Hit> {
     let search = search.into();
@@ -46,7 +46,7 @@ pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> 
     }
 }
 
-/// The pixel of the ray through its centre.
+/// The pixel that the ray through its centre gives.
 pub(super) fn primary_pixel(
     search: Search<'_>,
     view: &View<'_>,
@@ -75,7 +75,7 @@ pub(super) fn for_rows(
     });
 }
 
-/// Renders a picture of primary rays, and asks after some rows how to continue.
+/// Renders a picture of primary rays. Calls `watch` after some rows to ask how to continue.
 pub(super) fn primary_watched(
     search: Search<'_>,
     view: &View<'_>,

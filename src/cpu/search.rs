@@ -1,7 +1,7 @@
-//! How rays find spheres: by testing every sphere, or only those that a structure cannot rule out.
+//! Two ways to find the spheres that rays hit: testing every sphere, or only those that a structure cannot rule out.
 //!
-//! Both ways apply the same tests in f64 and have the same answers, to the bit. Testing every sphere is the reference,
-//! which needs no proof. That structures leave out no sphere is proved in `accel/wide_tree_visit.rs` and
+//! Both ways apply the same tests in f64 and give the same answers, to the bit. Testing every sphere is the reference,
+//! which needs no proof. The proofs that structures miss no sphere are in `accel/wide_tree_visit.rs` and
 //! `accel/grid_visit.rs`.
 
 use std::ops::Range;
@@ -16,7 +16,7 @@ use crate::geometry::ray::Ray;
 use crate::parallel::try_map;
 use crate::scene::{Scene, SceneError};
 
-/// A scene, and how rays find its spheres. The picture does not depend on it.
+/// A scene, and the way in which rays find its spheres. Both ways give the same picture.
 ///
 /// A reference to a [`Scene`] stands for [`Search::EverySphere`], and one to a [`SearchStructure`] for
 /// [`Search::Structure`].
@@ -40,11 +40,11 @@ impl<'a> From<&'a SearchStructure<'a>> for Search<'a> {
     }
 }
 
-/// The number of spheres up to which testing all takes less time than a structure.
+/// Up to this number of spheres, testing all takes less time than a structure.
 const FEW: usize = 16;
 
-/// A structure over the spheres of a scene, which makes the CPU reference fast and changes none of its pictures: a grid
-/// where all spheres are opaque and a plan chooses a grid, and otherwise an 8-wide tree.
+/// A structure that skips spheres that a ray cannot hit. The CPU reference becomes fast, and its pictures stay
+/// identical. It is a grid if all spheres are opaque and a plan chooses a grid, and otherwise an 8-wide tree.
 #[derive(Debug)]
 pub struct SearchStructure<'a> {
     scene: &'a Scene,
@@ -53,32 +53,32 @@ pub struct SearchStructure<'a> {
 
 #[derive(Debug)]
 enum Kind {
-    /// None, for few spheres.
+    /// No structure, for few spheres.
     List,
     Tree(TreeIndex),
     Grid(GridIndex),
 }
 
-/// Which structure suits a scene, before it is built.
+/// The choice of a structure for a scene, before it is built.
 #[derive(Debug)]
 pub struct SearchPlan<'a> {
     scene: &'a Scene,
-    /// The plan of a grid, if that is what suits the scene.
+    /// The plan of a grid, if a grid suits the scene.
     grid: Option<AccelPlan>,
 }
 
 impl<'a> SearchPlan<'a> {
-    /// The most bytes for each sphere while a tree is built, of which 34 remain.
+    /// The largest number of bytes per sphere during the building of a tree. 34 of them remain.
     const TREE_BYTES: u64 = 62;
 
     /// Plans a structure.
     #[must_use]
     pub fn new(scene: &'a Scene) -> Self {
         let spheres = scene.spheres();
-        // Of equal spheres, a long list of a grid has only the first, but another may be the one that hides a light.
+        // A long list of a grid has only the first of equal spheres, but another may be the one that hides a light.
         let grid = (spheres.len() > FEW && scene.is_opaque())
             .then(|| AccelPlan::new(spheres, AccelChoice::Auto, u64::MAX))
-            // A walk is in one grid.
+            // A walk is limited to one grid.
             .filter(|plan| plan.structure == Structure::Grid && plan.brick_count == 1);
         Self { scene, grid }
     }
@@ -89,7 +89,7 @@ impl<'a> SearchPlan<'a> {
         self.scene
     }
 
-    /// The most bytes that the structure needs while it is built, beside the scene.
+    /// The largest number of bytes that building the structure needs, in addition to the scene.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         match &self.grid {
@@ -123,7 +123,7 @@ impl<'a> SearchStructure<'a> {
         SearchPlan::new(scene).build()
     }
 
-    /// A structure of this kind, whatever suits the scene.
+    /// Builds a structure of the given kind, whatever suits the scene.
     #[cfg(test)]
     pub(super) fn of(scene: &'a Scene, structure: Structure) -> Self {
         let kind = match structure {
@@ -136,14 +136,14 @@ impl<'a> SearchStructure<'a> {
         Self { scene, kind }
     }
 
-    /// The scene of which this is the structure.
+    /// The scene that the structure searches.
     #[must_use]
     pub fn scene(&self) -> &'a Scene {
         self.scene
     }
 
-    /// Calls `offer` with every sphere that the ray, which is in the scene's frame, may hit at or before `limit`, and
-    /// its id. The return value of `offer` is the new limit, below zero to end the search.
+    /// Calls `offer` with every sphere, and its id, that the ray may hit at or before `limit`. The ray is in the
+    /// scene's frame. `offer` returns the new limit, or a negative number to end the search.
     #[inline]
     fn visit(&self, ray: &Ray, limit: f64, mut offer: impl FnMut(u32, [f32; 4]) -> f64) {
         let is_done = match &self.kind {
@@ -161,7 +161,7 @@ impl<'a> SearchStructure<'a> {
     }
 }
 
-/// The nearest of the spheres that a test accepted.
+/// The nearest hit that a test accepted.
 #[derive(Clone, Copy)]
 pub(super) struct NearestHit {
     pub(super) id: u32,
@@ -179,8 +179,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The nearest hit of a ray in the scene's frame; of several at the same distance, that with the smallest id.
-    /// `distance` gets a sphere, and returns the distance of a hit, which is not NaN.
+    /// The nearest hit of a ray in the scene's frame. At equal distances, the smallest id wins. `distance` takes a
+    /// sphere, and returns the distance of a hit, which is not NaN.
     #[inline]
     pub(super) fn nearest(
         &self,
@@ -210,8 +210,8 @@ impl<'a> Search<'a> {
         nearest
     }
 
-    /// Whether `test` is true of any sphere. It may be true only of spheres that the ray, which is in the scene's
-    /// frame, hits before `t_max`.
+    /// Whether `test` is true for any sphere. It may be true only for spheres that the ray hits before `t_max`. The ray
+    /// is in the scene's frame.
     #[inline]
     pub(super) fn any(&self, ray: &Ray, t_max: f64, test: impl Fn(u32, [f32; 4]) -> bool) -> bool {
         match self {
@@ -250,7 +250,7 @@ impl TreeIndex {
         Ok(Self { tree, corners, spheres })
     }
 
-    /// Calls `offer` as [`SearchStructure::visit`] does. Returns whether no sphere is left out.
+    /// Calls `offer` as [`SearchStructure::visit`] does. Returns false if it cannot search for this ray.
     #[inline]
     pub(super) fn visit(
         &self,
@@ -274,24 +274,24 @@ impl TreeIndex {
     }
 }
 
-/// A grid.
+/// A grid, with its spheres in the grid's order.
 #[derive(Debug)]
 pub(super) struct GridIndex {
     grid: Grid,
-    /// The spheres and their ids in the order that the grid refers to.
+    /// The spheres, in the order that the grid's references use, and their ids.
     spheres: Vec<[f32; 4]>,
     ids: Vec<u32>,
 }
 
 impl GridIndex {
-    /// Builds the grid of a plan; `None` if the plan is not of one grid.
+    /// Builds the grid of a plan. Returns `None` if the plan is not for a single grid.
     pub(super) fn new(plan: &AccelPlan, scene: &Scene) -> Option<Self> {
         let brick = plan.bricks(scene.spheres()).next().filter(|_| plan.brick_count == 1)?;
         let Index::Grid(grid) = brick.index else { return None };
         Some(Self { grid, spheres: brick.spheres, ids: brick.ids })
     }
 
-    /// Calls `offer` as [`SearchStructure::visit`] does. Returns whether no sphere is left out.
+    /// Calls `offer` as [`SearchStructure::visit`] does. Returns false if it cannot search for this ray.
     #[inline]
     pub(super) fn visit(
         &self,

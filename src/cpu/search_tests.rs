@@ -1,4 +1,4 @@
-//! Structures against testing every sphere, ray by ray, to the bit; and without the margin, so that a loss is seen.
+//! Compares structures with testing every sphere, ray by ray, to the bit. Without the margin, losses must be seen.
 
 use fastrand::Rng;
 use glam::DVec3;
@@ -80,7 +80,7 @@ fn distance(ray: &Ray) -> impl Fn([f32; 4]) -> Option<f64> {
     |[x, y, z, radius]| intersect(ray, wide([x, y, z]), radius.into()).map(|(t, _)| t)
 }
 
-/// The id and the bits of the distance.
+/// The id of the nearest sphere and the bits of its distance.
 fn nearest(search: Search<'_>, ray: &Ray) -> Option<(u32, u64)> {
     search.nearest(ray, distance(ray)).map(|nearest| (nearest.id, nearest.t.to_bits()))
 }
@@ -121,7 +121,7 @@ fn structures_have_the_answers_of_testing_every_sphere() {
     assert!(misses > 3000, "{misses}");
 }
 
-/// The grids walk most of these rays, and not only those that start in the scene.
+/// Grids accept most of these rays, including rays that start outside the scene.
 #[test]
 fn grids_accept_rays_from_far_away() {
     let mut random = Rng::with_seed(34);
@@ -137,7 +137,7 @@ fn grids_accept_rays_from_far_away() {
     }
 }
 
-/// A ray whose direction is not of unit length, and one with NaN or infinities, has the same answers too.
+/// Rays with directions that are not of unit length, or with NaN or infinities, have the same answers too.
 #[test]
 fn odd_rays_have_the_same_answers() {
     let mut random = Rng::with_seed(32);
@@ -159,7 +159,7 @@ fn odd_rays_have_the_same_answers() {
     }
 }
 
-/// With parts of the margin and of what f32 may round, the share of rays that lose the sphere that they hit first.
+/// The share of rays that lose the sphere that they hit first, with fractions of the margin and of the f32 rounding.
 fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
     let mut random = Rng::with_seed(33);
     let (mut hits, mut losses) = (0, 0);
@@ -185,7 +185,7 @@ fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
     f64::from(losses) / f64::from(hits)
 }
 
-/// What boxes are wider by is needed, and has some to spare.
+/// The extra width of boxes is needed, and exceeds the need.
 #[test]
 fn without_the_margin_spheres_are_lost() {
     let shares = [[0.0, 0.0], [1.0, 0.0], [1.0 / 64.0, 0.5]].map(lost);

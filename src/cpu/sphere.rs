@@ -4,17 +4,17 @@ use glam::DVec3;
 
 use crate::geometry::ray::Ray;
 
-/// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
-/// there, which points away from the centre; `None` for a miss.
+/// The distance to the sphere's first point in front of the ray's origin, and the unit normal there, which points away
+/// from the centre. `None` for a miss.
 ///
-/// If the ray starts inside the sphere or on its surface, the first point is on the far side. By Pythagoras: the foot
-/// point of the centre on the ray lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent
-/// ray hits; a ray that starts on the surface and only leaves the sphere does not.
+/// If the ray starts inside the sphere or on its surface, the first point is on the far side. The distance follows from
+/// Pythagoras: the foot point of the centre on the ray lies at the distance `b`, and half the chord is √(r² − |centre −
+/// foot|²). A tangent ray hits. A ray that starts on the surface and only leaves the sphere does not.
 ///
-/// The normal is computed from the same right triangle, not from the hit point, which for a small sphere far away is
-/// nothing but rounding error.
+/// The normal is computed from the same right triangle, not from the hit point. For a small sphere far away, the
+/// rounding error of the hit point exceeds the radius.
 ///
-/// Inlined, so that callers who need the distance alone compute no more.
+/// Inlined, so that callers that need only the distance do not compute the normal.
 #[inline(always)]
 pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, DVec3)> {
     let to_center = center - ray.origin;
@@ -24,11 +24,11 @@ pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, D
     if half_chord_squared < 0.0 {
         return None;
     }
-    // The product of the distances to both sides: positive outside, zero on the surface.
+    // The product of the distances to both sides. It is positive outside and zero on the surface.
     let c = to_center.length_squared() - radius * radius;
     let half_chord = half_chord_squared.sqrt();
     let from_foot = if c > 0.0 { -half_chord } else { half_chord };
-    // t is b + from_foot; if the two would cancel, it follows from (b + from_foot)(b − from_foot) = c.
+    // t is b + from_foot. If the two would cancel, t follows from (b + from_foot)(b − from_foot) = c.
     let t = if b * from_foot >= 0.0 { b + from_foot } else { c / (b - from_foot) };
     (t > 0.0).then(|| (t, (from_foot * ray.direction - foot_to_center) / radius))
 }
@@ -79,8 +79,8 @@ mod tests {
         }
     }
 
-    /// With the eye on the surface, up to rounding, and a ray along the surface, `c` and half the chord are nothing but
-    /// rounding error. But such a flat ray cuts only a short chord off the sphere: √(8 · 2⁻⁵³) is 3 · 10⁻⁸.
+    /// If the eye is on the surface, up to rounding, and the ray is along the surface, `c` and half the chord consist
+    /// of rounding errors only. But such a flat ray cuts only a short chord off the sphere: √(8 · 2⁻⁵³) is 3 · 10⁻⁸.
     #[test]
     fn along_the_surface_no_hit_is_far() {
         let mut random = fastrand::Rng::with_seed(17);

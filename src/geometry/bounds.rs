@@ -1,4 +1,4 @@
-//! An axis-aligned box.
+//! Axis-aligned bounds.
 
 use glam::DVec3;
 
@@ -58,7 +58,7 @@ impl Bounds {
         Self { min: self.min - by, max: self.max + by }
     }
 
-    /// The distance at which a ray enters the box, which is 0 if it starts inside; `None` if it misses the box.
+    /// The distance at which a ray enters the box: 0 if it starts inside, and `None` if it misses the box.
     pub(crate) fn entry(&self, ray: &Ray) -> Option<f64> {
         let (mut near, mut far) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {

@@ -1,4 +1,4 @@
-//! Small vector helpers, a map from square to disk, and the range of lengths that the kernels can square without overflow.
+//! Small vector helpers, a map from square to disk, and the range of lengths that kernels can square without overflow.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -12,7 +12,7 @@ pub const MAX_LENGTH: f64 = (1_u64 << 56) as f64;
 
 /// The smallest radius or view-plane length, in scene units: 2⁻⁵⁶.
 ///
-/// Its square, 2⁻¹¹², is still a normal f32; a device may flush subnormal numbers to zero.
+/// The square of this length, 2⁻¹¹², is still a normal f32. A device may flush subnormal numbers to zero.
 pub const MIN_LENGTH: f64 = 1.0 / MAX_LENGTH;
 
 /// The vector of length one along `v`, or `None` if `v` is zero or not finite.
@@ -24,7 +24,7 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     if !v.is_finite() || largest == 0.0 {
         return None;
     }
-    // A division, because 1/largest is infinite for a subnormal `largest`.
+    // Divides, because 1/largest is infinite for a subnormal `largest`.
     (v / largest).try_normalize()
 }
 
@@ -38,8 +38,8 @@ pub(crate) fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-/// Maps a point of the unit square [0, 1)² to a point of the unit disk by the concentric map, which preserves relative
-/// areas and keeps neighbours together; (½, ½) is mapped to the centre. The WGSL twin is `shaders/math/disk.wgsl`.
+/// Maps a point of the unit square [0, 1)² to the unit disk by the concentric map, which preserves relative areas and
+/// keeps neighbours together. The centre (½, ½) stays the centre. The WGSL twin is `shaders/math/disk.wgsl`.
 ///
 /// P. Shirley and K. Chiu, *A low distortion map between disk and square*, Journal of Graphics Tools 2 (1997), with D.
 /// Cline's signed radius, which needs two cases instead of four.
@@ -92,8 +92,8 @@ mod tests {
         near([0.75, 0.25], [0.5 * half, -0.5 * half]);
     }
 
-    /// Equal areas of the square are mapped to equal areas of the disk: a grid of points has the moments of a uniform
-    /// disk.
+    /// Equal areas of the square are mapped to equal areas of the disk, so a grid of points has the moments of a
+    /// uniform disk.
     #[test]
     fn areas_keep_their_proportions() {
         let side = 1000;

@@ -5,9 +5,9 @@ use glam::DVec3;
 /// A ray: a half-line, in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where the ray starts.
+    /// The point where the ray starts.
     pub origin: DVec3,
-    /// The direction; unit length.
+    /// The direction, of unit length.
     pub direction: DVec3,
 }
 
@@ -22,11 +22,11 @@ impl Ray {
 /// The nearest intersection of a ray with a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance from the ray's origin, along the ray, in scene units; greater than zero.
+    /// Distance from the ray's origin, along the ray, in scene units. It is greater than zero.
     pub t: f64,
     /// Index of the sphere, in input order.
     pub id: u32,
-    /// Unit normal of the sphere at the hit. It points away from the centre, also when the ray starts inside and hits
-    /// the far side.
+    /// Unit normal of the sphere at the hit. It points away from the centre, even if the ray starts inside and hits the
+    /// far side.
     pub normal: DVec3,
 }

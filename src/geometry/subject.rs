@@ -1,25 +1,25 @@
-//! What a camera frames: spheres, or a box.
+//! The subject of a camera: the spheres or the box that it frames.
 
 use glam::DVec3;
 
 use crate::geometry::bounds::Bounds;
 use crate::parallel;
 
-/// What a camera frames so that all of it is in the picture: spheres, or a box.
+/// The spheres, or the box, that a camera frames so that all of it is in the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The origin of the frame of the spheres, in world space.
     origin: DVec3,
-    /// Centres in that frame, and radii. If there are none, the box is framed.
+    /// Centres in that frame, and radii. If there are no spheres, the box is framed.
     spheres: &'a [[f32; 4]],
-    /// The number of spheres at the end that were added to those of the data.
+    /// The number of added spheres, which come after the spheres of the data.
     added: usize,
     bounds: Bounds,
     free_sides: [f64; 4],
     whole: Option<WholeSubject>,
 }
 
-/// What all spheres of the data are like, where only those that reach farthest are given.
+/// Properties of all spheres of the data, given if the subject has only those that reach farthest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WholeSubject {
     pub(crate) mean_radius: f64,
@@ -40,23 +40,23 @@ impl From<&Bounds> for Subject<'_> {
 }
 
 impl<'a> Subject<'a> {
-    /// Spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which is framed if
-    /// there are no spheres.
+    /// A subject of spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which
+    /// is framed if there are no spheres.
     pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
         Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4], whole: None }
     }
 
-    /// The same spheres, of which the last `added` are framed but do not count for what the data is like.
+    /// The same spheres. The last `added` are framed but do not affect the style.
     pub(crate) fn with_added(self, added: usize) -> Self {
         Self { added, ..self }
     }
 
-    /// The same spheres, which reach as far as those of a larger scene.
+    /// The same spheres, with the properties of the larger scene that reaches as far as they do.
     pub(crate) fn with_whole(self, whole: WholeSubject) -> Self {
         Self { whole: Some(whole), ..self }
     }
 
-    /// The spheres of the data, or all if there are no such.
+    /// The spheres of the data, or all spheres if the data has none.
     fn of_data(&self) -> &'a [[f32; 4]] {
         match self.spheres.len().saturating_sub(self.added) {
             0 => self.spheres,
@@ -64,10 +64,10 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The same subject, which a camera frames beside free parts of the picture, such as that of a legend: on the sides
-    /// of low x, high x, low y and high y of the film, as fractions of its width and height, each at most
-    /// [`Subject::MOST_FREE`]. Where the margin of the camera is larger, it is kept. Cameras whose pictures are round do
-    /// not support free parts.
+    /// The same subject, which a camera frames beside free parts of the picture, such as that of a legend. The free
+    /// parts are on the sides of low x, high x, low y and high y of the film, as fractions of its width and height,
+    /// each at most [`Subject::MOST_FREE`]. If the margin of the camera is larger, it is kept. Cameras whose pictures
+    /// are round do not support free parts.
     #[must_use]
     pub fn with_free_sides(self, free_sides: [f64; 4]) -> Self {
         let free_sides =
@@ -75,10 +75,10 @@ impl<'a> Subject<'a> {
         Self { free_sides, ..self }
     }
 
-    /// The largest part of the picture that one side may have free.
+    /// The largest fraction of the picture that can be free on one side.
     pub const MOST_FREE: f64 = 0.45;
 
-    /// The parts of the picture that are free on the sides of low x, high x, low y and high y.
+    /// The fractions of the picture that are free on the sides of low x, high x, low y and high y.
     pub(crate) fn free_sides(&self) -> [f64; 4] {
         self.free_sides
     }
@@ -94,10 +94,10 @@ impl<'a> Subject<'a> {
         self.spheres.is_empty()
     }
 
-    /// How far the subject reaches along each direction, measured from the middle of its box: the largest n·p of all
+    /// The reach of the subject along each direction, measured from the middle of its box. It is the largest n·p of all
     /// its points p. The directions need not have unit length.
     ///
-    /// This is the support function; of a sphere with the centre c and the radius r it is n·c + |n|·r.
+    /// This is the support function. For a sphere with the centre c and the radius r it is n·c + |n|·r.
     #[must_use]
     pub fn supports<const N: usize>(&self, directions: [DVec3; N]) -> [f64; N] {
         let center = self.bounds.center();
@@ -122,7 +122,7 @@ impl<'a> Subject<'a> {
         parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most)
     }
 
-    /// The axis (0, 1 or 2) along which all centres of the spheres of the data lie in one plane, if there is exactly one.
+    /// The axis (0, 1 or 2) along which all centres of the data's spheres lie in one plane, if there is exactly one.
     #[must_use]
     pub fn flat_axis(&self) -> Option<usize> {
         let joined = |[low, high]: [[f32; 3]; 2], [l, h]: [[f32; 3]; 2]| {
@@ -140,7 +140,7 @@ impl<'a> Subject<'a> {
         flat.next().filter(|_| flat.next().is_none())
     }
 
-    /// The mean radius of the spheres of the data; `None` for a box.
+    /// The mean radius of the data's spheres. `None` for a box.
     #[must_use]
     pub fn mean_radius(&self) -> Option<f64> {
         if let Some(whole) = self.whole {

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-/// A colour in linear light with the Rec. 709 primaries; 1 is display white.
+/// A colour in linear light with the Rec. 709 primaries. The value 1 is display white.
 ///
 /// Components are finite and not negative, and may exceed 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl LinearRgb {
         }
     }
 
-    /// A gray of the given value. NaN, infinities and negative values give black.
+    /// A grey of the given value. NaN, infinities and negative values give black.
     #[must_use]
     pub const fn gray(value: f32) -> Self {
         // The comparison is false for NaN as well.
@@ -73,13 +73,13 @@ impl LinearRgb {
     }
 }
 
-/// Why a value or a text is not a valid colour.
+/// The reason why a value or a text is not a valid colour.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
 pub struct ColorError(String);
 
-/// What red, green and blue count in how bright linear light looks (ITU-R BT.709).
+/// The weights of red, green and blue in the luminance of linear light (ITU-R BT.709).
 pub(crate) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// The relative luminance of linear light (ITU-R BT.709).
@@ -87,7 +87,7 @@ pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
-/// Encodes linear light as 8-bit sRGB, rounded to the nearest byte. Values outside [0, 1] are clamped; NaN becomes 0.
+/// Encodes linear light as 8-bit sRGB, rounded to the nearest byte. Values outside [0, 1] are clamped. NaN becomes 0.
 ///
 /// This is the exact inverse of [`LinearRgb::from_srgb8`] for every byte.
 #[must_use]
@@ -118,8 +118,8 @@ fn decode_srgb(encoded: f64) -> f64 {
 static DECODED: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode_srgb(byte as f64 / 255.0) as f32));
 
-/// The linear values half-way, in sRGB, between neighbouring bytes. A search in this table is faster than the transfer
-/// function, and rounds to the nearest byte too.
+/// The linear values half-way, in sRGB, between neighbouring bytes. A search in this table also rounds to the nearest
+/// byte, and is faster than the transfer function.
 static BETWEEN_BYTES: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode_srgb((byte as f64 + 0.5) / 255.0) as f32));
 
@@ -150,7 +150,7 @@ mod tests {
         }
     }
 
-    /// A flat 8-bit colour is the same colour in 16 bits, which is its byte twice.
+    /// A flat 8-bit colour stays the same in 16 bits, which are its byte twice.
     #[test]
     fn sixteen_bits_of_a_byte_are_that_byte_twice() {
         for byte in 0..=255 {

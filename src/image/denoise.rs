@@ -4,13 +4,13 @@
 use super::color::LUMINANCE;
 use crate::image::{Image, Layer, LayerSet};
 
-/// The number of passes of the filter; each reaches twice as far as the one before.
+/// The number of passes of the filter. Each reaches twice as far as the previous one.
 pub(crate) const PASSES: u32 = 5;
 
-/// How many pixels away light may be that the filter mixes into a pixel, along each axis.
+/// The largest distance in pixels, along each axis, from which the filter mixes light into a pixel.
 pub const REACH: u32 = 2 * ((1 << PASSES) - 1);
 
-/// A picture lacks a layer that denoising needs.
+/// An error for a picture that lacks a layer that denoising needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "denoising needs the layers normal, depth, albedo and variance; the picture has no layer `{missing}`"
@@ -27,12 +27,12 @@ pub const GUIDES: LayerSet = LayerSet::COLOR
     .with(Layer::Albedo)
     .with(Layer::Variance);
 
-/// The least albedo by which light is divided.
+/// The smallest albedo by which light is divided.
 const LEAST_ALBEDO: f32 = 0.01;
 
-/// What the channels of a pixel's colour are divided by, to get the light on its surface: the albedo. A channel without
-/// surface colour that nevertheless shines, as in a highlight, is not divided. One that is dark, as green is on a red
-/// sphere, is divided by the least albedo, so that the light of white neighbours does not bleach it.
+/// The divisors of a pixel's colour channels, which give the light on its surface: the albedo. A channel without
+/// surface colour that still shines, as in a highlight, is not divided. A dark one, such as green on a red sphere, is
+/// divided by the smallest albedo, so that the light of white neighbours does not bleach it.
 fn divisors(albedo: [f32; 3], color: [f32; 3]) -> [f32; 3] {
     let has_color = albedo.iter().any(|c| *c >= LEAST_ALBEDO);
     std::array::from_fn(|i| match albedo[i] {
@@ -42,12 +42,12 @@ fn divisors(albedo: [f32; 3], color: [f32; 3]) -> [f32; 3] {
     })
 }
 
-/// What is filtered and what guides the filter, row by row from the top.
+/// The light to be filtered and the layers that guide the filter, row by row from the top.
 #[derive(Clone, Debug)]
 pub(crate) struct Guides {
     /// Colour divided by albedo, and the variance of its luminance.
     pub(crate) lights: Vec<[f32; 4]>,
-    /// Normal (zero for a miss) and depth (zero for a miss).
+    /// Normal and depth. Both are zero for a miss.
     pub(crate) shapes: Vec<[f32; 4]>,
     /// The albedo by which filtered light is multiplied.
     pub(crate) albedos: Vec<[f32; 4]>,
@@ -88,7 +88,7 @@ impl Guides {
         })
     }
 
-    /// The colours of the picture: filtered light multiplied by albedo.
+    /// The colours of the picture, which are filtered light multiplied by albedo.
     pub(crate) fn colors(&self, lights: impl Iterator<Item = [f32; 4]>) -> Vec<[f32; 3]> {
         lights
             .zip(&self.albedos)

@@ -1,4 +1,4 @@
-//! How writers encode a picture: bits, transparency, exposure and tone curve.
+//! The encoding of a picture by writers: bits, transparency, exposure and tone curve.
 
 use crate::image::color::LinearRgb;
 use crate::image::tone::ToneCurve;
@@ -49,7 +49,7 @@ impl Bits {
     }
 }
 
-/// How a picture is encoded in a file. Exposure, tone curve and bits apply to PNG; EXR stores the light as it is.
+/// The encoding of a picture in a file. Exposure, tone curve and bits apply to PNG. EXR stores the light unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Encoding {
     /// The number of bits of each sample.
@@ -62,23 +62,23 @@ pub struct Encoding {
     exposure: f32,
     /// The tone curve, which is applied after the exposure.
     pub tone: ToneCurve,
-    /// The background that the exposure and the tone curve leave as it is: they are applied to what lies in front of
-    /// it. `None` applies them to the whole picture, as for a visible sky.
+    /// The background that the exposure and the tone curve do not change. They apply only to objects in front of it.
+    /// `None` applies them to the whole picture, as for a visible sky.
     pub background: Option<LinearRgb>,
     dots_per_inch: Option<f32>,
 }
 
-/// Why a parameter is not that of an encoding.
+/// The reason why a parameter of an encoding is not valid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
 pub struct EncodingError(String);
 
 impl Encoding {
-    /// The largest number of stops by which a picture may be made brighter or darker.
+    /// The largest number of stops by which a picture can be made brighter or darker.
     pub const MAX_EXPOSURE: f32 = 32.0;
 
-    /// The same encoding with light multiplied by 2 to the power of `stops`.
+    /// The same encoding, with light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
     /// Returns an error if `stops` is not within ± [`Encoding::MAX_EXPOSURE`].
@@ -93,8 +93,8 @@ impl Encoding {
         }
     }
 
-    /// The layers that an encoded picture needs: alpha if it is transparent, or if its background must be told from
-    /// what lies in front of it.
+    /// The layers that an encoded picture needs. Alpha is one of them if the picture is transparent, or if its
+    /// background must be distinguished from objects in front of it.
     #[must_use]
     pub fn layers(&self) -> LayerSet {
         let needs_alpha = self.transparent || self.kept_background().is_some();
@@ -108,8 +108,8 @@ impl Encoding {
         self.background.filter(|_| is_changed && !self.transparent)
     }
 
-    /// Converts a pixel to linear light of a display like [`Encoding::display`], but leaves the background as it is:
-    /// its share of the pixel is 1 − alpha.
+    /// Converts a pixel to linear light of a display like [`Encoding::display`], but does not change the background,
+    /// whose share of the pixel is 1 − alpha.
     #[must_use]
     pub fn display_over(&self, linear: [f32; 3], alpha: f32, background: LinearRgb) -> [f32; 3] {
         let behind = background.to_array().map(|c| c * (1.0 - alpha));
@@ -121,11 +121,11 @@ impl Encoding {
         std::array::from_fn(|i| alpha * shown[i].clamp(0.0, 1.0) + behind[i])
     }
 
-    /// The same encoding with the number of pixels per inch at which the picture is to be printed, which is written to
-    /// PNG files and changes no pixel.
+    /// The same encoding with the number of pixels per inch for printing. It is written to PNG files and changes no
+    /// pixel.
     ///
     /// # Errors
-    /// Returns an error if it does not lie between 1 and 100,000.
+    /// Returns an error if the number does not lie between 1 and 100,000.
     pub fn with_dots_per_inch(self, dots_per_inch: Option<f32>) -> Result<Self, EncodingError> {
         match dots_per_inch {
             Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => Err(EncodingError(
@@ -135,27 +135,27 @@ impl Encoding {
         }
     }
 
-    /// The number of pixels per inch at which the picture is to be printed, if it was chosen.
+    /// The number of pixels per inch for printing, if it was set.
     #[must_use]
     pub fn dots_per_inch(&self) -> Option<f32> {
         self.dots_per_inch
     }
 
-    /// The exposure in stops: positive values make the picture brighter.
+    /// The exposure in stops. Positive values make the picture brighter.
     #[must_use]
     pub fn exposure(&self) -> f32 {
         self.exposure
     }
 
-    /// Converts linear light of the scene, not premultiplied, to linear light of a display: exposure first, then the
-    /// tone curve. Values may still exceed 1; the transfer function clamps them.
+    /// Converts linear light of the scene, not premultiplied, to linear light of a display. Exposure comes first, then
+    /// the tone curve. Values may still exceed 1; the transfer function clamps them.
     #[must_use]
     pub fn display(&self, linear: [f32; 3]) -> [f32; 3] {
         let gain = self.exposure.exp2();
         self.tone.apply(linear.map(|x| x * gain))
     }
 
-    /// The least and the greatest light of a display for light of the scene between the ends of a range.
+    /// The smallest and the largest light of a display for scene light between the ends of a range.
     pub(crate) fn display_range(&self, ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
         let gain = self.exposure.exp2();
         self.tone.range(ends.map(|linear| linear.map(|x| x * gain)))

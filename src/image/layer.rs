@@ -13,21 +13,20 @@ pub enum Layer {
     Color,
     /// The fraction of the pixel that spheres cover, f32 from 0 to 1.
     Alpha,
-    /// Distance along the ray from its origin in scene units, f32; +∞ for a miss.
+    /// Distance along the ray from its origin in scene units, f32. +∞ for a miss.
     Depth,
-    /// Unit normal in world space, pointing away from the sphere's centre, three f32; zero for a miss.
+    /// Unit normal in world space, pointing away from the sphere's centre, three f32. Zero for a miss.
     Normal,
-    /// The point in world space where the ray hit, in scene units, three f32; zero for a miss. Use [`Layer::Alpha`] or
-    /// [`Layer::Id`] to tell a miss from a hit at the origin.
+    /// The hit point in world space, in scene units, three f32. Zero for a miss. Use [`Layer::Alpha`] or [`Layer::Id`]
+    /// to tell a miss from a hit at the origin.
     Position,
-    /// Surface colour in linear light, without lighting, three f32; zero for a miss.
+    /// Surface colour in linear light, without lighting, three f32. Zero for a miss.
     Albedo,
-    /// Index of the sphere in input order, u32; [`NO_ID`] for a miss.
+    /// Index of the sphere in input order, u32. [`NO_ID`] for a miss.
     Id,
     /// Number of samples of the pixel, u32.
     Samples,
-    /// Estimated variance of the pixel's mean luminance, f32; zero for a single sample, from which it cannot be
-    /// estimated.
+    /// Estimated variance of the pixel's mean luminance, f32. Zero for a single sample, which allows no estimate.
     Variance,
 }
 
@@ -61,13 +60,13 @@ impl Layer {
         }
     }
 
-    /// Whether its values belong to the ray through the centre of each pixel, also where other layers are means over samples.
+    /// Whether values belong to the ray through a pixel's centre, even if other layers are means over samples.
     #[must_use]
     pub const fn is_of_one_ray(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Id | Self::Position)
     }
 
-    /// The number of bytes for each pixel of this layer.
+    /// The number of bytes per pixel of this layer.
     #[must_use]
     pub const fn bytes_per_pixel(self) -> u64 {
         match self {
@@ -76,7 +75,7 @@ impl Layer {
         }
     }
 
-    /// The number of words of 4 bytes for each pixel.
+    /// The number of 4-byte words per pixel.
     pub(super) const fn words(self) -> usize {
         self.bytes_per_pixel() as usize / 4
     }
@@ -97,7 +96,7 @@ impl fmt::Display for Layer {
     }
 }
 
-/// A text is not the name of a layer.
+/// An error for a text that is not the name of a layer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no layer `{name}`; the layers are {}", LayerSet::ALL)]
 pub struct UnknownLayer {
@@ -120,14 +119,14 @@ impl FromStr for Layer {
 /// The set of layers to render. Colour is always in the set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LayerSet {
-    /// Bit n stands for the layer with discriminant n.
+    /// The bits. Bit n stands for the layer with discriminant n.
     bits: u16,
 }
 
 impl LayerSet {
     /// Colour alone.
     pub const COLOR: Self = Self { bits: 1 << Layer::Color as u16 };
-    /// The layers that a renderer with one ray for each pixel fills without further work: colour, depth, normal and id.
+    /// The layers that a renderer with one ray per pixel fills without further work: colour, depth, normal and id.
     pub const DATA: Self = Self::COLOR.with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
     /// All layers.
     pub const ALL: Self = {
@@ -156,7 +155,7 @@ impl LayerSet {
         Layer::ALL.iter().copied().filter(move |layer| self.contains(*layer))
     }
 
-    /// The number of bytes for each pixel of all layers in the set.
+    /// The number of bytes per pixel of all layers in the set.
     #[must_use]
     pub fn bytes_per_pixel(self) -> u64 {
         self.iter().map(Layer::bytes_per_pixel).sum()
@@ -171,7 +170,7 @@ impl Default for LayerSet {
 }
 
 impl FromIterator<Layer> for LayerSet {
-    /// The set of these layers and colour.
+    /// The set of the given layers and colour.
     fn from_iter<I: IntoIterator<Item = Layer>>(layers: I) -> Self {
         layers.into_iter().fold(Self::COLOR, Self::with)
     }

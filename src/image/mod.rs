@@ -42,17 +42,17 @@ impl Pixel {
     }
 }
 
-/// A picture with its data layers. Row 0 is the top; pixel (i, j) is at index `j * width + i`.
+/// A picture with its data layers. Row 0 is the top. Pixel (i, j) is at index `j * width + i`.
 #[derive(Clone, Debug)]
 pub struct Image {
     width: u32,
     height: u32,
-    /// The numbers of each layer as words, pixel by pixel, by the discriminants of [`Layer`]; there is always a colour.
+    /// The words of each layer, pixel by pixel, indexed by the discriminants of [`Layer`]. There is always a colour.
     planes: [Option<Vec<u32>>; Layer::ALL.len()],
 }
 
 impl PartialEq for Image {
-    /// Compares numbers, not bits: −0 is 0.
+    /// Compares numbers, not bits. So −0 equals 0.
     fn eq(&self, other: &Self) -> bool {
         let shape = |image: &Self| (image.width, image.height, image.layers());
         let are_equal = |layer: &Layer| match layer {
@@ -63,7 +63,7 @@ impl PartialEq for Image {
     }
 }
 
-/// An image does not fit into memory.
+/// An error for an image that does not fit into memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a picture of {width}x{height} needs {bytes} bytes of memory, which cannot be allocated; choose a smaller size"
@@ -78,7 +78,7 @@ pub struct ImageTooLarge {
 }
 
 impl Image {
-    /// An image in which every pixel is a miss over black, without samples.
+    /// An image without samples, in which every pixel is a miss over black.
     ///
     /// # Errors
     /// Returns an error if the memory cannot be reserved.
@@ -202,7 +202,7 @@ impl Image {
         Layer::ALL.iter().copied().filter(has).collect()
     }
 
-    /// Drops all layers except these.
+    /// Drops all layers except the given ones.
     pub(crate) fn keep(&mut self, layers: LayerSet) {
         for layer in Layer::ALL.iter().filter(|layer| !layers.contains(**layer)) {
             self.planes[*layer as usize] = None;
@@ -231,7 +231,7 @@ impl Image {
         self.plane_mut(Layer::Alpha)
     }
 
-    /// A range of rows, from top to bottom, each of which can be written independently.
+    /// The rows of a range, from top to bottom. Each can be written independently.
     pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let height = self.height as usize;
         let mut planes = self.planes.each_mut().map(|plane| {

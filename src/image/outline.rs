@@ -1,4 +1,4 @@
-//! Outlines: lines around shapes, which are found from the data layers of a picture.
+//! Outlines: lines around shapes, drawn from the data layers of a picture.
 
 use std::f32::consts::PI;
 use std::ops::Range;
@@ -9,10 +9,10 @@ use crate::image::color::LinearRgb;
 use crate::image::{Image, Layer, LayerSet, NO_ID};
 use crate::parallel;
 
-/// The layers from which outlines are found.
+/// The layers that drawing outlines needs.
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
 
-/// Lines at edges of the data layers: between spheres where the depth jumps or the direction of the normal changes.
+/// Lines at edges of the data layers, where the depth jumps or the normal changes between spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Outline {
@@ -20,14 +20,14 @@ pub struct Outline {
     pub width: f32,
     /// Colour of the outline.
     pub color: LinearRgb,
-    /// The smallest jump in depth that makes an outline, as a fraction of the depth; 0 or more.
+    /// The smallest jump in depth that makes an outline, as a fraction of the depth. At least 0.
     pub depth: f32,
     /// The smallest angle between normals that makes an outline, in radians: 0 to π.
     pub angle: f32,
 }
 
 impl Outline {
-    /// Thin dark lines where the depth jumps, and none between surfaces that meet.
+    /// Thin dark lines at jumps in depth, and no lines between surfaces that meet.
     #[must_use]
     pub fn thin() -> Self {
         Self {
@@ -53,10 +53,9 @@ struct Spot {
     normal: [f32; 3],
 }
 
-/// Draws an outline along every edge between two pixels where one sphere hides another or where their normals differ.
-/// Edges between pixels are stairs; the line follows the smooth curve through them, and how much of a pixel it covers
-/// follows from its distance to that curve. A picture that lacks one of
-/// [`LAYERS`] is not changed.
+/// Draws an outline along every edge between two pixels where one sphere hides another or their normals differ. Edges
+/// between pixels form stairs, so the line follows a smooth curve through them. The distance of a pixel from that curve
+/// gives the fraction that the line covers. A picture that lacks one of [`LAYERS`] does not change.
 pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     let Some(coverage) = coverage(image, outline) else { return };
     let line = outline.color.to_array();
@@ -72,15 +71,15 @@ pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     }
 }
 
-/// The number of rows whose edges are held at a time.
+/// The number of rows whose edges are computed at a time.
 const BAND: usize = 128;
 
-/// The fraction of each pixel that outlines cover; `None` if a layer is missing.
+/// The fraction of each pixel that outlines cover. `None` if a layer is missing.
 fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
     let layers = Layers { ids: image.id()?, depths: image.depth()?, normals: image.normal()? };
     let [width, height] = [image.width() as usize, image.height() as usize];
     let bands = parallel::map_parts(parallel::ranges(height, BAND), |rows| {
-        // What is farther away than this reaches no row of the band.
+        // Edges farther away than this do not reach any row of the band.
         let halo = PASSES + (0.5 * outline.width).ceil() as usize + 2;
         let around = rows.start.saturating_sub(halo)..(rows.end + halo).min(height);
         let strength = |a: usize, b: usize| strength(layers.spot(a), layers.spot(b), outline);
@@ -89,7 +88,7 @@ fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
     Some(bands.concat())
 }
 
-/// The layers from which edges are found.
+/// The layers that contain the edges.
 struct Layers<'a> {
     ids: &'a [u32],
     depths: &'a [f32],
@@ -102,8 +101,8 @@ impl Layers<'_> {
     }
 }
 
-/// How strong the line between two pixels is, from 0 to 1. A line fades in over jumps in depth from the least one to
-/// half more than it, so that it is not dashed where a jump is about that large.
+/// The strength of the line between two pixels, from 0 to 1. A line fades in as jumps in depth grow from the smallest
+/// one to half more, so that it is not dashed where jumps are about that large.
 fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
     if a.id == b.id {
         return 0.0;
@@ -119,42 +118,42 @@ fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
     if jump > least { ((jump - least) / (0.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// How often the curves are smoothed. Each time, a point moves towards the middle of its neighbours, so that stairs of
-/// some pixels become straight.
+/// The number of smoothing passes of the curves. In each pass, a point moves towards the middle of its neighbours, so
+/// that stairs of some pixels become straight.
 const PASSES: usize = 8;
 
-/// An edge between two pixels: a point of a curve.
+/// A point of a curve, which is an edge between two pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Point {
-    /// In pixels; the centre of the first pixel is (0, 0).
+    /// The position in pixels. The centre of the first pixel is (0, 0).
     at: Vec2,
-    /// How strong the line is here, from 0 to 1; 0 where there is no edge.
+    /// The strength of the line here, from 0 to 1. It is 0 where there is no edge.
     strength: f32,
 }
 
-/// The edges between the pixels of some rows. Two edges that meet at the corner of four pixels are neighbours. Where more
-/// than two meet, curves end.
+/// The edges between the pixels of some rows. Two edges that meet at the corner of four pixels are neighbours. If more
+/// than two meet, the curves end there.
 struct Edges {
     width: usize,
     rows: Range<usize>,
-    /// The edge between each pixel and the one on its right, row by row, and then those between each pixel and the one
+    /// The edge between each pixel and its right neighbour, row by row. Then the edge between each pixel and the one
     /// below it.
     points: Vec<Point>,
 }
 
-/// What a curve does at the corner of four pixels.
+/// The continuation of a curve at the corner of four pixels.
 #[derive(Clone, Copy)]
 enum Next {
-    /// There is no other edge.
+    /// The curve ends. There is no other edge.
     Nothing,
-    /// One other edge continues it.
+    /// One other edge continues the curve.
     Edge(usize),
-    /// Several other edges meet it at this corner.
+    /// Several other edges meet the curve at this corner.
     Corner(Vec2),
 }
 
 impl Edges {
-    /// Finds all edges of some rows; `strength` tells how strong the one between two pixels is, by their indices.
+    /// Finds all edges of some rows. `strength` gives the strength of the line between two pixels, by their indices.
     fn find(width: usize, rows: Range<usize>, strength: impl Fn(usize, usize) -> f32) -> Self {
         let count = width * rows.len();
         let point = |index: usize| {
@@ -171,8 +170,8 @@ impl Edges {
         Self { width, points: (0..2 * count).map(point).collect(), rows: rows.clone() }
     }
 
-    /// The two corners of pixels at which an edge ends, each by the column and the row (in these rows) of the pixel on
-    /// its upper left; `None` at the border.
+    /// The two corners of pixels at which an edge ends. Each is given by the column and the row (in these rows) of the
+    /// pixel on its upper left. `None` at the border.
     fn corners(&self, index: usize) -> [Option<[usize; 2]>; 2] {
         let count = self.width * self.rows.len();
         let [i, j] = [index % count % self.width, index % count / self.width];
@@ -187,7 +186,7 @@ impl Edges {
         }
     }
 
-    /// What follows an edge at a corner.
+    /// The continuation of an edge at a corner.
     fn next(&self, index: usize, [i, j]: [usize; 2]) -> Next {
         let count = self.width * self.rows.len();
         let at = j * self.width + i;
@@ -204,7 +203,7 @@ impl Edges {
         }
     }
 
-    /// The same edges as smooth curves.
+    /// Returns the same edges as smooth curves.
     fn smoothed(mut self) -> Self {
         let drawn: Vec<usize> =
             (0..self.points.len()).filter(|index| self.points[*index].strength > 0.0).collect();
@@ -227,7 +226,7 @@ impl Edges {
         self
     }
 
-    /// A point half-way between where it is and the middle of its neighbours.
+    /// A point half-way between its position and the middle of its neighbours.
     fn mean(&self, index: usize, both: [usize; 2]) -> Point {
         let (here, [a, b]) = (self.points[index], both.map(|other| self.points[other]));
         Point {
@@ -236,10 +235,10 @@ impl Edges {
         }
     }
 
-    /// How much of each pixel of some rows is covered by lines of this width along the curves.
+    /// The fraction of each pixel of some rows that lines of the given width along the curves cover.
     fn covered(&self, rows: Range<usize>, width: f32) -> Vec<f32> {
         let mut covered = vec![0.0_f32; self.width * rows.len()];
-        // The largest distance in pixels, from the middle of a line, that it touches.
+        // The largest distance in pixels from the middle of a line at which the line touches a pixel.
         let reach = 0.5 * width + 0.5;
         let mut draw = |a: Vec2, b: Vec2, strength: f32| {
             let (low, high) = (a.min(b) - reach, a.max(b) + reach);
@@ -294,7 +293,7 @@ fn distance(point: Vec2, a: Vec2, b: Vec2) -> f32 {
 mod tests {
     use super::*;
 
-    /// A white picture of two spheres at these depths, of which `is_second` tells the second by index.
+    /// A white picture of two spheres at the given depths. `is_second` tells which pixels, by index, show the second.
     fn two(
         [width, height]: [usize; 2],
         depths: [f32; 2],
@@ -329,7 +328,7 @@ mod tests {
         assert_eq!(image.color(), [[1.0; 3]; 8], "equal depths and normals");
     }
 
-    /// The line along a slope is equally strong everywhere, and lies where the edge is: a line along the stairs of the
+    /// The line along a slope has the same strength everywhere, and lies at the edge. A line along the stairs of the
     /// pixels would be up to half a pixel off.
     #[test]
     fn a_line_along_a_slope_has_no_stairs() {
@@ -344,7 +343,7 @@ mod tests {
                 let column = || (0..SIZE).map(|j| (j as f32, dark(i, j)));
                 let total: f32 = column().map(|(_, dark)| dark).sum();
                 let middle = column().map(|(j, dark)| j * dark).sum::<f32>() / total;
-                // A line of this width is wider in a column that crosses it at an angle.
+                // In a column that crosses it at an angle, a line of this width is wider.
                 let wanted = 1.2 * slope.hypot(1.0);
                 assert!((total - wanted).abs() < 0.25 * wanted, "{slope} {i}: {total}, {wanted}");
                 assert!((middle - edge(i)).abs() < 0.3, "{slope} {i}: {middle}, {}", edge(i));

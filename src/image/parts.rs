@@ -1,8 +1,8 @@
-//! Pictures in parts: copying a part into the whole, and the bytes by which parts travel between machines.
+//! Pictures in parts: copying a part into the whole, and the bytes in which parts travel between machines.
 
 use super::{Image, ImageTooLarge, Layer, LayerSet};
 
-/// A part does not fit into a picture.
+/// An error for a part that does not fit into a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a part of {}x{} pixels at column {} and row {} does not fit into a picture of {}x{} pixels",
@@ -11,7 +11,7 @@ use super::{Image, ImageTooLarge, Layer, LayerSet};
 pub struct DoesNotFit {
     /// Width and height of the part in pixels.
     pub part: [u32; 2],
-    /// Column and row of its first pixel.
+    /// Column and row of the part's first pixel.
     pub origin: [u32; 2],
     /// Width and height of the picture in pixels.
     pub whole: [u32; 2],
@@ -22,7 +22,7 @@ impl Image {
     /// The part is a picture on [`Film::part`](crate::camera::film::Film::part).
     ///
     /// # Errors
-    /// Returns an error if the part reaches beyond this picture, which is then not changed.
+    /// Returns an error if the part reaches beyond this picture, which then does not change.
     pub fn put(&mut self, part: &Self, origin: [u32; 2]) -> Result<(), DoesNotFit> {
         let ([width, height], whole) = ([part.width, part.height], [self.width, self.height]);
         let fits = |axis: usize, side: u32| {
@@ -35,7 +35,7 @@ impl Image {
         Ok(())
     }
 
-    /// Copies the rows of a part, from top to bottom, as far as they are in this picture; they are not too wide for it.
+    /// Copies the rows of a part, which must not be too wide, from top to bottom, as far as they are in this picture.
     fn copy_rows(&mut self, part: &Self, [column, row]: [u32; 2]) {
         let rows = (part.height as usize).min((self.height - row) as usize);
         let [width, stride] = [part.width, self.width].map(|side| side as usize);
@@ -43,7 +43,7 @@ impl Image {
         self.copy(part, &(0..rows).map(|row| (first + row * stride, row * width)), width);
     }
 
-    /// Copies runs of `count` pixels, in the layers that both pictures have: where each begins here and in the other.
+    /// Copies runs of `count` pixels, in the layers that both pictures have. `starts` has the start of each in both.
     fn copy(
         &mut self,
         from: &Self,
@@ -61,7 +61,7 @@ impl Image {
         }
     }
 
-    /// Joins two images of the same height, with the layers that both have.
+    /// Joins two images of the same height, side by side, in the layers that both have.
     ///
     /// # Errors
     /// Returns an error if the memory cannot be reserved.
@@ -79,15 +79,15 @@ impl Image {
         self.copy(from, &pixels.iter().map(|at| (*at, *at)), 1);
     }
 
-    /// Sets the layer of ids, if there is one of this length.
+    /// Sets the layer of ids, if there is one with as many pixels.
     pub(crate) fn set_id(&mut self, ids: &[u32]) {
         if let Some(layer) = self.plane_mut(Layer::Id).filter(|layer| layer.len() == ids.len()) {
             layer.copy_from_slice(ids);
         }
     }
 
-    /// All layers, one after the other in the order of [`LayerSet::iter`], each row by row from the top, as little-endian
-    /// numbers of 4 bytes: [`LayerSet::bytes_per_pixel`] bytes for each pixel. [`Image::from_le_bytes`] reads them back.
+    /// Returns all layers as little-endian 4-byte numbers, in the order of [`LayerSet::iter`], each row by row from the
+    /// top: [`LayerSet::bytes_per_pixel`] bytes per pixel. [`Image::from_le_bytes`] reads them.
     #[must_use]
     pub fn to_le_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -97,8 +97,8 @@ impl Image {
         bytes
     }
 
-    /// A picture from the bytes that [`Image::to_le_bytes`] returned for these layers. `None` if their number is another,
-    /// or the memory cannot be reserved.
+    /// Makes a picture from the bytes that [`Image::to_le_bytes`] returned for these layers. `None` if the number of
+    /// bytes differs, or the memory cannot be reserved.
     #[must_use]
     pub fn from_le_bytes(
         [width, height]: [u32; 2],
@@ -121,7 +121,7 @@ impl Image {
 mod tests {
     use super::*;
 
-    /// A picture in which every number is another, also bits that are no numbers.
+    /// A picture in which all numbers differ, including bits that are not numbers.
     fn numbered(width: u32, height: u32, layers: LayerSet) -> Image {
         let words = u64::from(width * height) * layers.bytes_per_pixel() / 4;
         let bytes: Vec<u8> =

@@ -1,17 +1,17 @@
 //! Tone curves, which map light of any strength into the range of a display.
 
-/// A tone curve: it maps linear light that may exceed 1 to light that a display can show.
+/// A tone curve, which maps linear light that may exceed 1 to light that a display can show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ToneCurve {
-    /// No change: values above 1 are clamped later. A flat colour comes out as the bytes that went in.
+    /// No change. Values above 1 are clamped later. A flat colour comes out as the bytes that went in.
     #[default]
     None,
     /// A fit of the filmic curve of ACES, applied to each component separately: Narkowicz, "ACES Filmic Tone Mapping
     /// Curve", 2016, as printed there, without the factor of 0.6 that would bring it closer to ACES.
     Filmic,
-    /// AgX by Troy Sobotka, with its base look: strong light loses its colour as it approaches white. It uses the
+    /// AgX by Troy Sobotka, with its base look. Strong light loses its colour as it approaches white. It uses the
     /// polynomial of Benjamin Wrensch ("Minimal AgX Implementation", 2023), whose mean squared error is 3.7 · 10⁻⁶.
     Agx,
 }
@@ -41,13 +41,13 @@ impl ToneCurve {
         }
     }
 
-    /// The least and the greatest light of a display for light of the scene between the ends of a range.
+    /// The smallest and the largest light of a display for scene light between the ends of a range.
     pub(crate) fn range(self, ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
         match self {
             Self::None => ends,
             Self::Filmic => {
                 let [low, high] = ends.map(|linear| linear.map(|x| filmic(bounded(x))));
-                // Mathematically the curve rises; each of its roundings is at most half an ULP.
+                // Mathematically, the curve rises. Each of its roundings is at most half an ULP.
                 [low.map(|x| x * (1.0 - 1e-6)), high.map(|x| (x * (1.0 + 1e-6)).min(1.0))]
             }
             Self::Agx => agx_range(ends.map(|linear| linear.map(bounded))),
@@ -55,7 +55,7 @@ impl ToneCurve {
     }
 }
 
-/// The value at which inputs are clamped: everything brighter is white, and squares stay finite.
+/// The value at which inputs are clamped. Everything brighter is white, and squares stay finite.
 const BRIGHTEST: f32 = 1e6;
 
 fn bounded(x: f32) -> f32 {
@@ -81,12 +81,12 @@ const OUTSET: [[f32; 3]; 3] = [
     [-0.052_971_636, -0.098_043_45, 1.151_073_7],
 ];
 
-/// Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2 that makes light linear again.
+/// AgX in Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2 that makes light linear again.
 fn agx(linear: [f32; 3]) -> [f32; 3] {
     product(&OUTSET, agx_encoded(linear)).map(decoded)
 }
 
-/// The steps before the outset, each of which rises.
+/// The steps of AgX before the outset. Each of them rises.
 fn agx_encoded(linear: [f32; 3]) -> [f32; 3] {
     const MIN_EV: f32 = -12.473_93;
     const MAX_EV: f32 = 4.026_069;
@@ -101,9 +101,9 @@ fn decoded(x: f32) -> f32 {
     x.clamp(0.0, 1.0).powf(2.2)
 }
 
-/// The range of [`agx`]: the outset has negative numbers, so that the greatest of one channel needs the least of others.
+/// The range of [`agx`]. Because the outset has negative numbers, the maximum of a channel needs the minimum of others.
 fn agx_range(ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
-    /// More than the rounding errors of the polynomial, whose coefficients add up to 95, and of the outset.
+    /// An upper bound of the rounding errors of the polynomial, whose coefficients add up to 95, and of the outset.
     const ERROR: f32 = 95.0 * 16.0 * f32::EPSILON;
     let [low, high] = ends.map(agx_encoded);
     let end = |a: [f32; 3], b: [f32; 3], error: f32| {
@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(ToneCurve::None.apply(color).map(f32::to_bits), color.map(f32::to_bits));
     }
 
-    /// The expected values were computed by hand from the formulas.
+    /// Known values, computed by hand from the formulas.
     #[test]
     fn known_answers() {
         assert!((grey(ToneCurve::Filmic, 0.18) - 0.266_9).abs() < 1e-4);

@@ -1,10 +1,10 @@
-//! Numbers that stand for materials, lights and states of paths where a device has them. The renderer writes them, the
-//! checker reads them, and a test compares them with the constants of the same names in `shaders`.
+//! Codes of materials, lights and states of paths on a device. The renderer writes them and the checker reads them. A
+//! test compares them with the constants of the same names in `shaders`.
 
 use crate::light::LightKind;
 use crate::scene::material::Material;
 
-/// What a material is.
+/// Kinds of materials.
 pub(crate) mod material {
     pub(crate) const LAMBERT: u32 = 0;
     pub(crate) const CONDUCTOR: u32 = 1;
@@ -12,7 +12,7 @@ pub(crate) mod material {
     pub(crate) const EMISSIVE: u32 = 3;
 }
 
-/// What a light is.
+/// Kinds of lights.
 pub(crate) mod lamp {
     pub(crate) const HEAD: u32 = 0;
     pub(crate) const DIRECTIONAL: u32 = 1;
@@ -20,14 +20,14 @@ pub(crate) mod lamp {
     pub(crate) const SPHERE: u32 = 3;
 }
 
-/// How lights are sampled.
+/// Methods of light sampling.
 pub(crate) mod sampling {
     pub(crate) const CHANCE: u32 = 0;
     pub(crate) const DIRECT: u32 = 1;
     pub(crate) const MULTIPLE: u32 = 2;
 }
 
-/// Flags of a lighting, which are added up.
+/// Flags of a lighting, which are added.
 pub(crate) mod lighting {
     pub(crate) const TRANSPARENT: u32 = 1;
     pub(crate) const SKY_SEEN: u32 = 2;
@@ -36,7 +36,7 @@ pub(crate) mod lighting {
     pub(crate) const CATCHER: u32 = 16;
 }
 
-/// Flags of a path, which are added up.
+/// Flags of a path, which are added.
 pub(crate) mod path {
     pub(crate) const ALIVE: u32 = 1;
     pub(crate) const INSIDE: u32 = 2;

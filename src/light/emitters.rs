@@ -1,4 +1,4 @@
-//! The emissive spheres of a scene, and the choice of one with a probability in proportion to its power.
+//! The emissive spheres of a scene, and the random choice of one by power.
 
 use crate::image::color::luminance;
 use crate::scene::material::{Material, SurfaceProperties};
@@ -15,9 +15,9 @@ pub struct Emitters {
 }
 
 impl Emitters {
-    /// The spheres of a scene that emit light, weighted by the luminance of their radiance times their opacity times
-    /// the square of their radius. A sphere with the centre and radius of an earlier sphere is never visible, so it is
-    /// left out.
+    /// The spheres of a scene that emit light. Their weight is the luminance of their radiance times their opacity
+    /// times the square of their radius. A sphere with the centre and radius of an earlier sphere is never visible, so
+    /// it is left out.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let shines = |surface: &SurfaceProperties| matches!(surface.material, Material::Emissive { strength } if strength > 0.0);
@@ -35,13 +35,13 @@ impl Emitters {
         let duplicates = Duplicates::of(scene.spheres());
         weights.retain(|(id, _)| duplicates.first_of(*id) == *id);
         let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
-        // Each sphere has 2⁻³² for certain, and a share of the rest in proportion to its weight.
+        // Each sphere gets 2⁻³² for certain, and a share of the rest in proportion to its weight.
         let others = (1_u64 << 32) - weights.len() as u64;
         let mut sum = 0.0;
         let last = weights.iter().enumerate().map(|(index, (_, weight))| {
             sum += weight;
             let shared = (sum / total * others as f64).floor() as u64;
-            // One less than the number of picks up to here, which is at least one.
+            // One less than the number of picks up to here. That number is at least one.
             (index as u64 + shared.min(others)) as u32
         });
         let mut last: Vec<u32> = last.collect();
@@ -51,14 +51,14 @@ impl Emitters {
         Self { ids: weights.iter().map(|(id, _)| *id).collect(), last }
     }
 
-    /// Indices of the emissive spheres in input order, ascending.
+    /// Indices of the emissive spheres, in ascending order.
     #[must_use]
     pub fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// For each entry of [`Emitters::ids`], the largest u32 that picks it: 2³² times the cumulative probability, less
-    /// one. Ascending; the last entry is 2³² − 1.
+    /// For each entry of [`Emitters::ids`], the largest u32 that picks it, which is 2³² times the cumulative
+    /// probability, less one. The numbers ascend, and the last is 2³² − 1.
     #[must_use]
     pub fn last_picks(&self) -> &[u32] {
         &self.last
@@ -69,15 +69,15 @@ impl Emitters {
         self.ids.is_empty()
     }
 
-    /// Chooses an emissive sphere by a uniform random number: the index in [`Emitters::ids`] of the first entry whose
-    /// last pick is at least `u`, and its probability. `None` if there are no emitters.
+    /// Chooses an emissive sphere by a uniform random number. Returns the index in [`Emitters::ids`] of the first entry
+    /// whose last pick is at least `u`, and its probability. `None` if there are no emitters.
     #[must_use]
     pub fn pick(&self, u: u32) -> Option<(usize, f64)> {
         let index = self.last.partition_point(|last| *last < u);
         (index < self.last.len()).then(|| (index, self.probability_at(index)))
     }
 
-    /// The probability with which a sphere is picked; 0 for a sphere that emits no light.
+    /// The probability with which a sphere is picked. 0 for a sphere that emits no light.
     #[must_use]
     pub fn probability(&self, id: u32) -> f64 {
         self.ids.binary_search(&id).map_or(0.0, |index| self.probability_at(index))

@@ -1,4 +1,4 @@
-//! Tables of the energy that a rough lobe keeps if light that its surface scatters more than once is left out.
+//! Tables of the energy that a rough lobe keeps when light scatters only once at its surface.
 //!
 //! The entries are the mean weight of samples drawn from visible normals: E of E. Turquin, "Practical multiple
 //! scattering compensation for microfacet models", 2019. Renderers divide by it, so that a white surface loses no
@@ -13,8 +13,8 @@ use glam::DVec3;
 use crate::parallel;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// The number of entries of a table. Entry k is for the cosine μ = (k/255)⁴: entries are denser at grazing angles,
-/// because lobes of roughness 0.02 change where μ is about 0.0004.
+/// The number of entries of a table. Entry k is for the cosine μ = (k/255)⁴. Entries are denser at grazing angles,
+/// because lobes of roughness 0.02 change near μ = 0.0004.
 ///
 /// The error of linear interpolation is below 0.0002 for reflection and 0.0005 for refraction (ior from 1.1), and that
 /// of the entries themselves is below 0.0005 and 0.001.
@@ -41,7 +41,7 @@ pub(crate) enum Lobe {
 }
 
 impl Lobe {
-    /// The lobes of a material in the order of their tables: from outside, then from inside.
+    /// The lobes of a material, in the order of their tables: from outside, then from inside.
     fn of(surface: &SurfaceProperties) -> Vec<Self> {
         match surface.material {
             Material::Lambert { specular, roughness } if specular > 0.0 => {
@@ -55,7 +55,7 @@ impl Lobe {
         }
     }
 
-    /// The bits of all parameters, which are equal only for equal lobes.
+    /// The bits of all parameters. Only equal lobes have equal bits.
     fn bits(self) -> [u32; 3] {
         match self {
             Self::Reflection { roughness } => [0, roughness.to_bits(), 0],
@@ -66,14 +66,14 @@ impl Lobe {
     }
 }
 
-/// The energy tables of all materials of a scene: how much light each rough lobe keeps when it scatters once, by which
-/// renderers make up for the rest. Materials with equal lobes share tables.
+/// The energy tables of all materials of a scene. They say how much light each rough lobe keeps when it scatters once,
+/// so that renderers can compensate for the rest. Materials with equal lobes share tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct EnergyTables {
     /// The entries of all tables, one table after the other.
     pub(crate) entries: Vec<f32>,
-    /// For each surface, the index in `entries` at which its first table starts; `None` for a material that needs no table.
-    /// A rough dielectric has two tables in a row: from outside, then from inside.
+    /// For each surface, the index in `entries` at which its first table starts. `None` for a material that needs no
+    /// table. A rough dielectric has two consecutive tables: from outside, then from inside.
     pub(crate) starts: Vec<Option<u32>>,
 }
 
@@ -98,14 +98,14 @@ impl EnergyTables {
     }
 }
 
-/// The table of a lobe, computed unless this process remembers it: each picture of a series and its check need it again.
+/// The table of a lobe, cached in this process, because each picture of a series and its check need it again.
 fn remembered_table(lobe: Lobe) -> Vec<f32> {
     static TABLES: Mutex<BTreeMap<[u32; 3], Vec<f32>>> = Mutex::new(BTreeMap::new());
-    /// A quarter of a megabyte.
+    /// The largest number of cached tables, which take a quarter of a megabyte.
     const MOST: usize = 256;
     let tables = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
     let known = tables().get(&lobe.bits()).cloned();
-    // The lock is not held meanwhile: a thread that waits for others may take up work that needs a table.
+    // The lock is not held meanwhile, because a thread that waits for others may take up work that needs a table.
     known.unwrap_or_else(|| {
         let table = albedo_table(lobe);
         let mut tables = tables();
@@ -117,7 +117,7 @@ fn remembered_table(lobe: Lobe) -> Vec<f32> {
     })
 }
 
-/// The table of a lobe: E at [`ENTRIES`] cosines, by a quadrature that takes about ten milliseconds.
+/// Computes the table of a lobe: E at [`ENTRIES`] cosines, by a quadrature that takes about ten milliseconds.
 pub(crate) fn albedo_table(lobe: Lobe) -> Vec<f32> {
     let points = disk_points(POINTS);
     parallel::map(ENTRIES, |k| {
@@ -126,7 +126,7 @@ pub(crate) fn albedo_table(lobe: Lobe) -> Vec<f32> {
     })
 }
 
-/// E at a cosine in [0, 1], interpolated in a table.
+/// Interpolates E in a table, at a cosine in [0, 1].
 pub(crate) fn lookup(table: &[f32], cosine: f64) -> f64 {
     let last = ENTRIES - 1;
     let x = cosine.clamp(0.0, 1.0).sqrt().sqrt() * last as f64;
@@ -135,9 +135,9 @@ pub(crate) fn lookup(table: &[f32], cosine: f64) -> f64 {
     low + (x - entry as f64) * (high - low)
 }
 
-/// Points spread evenly over the half of the unit disk with x > 0: a Fibonacci lattice in r² and angle. Of the
-/// quadratures tried (midpoints, Gauss, other maps), it is the most accurate for weights with kinks along curves, as
-/// they occur at grazing angles.
+/// Points spread evenly over the half of the unit disk with x > 0: a Fibonacci lattice in r² and angle. It is the most
+/// accurate of the quadratures that were tried (midpoints, Gauss, other maps) for weights with kinks along curves,
+/// which occur at grazing angles.
 ///
 /// `step` and `count` are consecutive Fibonacci numbers.
 fn disk_points([step, count]: [usize; 2]) -> Vec<[f64; 2]> {
@@ -150,10 +150,10 @@ fn disk_points([step, count]: [usize; 2]) -> Vec<[f64; 2]> {
     (0..count).map(point).collect()
 }
 
-/// The step and the number of the points with which tables are computed.
+/// The step and the number of the points for computing tables.
 const POINTS: [usize; 2] = [1597, 2584];
 
-/// The smallest cosine; smaller ones are clamped to it.
+/// The smallest cosine. Smaller ones are clamped to it.
 const MIN_COSINE: f64 = 1e-6;
 
 fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
@@ -183,7 +183,7 @@ fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
     sum / points.len() as f64
 }
 
-/// Smith's Λ for GGX, at a cosine.
+/// Smith's function Λ for GGX, at a cosine.
 fn smith(cosine: f64, alpha: f64) -> f64 {
     let square = cosine * cosine;
     0.5 * ((1.0 + alpha * alpha * (1.0 - square) / square).sqrt() - 1.0)
@@ -248,7 +248,7 @@ mod tests {
         }
     }
 
-    /// Compares with a finer quadrature over directions of the lobe itself: ∫ D G2/(4 cos) over the hemisphere.
+    /// Compares with a finer quadrature over the lobe's directions: ∫ D G2/(4 cos) over the hemisphere.
     #[test]
     fn entries_are_what_the_lobe_reflects() {
         const STEPS: u32 = 500;
@@ -268,7 +268,7 @@ mod tests {
                         sum += sine * shadowing / (PI * alpha * alpha * t * t * 4.0 * cosine);
                     }
                 }
-                // The sum covers half of the hemisphere; the factor counts both halves.
+                // The sum covers half of the hemisphere. The factor counts both halves.
                 let wanted = sum * PI * PI / f64::from(STEPS).powi(2);
                 let found = lookup(&table, cosine);
                 assert!((found - wanted).abs() < 5e-4, "{roughness}, {cosine}: {found}, {wanted}");

@@ -1,13 +1,13 @@
-//! Environment maps: equirectangular images of radiance from all directions, and how to sample them.
+//! Environment maps: equirectangular images of radiance from all directions, and the sampling of directions.
 //!
 //! Row 0 is up, +y, and all rows have the same height in latitude. The middle of the map is −z, the default direction
-//! of view of a camera; to its right is +x. Radiance is constant within a texel, so that the density with which
+//! of view of a camera. To its right is +x. Radiance is constant within a texel, so that the density with which
 //! directions are sampled can follow it exactly, and pictures do not depend on the texture filter of a device.
 //!
-//! Directions are sampled by luminance and solid angle, first the row and then the column, after M. Pharr, W. Jakob and
-//! G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniformly in solid angle within a texel. The tables
-//! are f32, and every random choice of a texel is exact in f32, so that a device chooses the same texel. The WGSL twin
-//! is `shaders/scene/environment.wgsl`.
+//! Directions are sampled by luminance and solid angle, first the row and then the column. This follows M. Pharr, W.
+//! Jakob and G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniformly in solid angle within a texel.
+//! The tables are f32, and every random choice of a texel is exact in f32, so that a device chooses the same texel. The
+//! WGSL twin is `shaders/scene/environment.wgsl`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,7 +17,7 @@ use crate::camera::sampling::unit;
 use crate::image::color::luminance;
 use crate::parallel::{for_each, map};
 
-/// The largest radiance, 2⁶⁴: sums and products on a device stay far from infinity.
+/// The largest radiance, 2⁶⁴. Up to it, sums and products on a device stay far from infinity.
 pub const MAX_RADIANCE: f32 = 18_446_744_073_709_551_616.0;
 
 /// An equirectangular map of linear radiance.
@@ -30,7 +30,7 @@ pub struct Environment {
     columns: Vec<f32>,
 }
 
-/// Why texels do not make an environment map. Columns and rows count from 0.
+/// The reason why texels do not make an environment map. Columns and rows count from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
@@ -43,10 +43,10 @@ impl std::fmt::Debug for Environment {
 }
 
 impl Environment {
-    /// A map from its texels, row by row from the top. The ratio of width to height is free.
+    /// Makes a map from its texels, row by row from the top. The ratio of width to height is free.
     ///
-    /// A map larger than [`MAX_SIZE`] is reduced: its size is divided by the smallest whole number that makes it fit,
-    /// rounded up, and each new texel is the mean, by solid angle, of the texels that it covers.
+    /// A map larger than [`MAX_SIZE`] is reduced. Its size is divided by the smallest whole number that makes it fit,
+    /// and rounded up. Each new texel is the mean, by solid angle, of the texels that it covers.
     ///
     /// # Errors
     /// Returns an error if the map is empty, the number of texels is wrong, or a component is NaN, negative or above
@@ -94,27 +94,27 @@ impl Environment {
         &self.texels
     }
 
-    /// The cumulative distribution of rows, `height` + 1 numbers: for each row the probability that a sample lies above
-    /// it, and 1 at the end. Multiples of 2⁻²⁴; all zero if the map is black.
+    /// The cumulative distribution of rows: `height` + 1 multiples of 2⁻²⁴. For each row it has the probability that a
+    /// sample lies above the row, and 1 at the end. All are zero if the map is black.
     #[must_use]
     pub fn rows(&self) -> &[f32] {
         &self.rows
     }
 
-    /// The cumulative distributions of columns, `width` + 1 numbers for each row, for samples in that row. All zero if
-    /// the row is black.
+    /// The cumulative distributions of columns: `width` + 1 numbers for each row, for samples in that row. All are zero
+    /// if the row is black.
     #[must_use]
     pub fn columns(&self) -> &[f32] {
         &self.columns
     }
 
-    /// Whether some texel is not black.
+    /// Whether at least one texel is not black.
     #[must_use]
     pub fn has_light(&self) -> bool {
         self.rows[self.height as usize] > 0.0
     }
 
-    /// Cosine and sine, in f32 as a device has them, of the angle by which the map is turned about +y, from +z to +x.
+    /// Cosine and sine, in f32 as on a device, of the rotation of the map about +y, from +z to +x.
     #[must_use]
     pub fn rotation(radians: f64) -> [f32; 2] {
         [radians.cos() as f32, radians.sin() as f32]
@@ -135,8 +135,8 @@ impl Environment {
         self.density_of(self.texel(direction, rotation))
     }
 
-    /// A direction of unit length for two uniform random numbers (fractions of 2³²), and its density per steradian,
-    /// which is zero only if the map is black.
+    /// A direction of unit length for two uniform random numbers (in units of 2⁻³²), and its density per steradian. The
+    /// density is zero only if the map is black.
     #[must_use]
     pub fn sample(&self, u: [u32; 2], rotation: [f32; 2]) -> (DVec3, f64) {
         let (row, down) = choose(&self.rows, u[1]);
@@ -185,24 +185,24 @@ fn turned(d: DVec3, rotation: [f32; 2]) -> DVec3 {
     DVec3::new(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x)
 }
 
-/// The interval of a cumulative table into which a fraction of 2³² falls, and the position in that interval, in [0, 1].
+/// The interval of a cumulative table that contains `u`/2³², and the position in that interval, in [0, 1].
 ///
-/// The upper 24 bits choose the interval; the lower 8 bits refine the position, each at the middle of its step.
+/// The upper 24 bits choose the interval. The lower 8 bits refine the position, each at the middle of its step.
 fn choose(table: &[f32], u: u32) -> (usize, f64) {
     let chance = unit(u);
     let index = table.partition_point(|sum| f64::from(*sum) <= chance).min(table.len() - 1) - 1;
     let [low, high] = [table[index], table[index + 1]].map(f64::from);
     let rest = (f64::from(u & 0xff) + 0.5) / f64::from(1 << 24) / 256.0;
-    // A black map has only empty intervals; no other interval is smaller than this.
+    // Only a black map has smaller intervals, which are empty.
     let share = (high - low).max(1.0 / f64::from(1 << 24));
     (index, ((chance - low + rest) / share).min(1.0))
 }
 
-/// The largest numbers of columns and rows; larger maps are reduced.
+/// The largest numbers of columns and rows. Larger maps are reduced.
 pub const MAX_SIZE: [u32; 2] = [4096, 2048];
 
-/// The map itself if it fits, or a smaller one whose texels are the means, by solid angle, of the texels that they
-/// cover. The total light stays the same.
+/// Reduces a map that is too large. The new texels are the means, by solid angle, of the texels that they cover, so the
+/// total light stays the same.
 fn reduced(size: [u32; 2], texels: Vec<[f32; 3]>) -> ([u32; 2], Vec<[f32; 3]>) {
     let factor = (0..2).map(|axis| size[axis].div_ceil(MAX_SIZE[axis])).max().unwrap_or(1);
     if factor == 1 {
@@ -233,7 +233,7 @@ fn reduced(size: [u32; 2], texels: Vec<[f32; 3]>) -> ([u32; 2], Vec<[f32; 3]>) {
     (reduced, lines.concat())
 }
 
-/// For each of `few` equal parts of an axis that has `many` texels: the texels that it covers, and from where to where.
+/// For each of `few` equal parts of an axis of `many` texels, the texels that it covers, with the covered intervals.
 fn covers(many: u32, few: u32) -> Vec<Vec<(usize, f64, f64)>> {
     // Positions are compared as fractions with the denominator `few`, so that no texel is missed and none is covered by
     // an interval of length zero.
@@ -256,11 +256,11 @@ fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
     2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
 }
 
-/// The number of equal shares into which a table divides probability: f32 holds every multiple of 2⁻²⁴ up to 1, and the
+/// The number of equal shares into which a table divides probability. f32 holds every multiple of 2⁻²⁴ up to 1, and the
 /// differences of these multiples.
 const SHARES: f64 = (1 << 24) as f64;
 
-/// The cumulative table of rows, and those of the columns of each row.
+/// Makes the cumulative table of rows, and the tables of the columns of each row.
 fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32>, Vec<f32>) {
     let (columns, rows) = (width as usize, height as usize);
     let mut sums = vec![0.0; rows];
@@ -282,7 +282,7 @@ fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32>, Vec<f32>
 
 /// Fills a table with the cumulative distribution of weights, and returns their sum.
 ///
-/// Each weight that is not zero has one share for certain, so that no light is too faint to be sampled; the other
+/// Each weight that is not zero gets one share for certain, so that no light is too faint to be sampled. The other
 /// shares are distributed in proportion.
 fn fill(table: &mut [f32], weights: impl Iterator<Item = f64> + Clone) -> f64 {
     let total: f64 = weights.clone().sum();

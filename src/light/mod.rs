@@ -1,5 +1,5 @@
-//! Everything that illuminates a scene: lights, sky and ground. Also two tables that all renderers share: the
-//! probabilities with which emissive spheres are sampled, and the energy that rough surfaces keep.
+//! Lights, sky and ground, which illuminate a scene. Also two tables that all renderers share: the sampling
+//! probabilities of emissive spheres, and the energy that rough surfaces keep.
 
 use std::sync::Arc;
 
@@ -31,13 +31,13 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightKind {
-    /// A light at the eye without shadows: each surface is lit along the ray that sees it.
+    /// A light at the eye without shadows. Each surface is lit along the ray that sees it.
     Head {
         /// Light reflected by a white surface that faces the light.
         strength: LinearRgb,
     },
-    /// A light infinitely far away. With an angular radius it is a sun: shadows are soft, and scattered rays can hit
-    /// it.
+    /// A light infinitely far away. With an angular radius it is a sun, so that shadows are soft and scattered rays can
+    /// hit it.
     Directional {
         /// The direction towards the light, of any length except zero.
         toward: DVec3,
@@ -72,12 +72,12 @@ pub enum LightFrame {
     /// World space.
     #[default]
     World,
-    /// Camera space: x to the right, y up, z towards the viewer, from the camera's origin.
+    /// Camera space, from the camera's origin: x to the right, y up, z towards the viewer.
     Camera,
 }
 
 impl LightKind {
-    /// Its strength, intensity or radiance.
+    /// The strength, intensity or radiance of the light.
     pub(crate) const fn color(&self) -> LinearRgb {
         match *self {
             Self::Head { strength } | Self::Directional { strength, .. } => strength,
@@ -102,8 +102,8 @@ impl Light {
         [at_camera(DVec3::new(-0.6, 1.0, 0.9), 0.65), at_camera(DVec3::new(1.0, 0.2, 0.8), 0.15)]
     }
 
-    /// The light in world space, for the vectors of a camera; directions have unit length. `None` if a direction is zero or
-    /// not finite, which [`RenderSettings::check`](crate::render::RenderSettings::check) reports as an error.
+    /// The light in world space, for the vectors of a camera. Directions have unit length. `None` if a direction is
+    /// zero or not finite, which [`RenderSettings::check`](crate::render::RenderSettings::check) reports as an error.
     pub(crate) fn in_view(&self, vectors: &CameraVectors) -> Option<LightKind> {
         let axes = [vectors.right, vectors.up, -vectors.forward].map(DVec3::normalize_or_zero);
         let turned = |v: DVec3| match self.frame {
@@ -136,12 +136,12 @@ impl Light {
 pub struct Ground {
     /// A point of the plane, in world space.
     pub point: DVec3,
-    /// The direction that is above the plane; any length except zero.
+    /// The direction that is above the plane, of any length except zero.
     pub normal: DVec3,
     /// Colour of the plane, each component at most 1.
     pub color: LinearRgb,
-    /// Whether only the shadows on the plane are visible, more opaque where they are darker. Only for the studio
-    /// integrator.
+    /// Whether only the shadows on the plane are visible, more opaque where they are darker. Only the studio integrator
+    /// supports this.
     pub is_shadow_catcher: bool,
 }
 
@@ -151,7 +151,7 @@ pub struct Ground {
 pub struct Sky {
     /// The radiance of the sky.
     pub light: SkyLight,
-    /// Whether the camera sees the sky; if not, it sees the background instead.
+    /// Whether the camera sees the sky. If not, it sees the background instead.
     pub is_visible: bool,
 }
 
@@ -159,9 +159,9 @@ pub struct Sky {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub enum SkyLight {
-    /// The same radiance in all directions; black for no light.
+    /// The same radiance in all directions. Black means no light.
     Constant(LinearRgb),
-    /// Interpolated linearly in the direction's height y.
+    /// A linear interpolation in the direction's height y.
     Gradient {
         /// Radiance from straight up.
         zenith: LinearRgb,
@@ -170,12 +170,12 @@ pub enum SkyLight {
         /// Radiance from straight down.
         nadir: LinearRgb,
     },
-    /// An image of all directions. Run files have its numbers as arrays.
+    /// An image of all directions. Run files store its numbers as arrays.
     #[cfg_attr(feature = "run-file", serde(skip))]
     Image {
         /// The image.
         environment: Arc<Environment>,
-        /// The factor by which the radiance of the image is multiplied: 0 to 10⁶.
+        /// The factor that multiplies the radiance of the image, from 0 to 10⁶.
         strength: f32,
         /// The rotation of the image about +y in radians, counter-clockwise seen from above.
         rotation: f64,

@@ -10,7 +10,7 @@ use crate::range::RangeError;
 use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 
-/// Why settings, or the materials of a scene, are not valid.
+/// The reason why settings, or the materials of a scene, are not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -22,7 +22,7 @@ pub enum SettingsError {
         "{what} has the color {rgb:?}, which creates light; each component of a color that scatters must be at most 1"
     )]
     Albedo {
-        /// The sphere or the ground.
+        /// The sphere or the ground that has the colour.
         what: String,
         /// Its linear colour.
         rgb: [f32; 3],
@@ -30,7 +30,7 @@ pub enum SettingsError {
     /// A light is so strong that sums of squares would exceed the range of f32.
     #[error("{what} shines with {rgb:?}, which is too strong; each component must be at most 1e18")]
     TooBright {
-        /// The light, sphere or other source.
+        /// The light, sphere or other source that is too bright.
         what: String,
         /// Its linear radiance or strength.
         rgb: [f32; 3],
@@ -55,7 +55,7 @@ impl RenderSettings {
     /// lighting, that the materials of the scene do not reflect more light than arrives.
     ///
     /// # Errors
-    /// Returns an error if a check fails; the error describes the first problem.
+    /// Returns an error if a check fails. The error describes the first problem.
     pub fn check(&self, scene: &Scene) -> Result<(), SettingsError> {
         self.check_with(scene.checked_appearance())
     }
@@ -156,7 +156,7 @@ impl RenderSettings {
     }
 }
 
-/// The largest radiance: its square, and the sum of many squares, stay below 2¹²⁸.
+/// The largest radiance. Its square, and the sum of many squares, stay below 2¹²⁸.
 pub const BRIGHTEST: f32 = 1e18;
 
 fn check_brightness(
@@ -188,7 +188,7 @@ impl PathTracing {
     /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// Returns an error if a number is out of range; the error names the first.
+    /// Returns an error if a number is out of range. The error names the first one.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
@@ -199,7 +199,7 @@ impl Studio {
     /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// Returns an error if a number is out of range; the error names the first.
+    /// Returns an error if a number is out of range. The error names the first one.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;

@@ -8,11 +8,11 @@ use crate::light::codes;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub enum Integrator {
-    /// Colours the surface that the ray through a pixel's centre hits first, without lights.
+    /// Colours the surface that the ray through a pixel's centre hits first. Uses no lights.
     Primary(Shading),
     /// Direct light from lights to surfaces, with aids for seeing shape.
     Studio(Studio),
-    /// Path tracing: follows light as surfaces scatter it.
+    /// Path tracing, which follows light as surfaces scatter it.
     Path(PathTracing),
 }
 
@@ -41,14 +41,14 @@ impl Integrator {
     }
 }
 
-/// How the surface that a primary ray hits is coloured.
+/// The shading of the surface that a primary ray hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shading {
     /// The colour of the sphere, without any shading.
     Flat,
-    /// Lambert's cosine law with the light at the eye: the colour times the cosine of the angle
-    /// between the ray and the normal.
+    /// Lambert's cosine law with the light at the eye. The colour is multiplied by the cosine of the angle between the
+    /// ray and the normal.
     #[default]
     Headlight,
 }
@@ -67,11 +67,11 @@ impl Shading {
 /// Settings that turn primary rays into colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimarySettings {
-    /// How surfaces are coloured.
+    /// The shading of surfaces.
     pub shading: Shading,
-    /// The colour where no sphere is hit: the background, or black where the picture is transparent.
+    /// The colour where no sphere is hit. It is the background, or black if the picture is transparent.
     pub background: LinearRgb,
-    /// Whether pixels without a sphere have the alpha 0, in targets that keep alpha.
+    /// Whether pixels without a sphere get the alpha 0, in targets that have alpha.
     pub is_transparent: bool,
 }
 
@@ -90,7 +90,7 @@ pub struct PathTracing {
     pub max_depth: u32,
     /// The first surface, counted from 0, at which paths that carry little light may end at random (Russian roulette).
     pub roulette_from: u32,
-    /// How lights that scattered rays can hit are sampled.
+    /// The sampling method of lights that scattered rays can hit.
     pub light_sampling: LightSampling,
 }
 
@@ -102,7 +102,7 @@ impl Default for PathTracing {
 }
 
 impl LightSampling {
-    /// The number that a device has.
+    /// The code of the method on a device.
     pub(crate) const fn code(self) -> u32 {
         match self {
             Self::Chance => codes::sampling::CHANCE,
@@ -112,7 +112,7 @@ impl LightSampling {
     }
 }
 
-/// How emissive spheres, a sun and the image of a sky are sampled.
+/// The sampling method of emissive spheres, a sun and the image of a sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -133,7 +133,7 @@ pub enum LightSampling {
 pub struct Studio {
     /// Ambient light, which arrives from all directions.
     pub ambient: LinearRgb,
-    /// Ambient occlusion, which reduces ambient light; `None` for no reduction.
+    /// Ambient occlusion, which reduces ambient light. `None` for no reduction.
     pub occlusion: Option<Occlusion>,
     /// Whether lights cast shadows. Spheres that are not opaque cast no shadows.
     pub has_shadows: bool,
@@ -141,7 +141,7 @@ pub struct Studio {
     pub max_surfaces: u32,
     /// Fading of colours with distance.
     pub depth_cue: Option<DepthCue>,
-    /// Lines where one sphere ends and another begins.
+    /// Lines at the borders between spheres.
     pub outline: Option<Outline>,
 }
 
@@ -159,14 +159,14 @@ impl Default for Studio {
     }
 }
 
-/// Ambient occlusion: ambient light is reduced to the share of cosine-weighted directions in which no opaque sphere is
-/// near.
+/// Ambient occlusion, which reduces ambient light to the share of cosine-weighted directions in which no opaque sphere
+/// is near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct Occlusion {
-    /// The largest distance, in scene units, at which a sphere occludes; `None` for any distance.
+    /// The largest distance, in scene units, at which a sphere occludes. `None` for any distance.
     pub radius: Option<f64>,
-    /// The number of directions for each sample of a pixel: 1 to 1024.
+    /// The number of directions per sample of a pixel: 1 to 1024.
     pub samples: u32,
 }
 
@@ -183,7 +183,7 @@ impl Default for Occlusion {
 pub struct DepthCue {
     /// Distance at which fading begins, in scene units.
     pub near: f64,
-    /// Distance at which only `color` is left, in scene units; greater than `near`.
+    /// Distance at which only `color` is left, in scene units. It must be greater than `near`.
     pub far: f64,
     /// The colour to which others fade.
     pub color: LinearRgb,

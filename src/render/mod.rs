@@ -1,14 +1,14 @@
-//! Render settings: which rays are traced, what illuminates the scene, and what is visible where there is no sphere.
+//! Render settings: the rays that are traced, the lights of the scene, and the background where there is no sphere.
 //!
-//! [`Integrator::Primary`] traces one ray through the centre of each pixel and colours the surface that it hits first;
-//! it needs no lights. [`Integrator::Studio`] is direct and fast: lights with shadows, ambient occlusion, opacity,
+//! [`Integrator::Primary`] traces one ray through the centre of each pixel and colours the surface that it hits first,
+//! without lights. [`Integrator::Studio`] is direct and fast. It has lights with shadows, ambient occlusion, opacity,
 //! outlines and depth cueing. [`Integrator::Path`] follows light as it is scattered. The last two make pictures with
 //! lighting and take many samples for each pixel. Samples are addressed by (pixel, sample, dimension), so that a
 //! picture depends only on scene, size, number of samples and seed.
 //!
 //! # Units
 //! A surface of colour c that faces a directional light of `strength` 1 has the radiance c. All radiances are in this
-//! unit: a sky of radiance 1 in all directions makes a white Lambert surface white.
+//! unit. So a sky of radiance 1 in all directions makes a white Lambert surface white.
 
 use crate::camera::filter::PixelFilter;
 use crate::image::LayerSet;
@@ -42,18 +42,18 @@ pub struct RenderSettings {
     /// The number of samples for each pixel, their positions in the pixel, and the random seed. The integrator
     /// `primary` has one sample for each pixel, at its centre.
     pub sampling: Sampling,
-    /// Lights that are not spheres of the scene. They are invisible, except for a sun. Only for pictures with lighting.
+    /// Lights that are not spheres of the scene, for pictures with lighting. They are invisible, except for a sun.
     pub lights: Vec<Light>,
     /// The sky around the scene. Only the integrator `path` uses it.
     pub sky: Sky,
-    /// A plane below the scene. Only for pictures with lighting.
+    /// A plane below the scene. Only pictures with lighting use it.
     pub ground: Option<Ground>,
     /// The colour where a ray hits nothing, unless the sky is visible.
     pub background: LinearRgb,
-    /// Whether pixels are transparent where rays hit nothing; colours are then premultiplied by alpha.
+    /// Whether pixels are transparent where rays hit nothing. If so, colours are premultiplied by alpha.
     pub is_transparent: bool,
-    /// Whether noise is removed by a filter that is guided by shapes and colours; see [`crate::image::denoise`]. Only
-    /// for pictures with lighting.
+    /// Whether a filter that is guided by shapes and colours removes noise; see [`crate::image::denoise`]. Only
+    /// pictures with lighting use it.
     pub is_denoised: bool,
 }
 
@@ -63,7 +63,7 @@ pub struct RenderSettings {
 pub struct Sampling {
     /// The number of samples for each pixel: 1 to 2²⁴.
     pub samples: u32,
-    /// Seed of the random numbers: another seed gives different noise.
+    /// Seed of the random numbers. Another seed gives different noise.
     pub seed: u32,
     /// The filter that places samples around the centre of a pixel.
     pub filter: PixelFilter,
@@ -82,7 +82,7 @@ impl Default for Sampling {
 }
 
 impl Default for RenderSettings {
-    /// One primary ray through the centre of each pixel; surfaces are lit from the eye, over white.
+    /// One primary ray through the centre of each pixel. Surfaces are lit from the eye, over white.
     fn default() -> Self {
         Self {
             integrator: Integrator::default(),
@@ -115,9 +115,9 @@ impl RenderSettings {
         Self { integrator: Integrator::Path(PathTracing::default()), ..Self::studio() }
     }
 
-    /// The same picture with several samples for each pixel, which smooth its edges. A picture by primary rays becomes
-    /// one of the integrator `studio` with the same light: a light at the eye, or for [`Shading::Flat`] ambient light
-    /// alone. Other settings stay as they are.
+    /// The same picture with several samples per pixel, which smooth its edges. A picture by primary rays becomes one
+    /// of the integrator `studio` with the same light: a light at the eye, or for [`Shading::Flat`] only ambient light.
+    /// Other settings do not change.
     #[must_use]
     pub fn with_smooth_edges(&self) -> Self {
         let Integrator::Primary(shading) = self.integrator else { return self.clone() };
@@ -135,15 +135,15 @@ impl RenderSettings {
         }
     }
 
-    /// The background, unless the camera sees a sky in its place.
+    /// The background. `None` if the camera sees a sky in its place.
     #[must_use]
     pub fn visible_background(&self) -> Option<LinearRgb> {
         let is_sky = matches!(self.integrator, Integrator::Path(_)) && self.sky.is_visible;
         (!is_sky).then_some(self.background)
     }
 
-    /// The same background with primary rays only: lights, samples, sky, ground and denoising return to their defaults.
-    /// The shading stays if it was set.
+    /// Settings with only primary rays and the same background. Lights, samples, sky, ground and denoising return to
+    /// their defaults. The shading stays if it was set.
     #[must_use]
     pub fn by_primary_rays(&self) -> Self {
         let Self { background, is_transparent, .. } = *self;
@@ -156,7 +156,7 @@ impl RenderSettings {
         }
     }
 
-    /// Settings that turn primary rays into colours; `None` for other integrators.
+    /// Settings that turn primary rays into colours. `None` for other integrators.
     #[must_use]
     pub fn primary(&self) -> Option<PrimarySettings> {
         match self.integrator {
@@ -169,7 +169,7 @@ impl RenderSettings {
         }
     }
 
-    /// The parameters of the studio integrator; `None` for other integrators.
+    /// The parameters of the studio integrator. `None` for other integrators.
     #[must_use]
     pub fn studio_parameters(&self) -> Option<&Studio> {
         match &self.integrator {
@@ -178,8 +178,8 @@ impl RenderSettings {
         }
     }
 
-    /// The same settings without what looks at neighbours of pixels: denoising and outlines. For parts of a film, which
-    /// [`cpu::finish`](crate::cpu::finish) or `Headless::finish` completes when they are joined.
+    /// The same settings without denoising and outlines, which read neighbours of pixels. Use them for parts of a film.
+    /// After joining the parts, [`cpu::finish`](crate::cpu::finish) or `Headless::finish` completes the picture.
     #[must_use]
     pub fn unfinished(&self) -> Self {
         let mut settings = Self { is_denoised: false, ..self.clone() };
@@ -189,8 +189,8 @@ impl RenderSettings {
         settings
     }
 
-    /// The layers that rendering needs, including those that are wanted in the result: outlines and denoising are guided
-    /// by layers of data.
+    /// The layers that rendering needs, including those that are wanted in the result. Outlines and denoising need data
+    /// layers.
     #[must_use]
     pub fn layers_for(&self, wanted: LayerSet) -> LayerSet {
         let lines = self.studio_parameters().and_then(|studio| studio.outline);

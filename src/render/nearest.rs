@@ -1,4 +1,4 @@
-//! Pictures by primary rays that are put together from parts of a scene: each pixel shows what is nearest in all of them.
+//! Pictures of parts of a scene by primary rays, and their merging, after which each pixel shows the nearest hit.
 
 use crate::camera::View;
 use crate::geometry::bounds::Bounds;
@@ -7,36 +7,36 @@ use crate::image::{DoesNotFit, ImageTooLarge};
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 
-/// A picture by primary rays of some spheres of a scene, with the distance at which each ray hits. Of the pictures of all
-/// parts of a scene, [`Nearest::keep_nearer`] makes the picture of the whole, to the bit, in any order and any grouping:
-/// a ray shows the nearest hit, and of equal distances that with the smallest id, as the searches of all structures do.
+/// A picture of some spheres of a scene by primary rays, with the distance at which each ray hits.
+/// [`Nearest::keep_nearer`] merges such pictures of all parts of a scene into that of the whole, to the bit, in any
+/// order and grouping. A ray shows the nearest hit, and at equal distances the smallest id, as in all structures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
     image: Image,
-    /// Along each ray, from where the renderer lets it start; infinite for a miss.
+    /// The distance along each ray from the renderer's start of the ray. Infinite for a miss.
     t: Vec<f64>,
     id: Vec<u32>,
-    /// From the camera; infinite for a miss. Empty if it is not known.
+    /// The distance from the camera. Infinite for a miss. Empty if it is not known.
     distance: Vec<f32>,
 }
 
-/// Pictures that cannot be put together, because they differ in size or layers.
+/// An error for pictures that cannot be merged, because they differ in size or layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("these pictures differ in size or layers, so they are not of parts of one scene")]
 pub struct NotOfOneScene;
 
-/// How much farther a box must be than a hit, as a part of its distance: more than the rounding of distances in f32.
+/// A hidden box is farther than a hit by at least this fraction of its distance: more than f32's rounding.
 const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 
-/// By how much a box is wider than its spheres, as a part of the scene's diagonal: more than the margin of boxes.
+/// Extra width of a box around spheres, as a fraction of the scene's diagonal. It exceeds the margin of boxes.
 const WIDER: f64 = 1.0 / (1 << 14) as f64;
 
 impl Nearest {
-    /// Bytes of a pixel beside its layers in [`Nearest::to_le_bytes`].
+    /// The number of bytes per pixel in [`Nearest::to_le_bytes`], in addition to the layers.
     pub const BYTES_PER_PIXEL: u64 = 12;
 
-    /// A picture with the distances along the rays and the ids of all pixels, row by row. `None` unless there are as many
-    /// of them as pixels. The distances from the camera are only needed by [`Nearest::hides`], and may be empty.
+    /// A picture with the distances along the rays and the ids of all pixels, row by row. `None` unless both lists have
+    /// one entry per pixel. Only [`Nearest::hides`] needs the distances from the camera, which may be empty.
     pub(crate) fn new(image: Image, t: Vec<f64>, id: Vec<u32>, distance: Vec<f32>) -> Option<Self> {
         let pixels = image.color().len();
         let fits = t.len() == pixels && id.len() == pixels;
@@ -51,14 +51,14 @@ impl Nearest {
         &self.image
     }
 
-    /// The picture alone.
+    /// Returns the picture without the distances.
     #[must_use]
     pub fn into_image(self) -> Image {
         self.image
     }
 
-    /// The same picture with other ids: `ids` has one for each sphere of the scene that was rendered. The ids must
-    /// ascend, so that of equal distances the smallest id was found.
+    /// The same picture with other ids. `ids` has one for each sphere of the rendered scene. They must ascend, because
+    /// at equal distances the sphere with the smallest index was found.
     #[must_use]
     pub fn with_ids(mut self, ids: &[u32]) -> Self {
         let of = |id: u32| ids.get(id as usize).copied().unwrap_or(NO_ID);
@@ -67,10 +67,10 @@ impl Nearest {
         self
     }
 
-    /// Takes the pixels of another part that are nearer, or as near and of a smaller id.
+    /// Takes the pixels of another part that are nearer, or equally near with a smaller id.
     ///
     /// # Errors
-    /// If the pictures differ in size or layers. Then nothing is changed.
+    /// Returns an error if the pictures differ in size or layers. Then nothing changes.
     pub fn keep_nearer(&mut self, other: &Self) -> Result<(), NotOfOneScene> {
         let shape = |image: &Image| (image.width(), image.height(), image.layers());
         if shape(&self.image) != shape(&other.image) {
@@ -91,9 +91,9 @@ impl Nearest {
         Ok(())
     }
 
-    /// Whether the rays of all pixels miss the spheres in a box, or hit something before it: then a part with these
-    /// spheres alone changes nothing. It is never known for cameras whose rays start far from the scene, because kernels
-    /// round them by more than the margin of boxes.
+    /// Whether the rays of all pixels miss the spheres in a box, or hit something before it. Then a part with only
+    /// these spheres changes nothing. Always false for cameras whose rays start far from the scene, because kernels
+    /// round such rays by more than the margin of boxes.
     #[must_use]
     pub fn hides(&self, view: &View<'_>, scene: &Bounds, spheres: &Bounds) -> bool {
         let pixels = self.t.len();
@@ -144,7 +144,7 @@ impl Nearest {
         Ok(Self { image, t: vec![f64::INFINITY; pixels], id: vec![NO_ID; pixels], distance })
     }
 
-    /// The bytes of the picture, as [`Image::to_le_bytes`], then the distances along the rays as f64 and the ids as u32.
+    /// Returns the bytes of [`Image::to_le_bytes`], then the distances along the rays as f64 and the ids as u32.
     #[must_use]
     pub fn to_le_bytes(&self) -> Vec<u8> {
         let mut bytes = self.image.to_le_bytes();
@@ -153,8 +153,8 @@ impl Nearest {
         bytes
     }
 
-    /// A picture from the bytes that [`Nearest::to_le_bytes`] returned for these layers. `None` if their number is
-    /// another, or the memory cannot be reserved.
+    /// Makes a picture from the bytes that [`Nearest::to_le_bytes`] returned for these layers. `None` if the number of
+    /// bytes differs, or the memory cannot be reserved.
     #[must_use]
     pub fn from_le_bytes(size: [u32; 2], layers: LayerSet, bytes: &[u8]) -> Option<Self> {
         let pixels = usize::try_from(u64::from(size[0]) * u64::from(size[1])).ok()?;

@@ -9,8 +9,7 @@ use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
 impl RenderSettings {
-    /// Notes for the user about what may not be intended in rendering a scene with these settings, and what to do about
-    /// it.
+    /// Notes for the user about possibly unintended results of rendering a scene with these settings, and what to do.
     #[must_use]
     pub fn notes(&self, scene: &Scene) -> Vec<String> {
         let any = |is_special: fn(&SurfaceProperties) -> bool| {
@@ -51,7 +50,7 @@ impl RenderSettings {
         notes.chain(deep).collect()
     }
 
-    /// Whether the picture has lighting but nothing emits light.
+    /// Whether the picture has lighting but no light source.
     fn is_dark(&self, scene: &Scene) -> bool {
         let is_black = |color: &LinearRgb| *color == LinearRgb::BLACK;
         let is_lit = self.lights.iter().any(|light| !is_black(&light.kind.color()));
@@ -80,13 +79,12 @@ impl RenderSettings {
     }
 }
 
-/// Whether it is likely that some ray meets more than `most` translucent surfaces, and that what lies behind them could
-/// be seen. That is an estimate from the sizes of the spheres and of the whole scene, because to know it, one has to
-/// trace the picture.
+/// Whether a ray probably meets more than `most` translucent surfaces, and surfaces behind them could be seen. This is
+/// an estimate from the sizes of the spheres and of the whole scene. Only tracing the picture would give the answer.
 fn may_exceed(scene: &Scene, most: u32) -> bool {
     let bounds = scene.bounds_to_frame();
     let [x, y, z] = (bounds.max() - bounds.min()).to_array();
-    // The mean of a box's shadows over all directions, and what of it is the shadow of an ellipsoid in the box.
+    // The mean area of a box's shadow over all directions, times the share of an ellipsoid in the box.
     let shadow = 0.5 * (x * y + y * z + z * x) * PI / 6.0;
     let (mut area, mut clearness) = (0.0, 0.0);
     for (id, [.., radius]) in (0_u32..).zip(scene.spheres()) {
@@ -97,7 +95,7 @@ fn may_exceed(scene: &Scene, most: u32) -> bool {
             clearness += own * (1.0 - opacity).ln();
         }
     }
-    // A ray enters each sphere and leaves it, and in the middle of a ball it meets 1.5 times as many as on average.
+    // A ray enters and leaves each sphere. In the middle of a round scene it meets 1.5 times as many as on average.
     let met = 1.5 * 2.0 * area / shadow;
     let left = (clearness / area * f64::from(most)).exp();
     met > f64::from(most) && left > 1.0 / 256.0

@@ -1,4 +1,4 @@
-//! The progress of a render, the decisions of its caller, and its result: the same on a device and on the CPU.
+//! The progress of a render, the decisions of its caller, and its result, for devices and the CPU.
 
 use crate::image::Image;
 
@@ -8,7 +8,7 @@ use crate::image::Image;
 pub struct Progress {
     /// Number of samples that every pixel has.
     pub samples: u32,
-    /// Number of samples that every pixel will have; 1 for a picture of primary rays.
+    /// Number of samples that every pixel will have. 1 for a picture of primary rays.
     pub total: u32,
     /// Completed fraction of the work, from 0 to 1.
     pub part: f64,
@@ -17,7 +17,7 @@ pub struct Progress {
     pub noise: Option<f64>,
 }
 
-/// How a render continues: the answer of the callback that is told about its progress.
+/// The caller's decision how a render continues, returned by the callback that receives its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Decision {
@@ -25,15 +25,15 @@ pub enum Decision {
     GoOn,
     /// Continue, and provide [`Progress::noise`] in later calls.
     MeasureNoise,
-    /// Return the picture with the samples that it has. While some pixels have no sample there is no picture, and the
-    /// render stops with an error.
+    /// Return the picture with the samples taken so far. If some pixels have no sample yet, there is no picture, and
+    /// the render stops with an error.
     Finish,
     /// Stop the render with an error.
     Stop,
 }
 
-/// Callback that is told about the progress several times a second, on the thread that called, and decides how the render
-/// continues.
+/// A callback that receives the progress several times a second, on the thread of the caller, and decides how the
+/// render continues.
 pub type Watch<'a> = dyn FnMut(&Progress) -> Decision + 'a;
 
 /// The result of a render.
@@ -71,8 +71,8 @@ impl Totals {
         self.pixels += more.pixels;
     }
 
-    /// The remaining noise: the square root of the mean variance of pixels, divided by the mean luminance. It is `None`
-    /// if it is not known.
+    /// The remaining noise: the square root of the mean variance of pixels, divided by the mean luminance. `None` if it
+    /// is not known.
     pub(crate) fn noise(&self, samples: u32) -> Option<f64> {
         let count = self.pixels as f64;
         let is_known = samples > 1 && self.light > 0.0;
@@ -80,8 +80,8 @@ impl Totals {
     }
 }
 
-/// Size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a picture
-/// that could be returned.
+/// The size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a
+/// picture that could be returned.
 pub(crate) fn batch(done: u32, total: u32) -> u32 {
     done.clamp(1, 32).min(total - done)
 }

@@ -1,4 +1,4 @@
-//! What the spheres of a scene look like, apart from their geometry.
+//! The appearance of a scene's spheres, apart from their geometry.
 
 use std::collections::HashMap;
 use std::ops::Deref;
@@ -15,17 +15,17 @@ use crate::scene::material::{Material, SurfaceProperties};
 pub enum Colors {
     /// All spheres have the same colour.
     One(LinearRgb),
-    /// Every sphere has a colour from a palette: 4 bytes for each sphere.
+    /// Every sphere has a colour from a palette, in 4 bytes per sphere.
     Palette {
         /// The colours.
         palette: Vec<LinearRgb>,
         /// For every sphere, the index of its colour in the palette.
         indices: Vec<u32>,
     },
-    /// Every sphere has its own colour: 4 bytes for each sphere. Red, green and blue are in sRGB; alpha is linear and
+    /// Every sphere has its own colour, in 4 bytes per sphere. Red, green and blue are in sRGB. Alpha is linear and
     /// multiplies the opacity of the sphere's surface. Colours are not premultiplied by alpha.
     Rgba8(Vec<[u8; 4]>),
-    /// Every sphere has a number, and a colour map turns numbers into colours: 4 bytes for each sphere.
+    /// Every sphere has a number, in 4 bytes per sphere, and a colour map turns numbers into colours.
     Scalars {
         /// The number of every sphere. NaN is an error.
         values: Vec<f32>,
@@ -34,12 +34,12 @@ pub enum Colors {
     },
 }
 
-/// What spheres look like: colours, surface properties, and the assignment of both to spheres.
+/// The appearance of spheres: colours, surface properties, and the assignment of both to spheres.
 ///
 /// ```
 /// use pinhole::{Appearance, SurfaceProperties, SphereArray, Scene};
 ///
-/// // Four bytes for each sphere; the last is opacity.
+/// Four bytes per sphere. The last is opacity.
 /// let colors = vec![[255, 0, 0, 255], [0, 0, 255, 128]];
 /// let spheres = vec![[0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]];
 /// let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors))?;
@@ -85,7 +85,7 @@ impl Appearance {
         self.with(vec![surface], None)
     }
 
-    /// The same colours on spheres with several surface properties: a list of them, and for every sphere an index into it.
+    /// The same colours with several surface properties: a list of them, and for every sphere an index into the list.
     #[must_use]
     pub fn with_surfaces(self, surfaces: Vec<SurfaceProperties>, indices: Vec<u32>) -> Self {
         self.with(surfaces, Some(indices))
@@ -111,7 +111,7 @@ impl Appearance {
         &self.surfaces
     }
 
-    /// For every sphere, the index of its surface properties; `None` if all spheres have the first.
+    /// For every sphere, the index of its surface properties. `None` if all spheres have the first.
     #[must_use]
     pub fn surface_indices(&self) -> Option<&[u32]> {
         self.surface_indices.as_deref()
@@ -166,7 +166,7 @@ impl Appearance {
         }
     }
 
-    /// The colour of a sphere, by its index in input order. `None` if there is no such sphere; if all spheres have the
+    /// The colour of a sphere, by its index in input order. `None` if there is no such sphere. If all spheres have the
     /// same colour, the index is not checked.
     #[must_use]
     pub fn color(&self, id: u32) -> Option<LinearRgb> {
@@ -184,7 +184,7 @@ impl Appearance {
         }
     }
 
-    /// The alpha of a sphere's colour, from 0 to 1; 1 if colours have no alpha.
+    /// The alpha of a sphere's colour, from 0 to 1. It is 1 if colours have no alpha.
     pub(crate) fn alpha(&self, id: u32) -> f32 {
         match &self.colors {
             Colors::Rgba8(colors) => {
@@ -194,7 +194,7 @@ impl Appearance {
         }
     }
 
-    /// Whether some component of some colour may exceed 1.
+    /// Whether any component of a colour may exceed 1.
     pub(crate) fn may_exceed_one(&self) -> bool {
         let exceeds = |color: &LinearRgb| color.to_array().iter().any(|c| *c > 1.0);
         match &self.colors {
@@ -289,28 +289,28 @@ impl SceneAppearance {
 /// The content of one row of the material table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MaterialRow {
-    /// The surface properties, whose opacity is still to be multiplied by the alpha of the sphere's colour.
+    /// The surface properties. Their opacity must still be multiplied by the alpha of the sphere's colour.
     pub(crate) surface: SurfaceProperties,
-    /// The colour of a material that absorbs light inside, which depends on it; white for all others.
+    /// The colour, for a material whose absorption inside depends on it. White for all others.
     pub(crate) color: LinearRgb,
 }
 
-/// All rows, and the assignment of rows to spheres.
+/// All rows of the material table, and the assignment of rows to spheres.
 #[derive(Clone, Debug)]
 pub(super) struct MaterialTable {
     rows: Vec<MaterialRow>,
-    /// For every sphere, the index of its row; `None` if that is the index of its surface properties.
+    /// For every sphere, the index of its row. `None` if that is the index of its surface properties.
     indices: Option<Vec<u32>>,
 }
 
-/// Whether the surface belongs to a material whose colour determines the absorption inside.
+/// Whether the surface has a material whose colour determines the absorption inside.
 fn absorbs(surface: &SurfaceProperties) -> bool {
     matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
 }
 
 impl MaterialTable {
-    /// Makes one row for each set of surface properties; if its material absorbs light, one for each colour that occurs
-    /// with it.
+    /// Makes one row for each set of surface properties. If the material absorbs light, makes one row for each colour
+    /// that occurs with it.
     fn of(appearance: &SceneAppearance) -> Self {
         let surfaces = appearance.surfaces();
         let mut rows: Vec<MaterialRow> = surfaces

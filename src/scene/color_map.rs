@@ -2,29 +2,29 @@
 
 use crate::image::color::LinearRgb;
 
-/// A table of colours for a range of numbers. The first entry is the colour of the low end, the last that of the high
-/// end, and the others are spaced evenly between them.
+/// A table of colours for a range of numbers. The first entry is the colour of the low end, and the last that of the
+/// high end. The others are spaced evenly between them.
 ///
-/// A number has the colour of the nearest entry, and a number outside the range that of the nearest end: of n entries,
-/// the entry ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated, so that every
-/// renderer shows the same colours to the bit; a table of 256 entries is as fine as an 8-bit display.
+/// A number has the colour of the nearest entry. A number outside the range has that of the nearest end. With n
+/// entries, that is entry ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated,
+/// so all renderers show the same ones to the bit. 256 entries are as fine as an 8-bit display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
     colors: Vec<LinearRgb>,
     range: [f32; 2],
 }
 
-/// Why a table and a range do not make a colour map.
+/// The reason why a table and a range do not make a colour map.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
 pub struct ColorMapError(String);
 
 impl ColorMap {
-    /// A colour map from a table and the numbers that its first and its last entry stand for.
+    /// A colour map from a table and the numbers of its first and last entry.
     ///
     /// # Errors
-    /// Returns an error if there is no colour, or the ends are not finite, or the first is not less than the second.
+    /// Returns an error if there is no colour, if the ends are not finite, or if the first is not less than the second.
     pub fn new(colors: Vec<LinearRgb>, range: [f32; 2]) -> Result<Self, ColorMapError> {
         if colors.is_empty() {
             return Err(ColorMapError("a color map needs at least one color".to_owned()));
@@ -44,14 +44,14 @@ impl ColorMap {
         &self.colors
     }
 
-    /// The numbers that the first and the last entry stand for.
+    /// The numbers of the first and the last entry.
     #[must_use]
     pub fn range(&self) -> [f32; 2] {
         self.range
     }
 
-    /// The index of the entry for a number. Infinities have the entries of the ends; NaN, which no scene accepts, has
-    /// the first.
+    /// The index of the entry for a number. Infinities have the entries of the ends. NaN, which no scene accepts, has
+    /// the first entry.
     #[must_use]
     pub fn index(&self, value: f32) -> usize {
         let [low, high] = self.range.map(f64::from);

@@ -5,17 +5,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::geometry::math::equal_bits;
 use crate::parallel::map_chunks;
 
-/// Finds spheres whose centre and radius equal those of an earlier sphere. At equal distances a ray hits the sphere
-/// with the smaller index, so that duplicates are never visible.
+/// The spheres whose centre and radius equal those of an earlier sphere. At equal distances a ray hits the sphere with
+/// the smaller index, so duplicates are never visible.
 #[derive(Debug)]
 pub(crate) struct Duplicates {
-    /// For every sphere, the index of the first sphere equal to it; empty if there are no duplicates.
+    /// For every sphere, the index of the first sphere equal to it. Empty if there are no duplicates.
     firsts: Vec<u32>,
 }
 
 impl Duplicates {
-    /// Finds the duplicates among spheres (x, y, z, radius). The time is proportional to their number; it needs 4 bytes
-    /// for each sphere while it runs.
+    /// Finds the duplicates among spheres (x, y, z, radius). The time is proportional to the number of spheres. While
+    /// it runs, it needs 4 bytes per sphere.
     pub(crate) fn of(spheres: &[[f32; 4]]) -> Self {
         let mut suspects = suspects(spheres);
         let bits_of = |id: &u32| bits(&spheres[*id as usize]);
@@ -33,24 +33,24 @@ impl Duplicates {
         Self { firsts }
     }
 
-    /// For every sphere, the index of the first sphere equal to it; `None` if there are no duplicates.
+    /// For every sphere, the index of the first sphere equal to it. `None` if there are no duplicates.
     #[cfg(any(feature = "gpu", test))]
     pub(crate) fn into_firsts(self) -> Option<Vec<u32>> {
         (!self.firsts.is_empty()).then_some(self.firsts)
     }
 
-    /// The index of the first sphere equal to this one, which is usually the sphere itself.
+    /// The index of the first sphere equal to the given one, which is usually the sphere itself.
     pub(crate) fn first_of(&self, id: u32) -> u32 {
         self.firsts.get(id as usize).copied().unwrap_or(id)
     }
 }
 
-/// A list of spheres that contains all that have an equal sphere, and few others.
+/// Lists all spheres that have an equal sphere, and few others.
 fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
     const BITS_PER_SPHERE: usize = 16;
     let words = (spheres.len() * BITS_PER_SPHERE / 64).next_power_of_two();
     let clear = || -> Vec<AtomicU64> { (0..words).map(|_| AtomicU64::new(0)).collect() };
-    // The word and the bit in it that belong to a sphere: the same for equal spheres.
+    // The word and the bit in it that belong to a sphere. Equal spheres have the same.
     let bit_of = |sphere: &[f32; 4]| {
         let hash = hash(sphere);
         ((hash >> 6) as usize & (words - 1), 1 << (hash & 63))
@@ -77,7 +77,7 @@ fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
     found.concat()
 }
 
-/// A hash whose lower bits are well mixed: two rounds of multiplying and folding.
+/// A hash whose lower bits are well mixed, by two rounds of multiplying and folding.
 fn hash(sphere: &[f32; 4]) -> u64 {
     const ODD: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xd6e8_feb8_6659_fd93];
     let [x, y, z, radius] = bits(sphere).map(u64::from);
@@ -88,7 +88,7 @@ fn hash(sphere: &[f32; 4]) -> u64 {
     fold(fold(x | y << 32, ODD[0]) ^ (z | radius << 32), ODD[1])
 }
 
-/// The bits of a sphere; equal spheres have equal bits.
+/// The bits of a sphere. Equal spheres have equal bits.
 fn bits(sphere: &[f32; 4]) -> [u32; 4] {
     sphere.map(equal_bits)
 }
@@ -112,7 +112,7 @@ mod tests {
         }
     }
 
-    /// The expected answer comes from a search among all spheres before each.
+    /// Compares with a search among all earlier spheres.
     #[test]
     fn many_are_found_among_many() {
         let mut random = fastrand::Rng::with_seed(31);

@@ -1,8 +1,8 @@
-//! Why spheres and an appearance do not make a scene.
+//! Errors of spheres and appearances that do not make a scene.
 
 use super::sphere::SphereError;
 
-/// Why spheres and an appearance do not make a scene.
+/// The reason why spheres and an appearance do not make a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -11,7 +11,7 @@ pub enum SceneError {
     Sphere {
         /// Index in input order.
         index: usize,
-        /// What is wrong with it.
+        /// The problem of the sphere.
         error: SphereError,
     },
     /// There is not enough memory for all spheres.
@@ -26,14 +26,14 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// The palette index of a sphere is out of range.
+    /// An error for a sphere whose palette index is out of range.
     pub(super) fn color(index: usize, colors: usize) -> Self {
         Self::Invalid(format!(
             "sphere {index} has no color: its index is out of range; the palette has {colors} colors"
         ))
     }
 
-    /// A sphere has the number NaN, for which a colour map has no colour.
+    /// An error for a sphere that has the number NaN, for which a colour map has no colour.
     pub(super) fn scalar(index: usize) -> Self {
         Self::Invalid(format!("sphere {index} has the number NaN, which has no color"))
     }

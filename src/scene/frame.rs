@@ -1,5 +1,5 @@
-//! The conversion of spheres from world space to f32 offsets in the frame of a scene, and what the arithmetic and a camera
-//! need of all spheres of a scene of which only some are in memory.
+//! The conversion of spheres from world space to f32 offsets in the frame of a scene, and the data of a whole scene
+//! that rays and a camera need if only some spheres are in memory.
 
 use glam::{DVec3, Vec3};
 
@@ -59,7 +59,7 @@ pub(super) fn moved([x, y, z, radius]: [f64; 4], origin: DVec3) -> [f32; 4] {
 }
 
 /// The origin of a scene's frame. Along each axis it is zero if the centre of the data is no farther from the world's
-/// origin than the longest side of its bounding box; otherwise it is the centre of the data.
+/// origin than the longest side of its bounding box. Otherwise it is the centre of the data.
 ///
 /// The centre is rounded to f32. Coordinates that are exact in f32 then stay exact after the move, because neither of
 /// the two f32 numbers is more than twice the other (Sterbenz).
@@ -69,8 +69,8 @@ pub(super) fn frame_origin(bounds: Bounds) -> DVec3 {
     DVec3::from(bounds.center().to_array().map(along))
 }
 
-/// A sphere of a frame for checking, with its offset shrunk by [`FRAME_SLACK`] so that rounding does not invalidate a
-/// sphere at the very limit.
+/// A sphere of a frame for checking. [`FRAME_SLACK`] shrinks its offset, so that rounding does not invalidate a sphere
+/// at the very limit.
 pub(super) fn slackened(sphere: &[f32; 4]) -> [f64; 4] {
     let [x, y, z, radius] = sphere.map(f64::from);
     [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
@@ -86,26 +86,26 @@ pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bou
     parallel::map_chunks(spheres, of_chunk).into_iter().flatten().reduce(Bounds::union)
 }
 
-/// All spheres of a scene of which only a part is in memory. Every part shares the frame and the box of the whole, which
-/// decide the arithmetic of rays, so that each sphere is hit at the same distance, to the bit, as in the whole scene.
+/// Bounds and frame of a scene whose parts are loaded separately. All parts share them. They determine the arithmetic
+/// of rays, so each sphere is hit at the same distance, to the bit, as in the whole scene.
 ///
-/// It is made in two passes over the spheres: [`Whole::new`] needs the box of all of them, and [`Whole::add`] then needs
-/// each.
+/// It is made in two passes over the spheres. [`Whole::new`] needs the box of all of them, and [`Whole::add`] then
+/// needs each one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whole {
     /// The bounding box of all spheres as given, in world space.
     pub bounds: Bounds,
     /// The number of spheres.
     pub count: u64,
-    /// The corner with the smallest coordinates of the box of all spheres as kernels see them, in the scene's frame.
+    /// The corner with the smallest coordinates of the box of all spheres in f32, in the scene's frame.
     pub min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner of that box with the largest coordinates.
     pub max: Vec3,
     /// The corner with the smallest coordinates of the box of all centres, in the scene's frame.
     pub center_min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner of that box with the largest coordinates.
     pub center_max: Vec3,
-    /// The smallest radius; `f32::MAX` without spheres.
+    /// The smallest radius. `f32::MAX` without spheres.
     pub radius_min: f32,
     /// The largest radius.
     pub radius_max: f32,
@@ -114,7 +114,7 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// The whole of no spheres yet, in the frame of spheres with this bounding box.
+    /// A whole without spheres yet, in the frame of spheres with the given bounding box.
     #[must_use]
     pub fn new(bounds: Bounds) -> Self {
         Self {
@@ -130,19 +130,19 @@ impl Whole {
         }
     }
 
-    /// The origin of the frame, in world space: that of [`Scene::from_parts`](super::Scene::from_parts) for all spheres.
+    /// The origin of the frame, in world space, as in [`Scene::from_parts`](super::Scene::from_parts) for all spheres.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         frame_origin(self.bounds)
     }
 
-    /// A sphere (x, y, z, radius) in the frame, to the bit as a scene of all spheres has it.
+    /// Converts a sphere (x, y, z, radius) to the frame, to the bit as in a scene of all spheres.
     #[must_use]
     pub fn in_frame(&self, sphere: [f64; 4]) -> [f32; 4] {
         moved(sphere, self.origin())
     }
 
-    /// Adds a sphere, which is in the frame.
+    /// Adds a sphere, given in the frame.
     pub fn add(&mut self, [x, y, z, radius]: [f32; 4]) {
         let center = Vec3::new(x, y, z);
         self.count += 1;
@@ -161,7 +161,7 @@ impl Whole {
         (center - radius).cmpge(self.min).all() && (center + radius).cmple(self.max).all()
     }
 
-    /// The mean radius; 0 without spheres.
+    /// The mean radius. 0 without spheres.
     #[must_use]
     pub fn mean_radius(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.radius_sum / self.count as f64 }
@@ -211,7 +211,7 @@ mod tests {
         assert!((whole.mean_radius() - f64::from(statistics.radius_mean)).abs() < 1e-6);
     }
 
-    /// A camera frames a part as it does the whole, if the part has the spheres that reach farthest.
+    /// A camera frames a part like the whole, if the part has the spheres that reach farthest.
     #[test]
     fn parts_know_the_box_the_plane_and_the_mean_radius_of_the_whole() {
         let flat: Vec<[f64; 4]> =

@@ -1,35 +1,35 @@
-//! Materials: what a sphere's surface does with light. The colour belongs to the sphere, not to the material.
+//! Materials, which say how a sphere's surface responds to light. The colour belongs to the sphere.
 
 use crate::range::RangeError;
 
-/// What a surface does with light that hits it.
+/// The way in which a surface responds to light that hits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// A diffuse surface (Lambert's law), with an optional glossy lobe on top.
     Lambert {
-        /// The fraction of light that the glossy lobe reflects, whatever the colour: 0 to 1.
+        /// The fraction of light that the glossy lobe reflects, for any colour: 0 to 1.
         specular: f32,
         /// Roughness of the glossy lobe: 0.02 to 1.
         roughness: f32,
     },
-    /// A rough metal (GGX); the sphere's colour is its reflectance at normal incidence.
+    /// A rough metal (GGX). The sphere's colour is its reflectance at normal incidence.
     Conductor {
         /// Roughness: 0.02 to 1.
         roughness: f32,
     },
-    /// Glass, smooth or rough. Light that passes through it may be absorbed (Beer's law).
+    /// Glass, smooth or rough. Light that passes through it can be absorbed (Beer's law).
     Dielectric {
         /// Index of refraction relative to the surroundings: 1 to 4.
         ior: f32,
         /// Roughness: 0 (smooth), or 0.02 to 1.
         roughness: f32,
-        /// The distance inside the sphere, in scene units, after which white light has the sphere's colour; `None` for
+        /// The distance inside the sphere, in scene units, after which white light has the sphere's colour. `None` for
         /// no absorption.
         attenuation_distance: Option<f32>,
     },
-    /// A light source: it emits the sphere's colour times `strength` on both sides, and reflects nothing.
+    /// A light source, which emits the sphere's colour times `strength` on both sides, and reflects nothing.
     Emissive {
-        /// The factor by which the colour is multiplied: 0 to 10⁶.
+        /// The factor that multiplies the colour: 0 to 10⁶.
         strength: f32,
     },
 }
@@ -44,9 +44,9 @@ impl Default for Material {
 /// A material, and the opacity of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceProperties {
-    /// What the surface does with light.
+    /// The surface's response to light.
     pub material: Material,
-    /// Opacity of each surface crossing, so that it counts twice for a ray through a sphere: 0 (clear) to 1 (opaque).
+    /// Opacity of each surface crossing, from 0 (clear) to 1 (opaque). It counts twice for a ray through a sphere.
     pub opacity: f32,
 }
 
@@ -63,7 +63,7 @@ impl SurfaceProperties {
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
-    /// Returns an error if a parameter is out of range; the error names the first such parameter.
+    /// Returns an error if a parameter is out of range. The error names the first such parameter.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = |parameter, value: f32, [low, high]: [f32; 2], range| {
             RangeError::unless_within(parameter, value.into(), [low.into(), high.into()], range)
@@ -96,7 +96,7 @@ impl SurfaceProperties {
         Ok(())
     }
 
-    /// The bits of all parameters, which are equal only for equal properties.
+    /// The bits of all parameters. Only equal properties have equal bits.
     pub(crate) fn bits(&self) -> [u32; 5] {
         let [kind, a, b, c] = match self.material {
             Material::Lambert { specular, roughness } => [0.0, specular, roughness, 0.0],

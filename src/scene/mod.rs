@@ -38,9 +38,8 @@ pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
 /// The frame is that of the world unless the centre of the data is farther from the world's origin, along an axis, than
-/// the longest side of the data's bounding box; then the origin is that centre, along that axis, so that f32 offsets
-/// preserve the shape of the data. The GPU and the
-/// CPU reference see the same f32 numbers.
+/// the longest side of the data's bounding box. Along such an axis, the origin is that centre, so that f32 offsets
+/// preserve the shape of the data. The GPU and the CPU reference see the same f32 numbers.
 #[derive(Clone, Debug)]
 pub struct Scene {
     origin: DVec3,
@@ -48,9 +47,9 @@ pub struct Scene {
     /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
-    /// The number of spheres at the end that were added to those of the data.
+    /// The number of added spheres, which come after the spheres of the data.
     added: usize,
-    /// What this is a part of, if other spheres are not in memory.
+    /// The scene that this is a part of, if other spheres are not in memory.
     whole: Option<Whole>,
 }
 
@@ -67,7 +66,7 @@ impl Scene {
         Ok(Self::in_frame(origin, narrow, appearance_of(spheres), bounds))
     }
 
-    /// A scene from spheres and their appearance. Arrays are not copied, except for spheres in f64; spheres far from
+    /// A scene from spheres and their appearance. Arrays are not copied, except for spheres in f64. Spheres far from
     /// the world's origin are moved in place.
     ///
     /// # Errors
@@ -93,7 +92,7 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, appearance, bounds))
     }
 
-    /// A scene from spheres (x, y, z, radius) in f32, all of one colour. The array is not copied; spheres far from the
+    /// A scene from spheres (x, y, z, radius) in f32, all of one colour. The array is not copied. Spheres far from the
     /// world's origin are moved in place.
     ///
     /// # Errors
@@ -113,11 +112,12 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, color.into(), bounds))
     }
 
-    /// Some spheres, in input order, of a larger scene, in its frame. Pictures of parts by primary rays, put together by
-    /// [`Nearest`](crate::render::Nearest), are those of the whole, to the bit. Integrators with light need all spheres.
+    /// Some spheres of a larger scene, in input order and in its frame. If pictures of parts by primary rays are merged
+    /// by [`Nearest`](crate::render::Nearest), the result is that of the whole, to the bit. Integrators with light need
+    /// all spheres.
     ///
     /// # Errors
-    /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside of the whole.
+    /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside the whole scene.
     pub fn part(
         whole: Whole,
         spheres: Vec<[f32; 4]>,
@@ -136,13 +136,13 @@ impl Scene {
         Ok(Self { whole: Some(whole), ..scene })
     }
 
-    /// The scene that this is a part of; `None` if all spheres are here.
+    /// The scene that this is a part of. `None` if all spheres are here.
     #[must_use]
     pub fn whole(&self) -> Option<Whole> {
         self.whole
     }
 
-    /// A scene from parts that have been checked.
+    /// A scene from an origin, spheres, appearance and bounds that have been checked.
     fn in_frame(
         origin: DVec3,
         spheres: Vec<[f32; 4]>,
@@ -161,15 +161,15 @@ impl Scene {
         self
     }
 
-    /// The same spheres, of which the last `count` were added to those of the data, such as the edges of a cell. They do
-    /// not count for what is chosen by the data: the mean radius, and whether it is flat.
+    /// The same spheres. The last `count` of them were added to those of the data, such as the edges of a cell. They do
+    /// not affect choices based on the data, such as the mean radius and the flat axis.
     #[must_use]
     pub fn with_added(mut self, count: usize) -> Self {
         self.added = count.min(self.spheres.len());
         self
     }
 
-    /// The number of spheres at the end that were added to those of the data; see [`Scene::with_added`].
+    /// The number of added spheres, which come last; see [`Scene::with_added`].
     #[must_use]
     pub fn added(&self) -> usize {
         self.added
@@ -180,7 +180,7 @@ impl Scene {
         self.appearance.is_opaque()
     }
 
-    /// A scene of only the opaque spheres in the same frame; `None` if all spheres are opaque.
+    /// A scene of only the opaque spheres in the same frame. `None` if all spheres are opaque.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque(&self) -> Option<Self> {
         if self.appearance.is_opaque() {
@@ -232,7 +232,7 @@ impl Scene {
         &self.appearance
     }
 
-    /// The appearance of the spheres with the data that is derived from it.
+    /// The appearance of the spheres, with derived data.
     pub(crate) fn checked_appearance(&self) -> &Arc<SceneAppearance> {
         &self.appearance
     }
@@ -258,19 +258,19 @@ impl Scene {
         self.appearance.surface_of(id)
     }
 
-    /// The bounding box of all spheres in world space; `None` if there are none.
+    /// The bounding box of all spheres in world space. `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
     }
 
-    /// The box that a camera should show: that of all spheres, or a unit cube if there are none.
+    /// The box that a camera should show, which is that of all spheres, or a unit cube if there are none.
     #[must_use]
     pub fn bounds_to_frame(&self) -> Bounds {
         self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
     }
 
-    /// What a camera should frame: all spheres, or a unit cube if there are none.
+    /// The subject that a camera should frame: all spheres, or a unit cube if there are none.
     #[must_use]
     pub fn subject(&self) -> Subject<'_> {
         let subject = Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame());
@@ -316,8 +316,8 @@ impl SphereArray {
     }
 }
 
-/// The appearance of the spheres: all distinct colours and surface properties, in the order of first use, and their
-/// indices for each sphere.
+/// The appearance of the spheres. It has all distinct colours and surface properties, in the order of first use, and
+/// their indices for each sphere.
 fn appearance_of(spheres: &[Sphere]) -> Appearance {
     let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
     let (surfaces, surface_indices) =
@@ -346,8 +346,8 @@ fn keyed(color: LinearRgb) -> (LinearRgb, [u32; 3]) {
     (color, color.to_array().map(f32::to_bits))
 }
 
-/// The distinct properties of the spheres, in the order of first use, and for each sphere an index into them; `None` if
-/// there is at most one.
+/// The distinct properties of the spheres, in the order of first use, and for each sphere an index into them. The
+/// indices are `None` if there is at most one property.
 fn distinct<S, T, K: Eq + std::hash::Hash>(
     spheres: &[S],
     of: impl Fn(&S) -> (T, K),

@@ -4,7 +4,7 @@ use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::image::color::LinearRgb;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// A sphere in world space, not yet checked. [`crate::Scene`] checks it.
+/// A sphere in world space that has not been checked. [`crate::Scene`] checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sphere {
@@ -14,11 +14,11 @@ pub struct Sphere {
     pub radius: f64,
     /// Surface colour.
     pub color: LinearRgb,
-    /// What the surface does with light; it matters only for pictures with lighting.
+    /// The surface's response to light, which matters only for pictures with lighting.
     pub surface: SurfaceProperties,
 }
 
-/// Why a sphere is not valid.
+/// The reason why a sphere is not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]

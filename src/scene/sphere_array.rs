@@ -3,7 +3,7 @@
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 
-/// Spheres (x, y, z, radius) in the precision of their source, not yet checked.
+/// Spheres (x, y, z, radius) in the precision of their source, which have not been checked.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SphereArray {
@@ -22,7 +22,7 @@ pub enum Radii<'a, T> {
     Each(&'a [T]),
 }
 
-/// The number of radii differs from the number of positions.
+/// An error for radii whose number differs from that of the positions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
@@ -60,10 +60,7 @@ impl SphereArray {
         self.len() == 0
     }
 
-    /// The centre and the radius of the sphere with this index.
-    ///
-    /// # Panics
-    /// If there is no such sphere.
+    /// The centre and radius of a sphere.
     #[must_use]
     pub fn at(&self, index: usize) -> [f64; 4] {
         match self {
@@ -72,7 +69,7 @@ impl SphereArray {
         }
     }
 
-    /// Multiplies every radius by `factor`; the precision of the array stays the same.
+    /// Multiplies every radius by `factor`. The precision of the array stays the same.
     pub fn scale_radii(&mut self, factor: f64) {
         match self {
             Self::F32(spheres) => {
@@ -82,7 +79,7 @@ impl SphereArray {
         }
     }
 
-    /// Iterates over the spheres, all of them with one colour.
+    /// Iterates over the spheres, with one colour for all of them.
     pub fn with_color(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let sphere = move |[x, y, z, radius]: [f64; 4]| Sphere::new([x, y, z], radius, color);
         let (narrow, wide): (&[[f32; 4]], &[[f64; 4]]) = match self {

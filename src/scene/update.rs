@@ -7,7 +7,7 @@ use super::appearance::{Colors, SceneAppearance};
 use super::{Scene, SceneError, frame};
 use crate::scene::sphere;
 
-/// New centres, radii or colours for consecutive spheres of a scene. Whatever is `None` does not change.
+/// New centres, radii or colours for consecutive spheres of a scene. Fields that are `None` change nothing.
 ///
 /// ```
 /// use pinhole::scene::{Centers, SceneUpdate};
@@ -41,19 +41,19 @@ pub enum Centers<'a> {
     F64(&'a [[f64; 3]]),
 }
 
-/// New colours; the colours of the scene must be of the same kind, see [`Colors`].
+/// New colours. The colours of the scene must be of the same kind, see [`Colors`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NewColors<'a> {
     /// Indices into the scene's palette.
     Palette(&'a [u32]),
-    /// A colour for each sphere, in sRGB, and alpha.
+    /// A colour for each sphere, in sRGB, with alpha.
     Rgba8(&'a [[u8; 4]]),
     /// Numbers for the scene's colour map.
     Scalars(&'a [f32]),
 }
 
-/// Why an update fails, and which sphere of the scene is not right, in input order. The scene is then unchanged.
+/// The reason why an update fails, with the index of the wrong sphere in input order. The scene is then unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 #[non_exhaustive]
@@ -124,7 +124,7 @@ impl SceneUpdate<'_> {
     /// The range of updated spheres.
     #[must_use]
     pub fn range(&self) -> Range<u32> {
-        // An update of more spheres than there are ids is an error later.
+        // If there are more updated spheres than ids, checking the range later returns an error.
         self.first..self.first.saturating_add(u32::try_from(self.count()).unwrap_or(u32::MAX))
     }
 
@@ -164,7 +164,7 @@ impl SceneUpdate<'_> {
         Ok(first..end)
     }
 
-    /// The centre in world space of a sphere after the update, and the sphere in the scene's frame.
+    /// The centre of a sphere in world space after the update, and the sphere in the scene's frame.
     fn sphere(&self, scene: &Scene, index: usize) -> ([f64; 3], [f32; 4]) {
         let offset = index - self.first as usize;
         let [x, y, z, radius] = scene.spheres[index];
@@ -185,7 +185,7 @@ impl SceneUpdate<'_> {
         let ([x, y, z], in_frame) = self.sphere(scene, index);
         let radius = f64::from(in_frame[3]);
         sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
-        // The radius is right, so only the center can be out of range.
+        // The radius has been checked, so only the centre can be out of range.
         sphere::check(frame::slackened(&in_frame)).map_err(|_| {
             UpdateError(format!(
                 "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
@@ -222,11 +222,11 @@ impl SceneUpdate<'_> {
 }
 
 impl Scene {
-    /// Gives some spheres new centres, radii or colours. The frame does not move, so that f32 offsets lose precision if
-    /// spheres move far from their original positions. Ids stay the same.
+    /// Gives some spheres new centres, radii or colours. Ids stay the same. The frame does not move, so f32 offsets
+    /// lose precision if spheres move far from their original positions.
     ///
-    /// The time is proportional to the number of updated spheres; if shapes change, the bounding box of all spheres is
-    /// computed as well. Data that is shared with a scene on a device is copied: 4 bytes for each sphere.
+    /// The time is proportional to the number of updated spheres. If shapes change, the bounding box of all spheres is
+    /// computed as well. Data that is shared with a scene on a device is copied, in 4 bytes per sphere.
     ///
     /// # Errors
     /// Returns an error if the lists have different lengths, the scene has fewer spheres, its colours are of another

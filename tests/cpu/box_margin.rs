@@ -1,5 +1,5 @@
-//! Tests that the margin of boxes suffices for a device that rounds as it likes: where its sphere test hits, the box of
-//! the sphere is entered before. `src/accel/slab.rs` has the proof, and how much of the margin each error takes up.
+//! Tests that the margin of boxes suffices for any legal rounding. If the sphere test hits, the ray enters the sphere's
+//! box before. `src/accel/slab.rs` has the proof, and the part of the margin that each error needs.
 
 #![allow(clippy::print_stdout, reason = "the margin that is needed is a figure")]
 
@@ -12,8 +12,8 @@ use pinhole::verify::TracedRay;
 use crate::support::effort::tries;
 use crate::support::legal_device::{Habit, LegalDevice};
 
-/// The error of the length of a direction, in units of 2⁻²³: three roundings of the square, halved; a root, a reciprocal
-/// and a product.
+/// The error of the length of a direction, in units of 2⁻²³. It is half of three roundings of the square, plus a root,
+/// a reciprocal and a product.
 const LENGTH_ERROR: f64 = 11.0;
 
 /// A random direction.
@@ -22,9 +22,9 @@ fn unit(random: &mut Rng) -> DVec3 {
     along / along.length().max(1e-30)
 }
 
-/// A ray in a scene, whose box has the diagonal [`DIAGONAL`], and a sphere that it meets, or nearly so.
+/// A ray in a scene whose box has the diagonal [`DIAGONAL`], and a sphere that the ray hits or nearly hits.
 fn ray_and_sphere(random: &mut Rng) -> (TracedRay, [f32; 4]) {
-    // Along diagonals and along axes, in which all of the box's diagonal is between origin and sphere.
+    // Along diagonals and along axes, where all of the box's diagonal is between origin and sphere.
     let corner = |random: &mut Rng| match random.u32(0..4) {
         0 => DVec3::splat(0.57),
         1 => DVec3::new(0.99, 1e-3 * random.f64(), 1e-3 * random.f64()),
@@ -52,7 +52,7 @@ fn ray_and_sphere(random: &mut Rng) -> (TracedRay, [f32; 4]) {
         }
         _ => [corner(random) * random.f64(), corner(random) * random.f64()],
     };
-    // At the places where the sphere touches its box, from before, and anywhere.
+    // Aims at the points where the sphere touches its box, at the near side, or anywhere.
     let mut pole = DVec3::ZERO;
     pole[random.usize(0..3)] = -1.0;
     let (aim, off) = match random.u32(0..6) {
@@ -66,7 +66,7 @@ fn ray_and_sphere(random: &mut Rng) -> (TracedRay, [f32; 4]) {
     let sign = if random.u32(0..8) == 0 { -1.0 } else { 1.0 };
     let length = 1.0 + [-1.0, 0.0, 1.0][random.usize(0..3)] * LENGTH_ERROR / 8_388_608.0;
     let direction = sign * toward / toward.length().max(1e-30) * length;
-    // Around the middle of the scene's frame, so that differences are rounded.
+    // Moves around the middle of the scene's frame, so that differences are rounded.
     let moved = DVec3::from([0; 3].map(|_| -random.f64()));
     let narrow = |v: DVec3| (DIAGONAL * v).as_vec3().to_array();
     let [x, y, z] = narrow(center + moved);
@@ -104,12 +104,12 @@ fn around([x, y, z, radius]: [f32; 4], margin: f64) -> [[f32; 3]; 2] {
     [low, high]
 }
 
-/// The diagonal of the scene's box: a little more than a power of two, where an ULP is the largest part of a number.
+/// The diagonal of the scene's box. It is just above a power of two, where an ULP is the largest fraction of a number.
 const DIAGONAL: f64 = 1.02;
 
 const UNIT: f64 = DIAGONAL / (1 << 24) as f64;
 
-/// A ray, a sphere that it hits, and how the device rounds that finds out.
+/// A ray, a sphere that it hits, and the rounding of the device that finds the hit.
 struct Case {
     ray: TracedRay,
     sphere: [f32; 4],
@@ -117,8 +117,8 @@ struct Case {
 }
 
 impl Case {
-    /// By how much the ray enters the box of the sphere and a margin too late for the hit, or leaves it before; `None` if
-    /// it does not hit the sphere.
+    /// The distance by which the ray enters the box of the sphere and a margin too late for the hit, or leaves it too
+    /// early. `None` if the ray misses the sphere.
     fn late(&self, units: f64) -> Option<f32> {
         let mut device = LegalDevice { habit: self.habit, random: Rng::with_seed(1) };
         let t = device.intersect(&self.ray, self.sphere);
@@ -126,7 +126,7 @@ impl Case {
         (t < NO_HIT).then(|| entry - exit.min(t))
     }
 
-    /// Rounds each operation the other way, one after the other, where that makes it later.
+    /// Rounds each operation the other way, one after the other, where that makes the entry later.
     fn worsened(mut self) -> Self {
         let mut worst = self.late(0.0);
         for bit in 0..48 {
@@ -148,7 +148,7 @@ fn no_hit_of_a_device_that_rounds_as_it_likes_is_outside_of_its_box() {
     );
     assert!((margin / UNIT - 128.0).abs() < 0.01, "{}", margin / UNIT);
     let mut random = Rng::with_seed(11);
-    // The number of hits, and the largest margin that was needed, in units.
+    // The number of hits, and the largest needed margin, in units.
     let (mut hits, mut needed) = (0, 0.0);
     let cases = tries(120_000);
     for _ in 0..cases {
@@ -166,6 +166,6 @@ fn no_hit_of_a_device_that_rounds_as_it_likes_is_outside_of_its_box() {
     }
     println!("{hits} hits; the largest margin that one of them needs is {needed} u of 128");
     assert!(hits > cases * 5 / 3, "{hits}");
-    // The search is not blind: errors are large, but not as large as all of them together in the proof.
+    // The search works: errors are large, but below the sum of all errors in the proof.
     assert!((16.0..=68.0).contains(&needed), "{needed}");
 }

@@ -1,4 +1,4 @@
-//! Pinhole and orthographic cameras: their rays, their pictures, their constructors, and what they refuse.
+//! Pinhole and orthographic cameras: their rays, pictures, constructors and errors.
 
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, CameraError, OrthographicCamera, PinholeCamera, Pose};
@@ -36,7 +36,7 @@ fn rays_on_paper() {
     }
 }
 
-/// What the kernels get must say the same as what the reference asks.
+/// The vectors for kernels agree with the rays of the reference.
 #[test]
 fn vectors_and_rays_agree() {
     let mut random = fastrand::Rng::with_seed(3);
@@ -216,7 +216,7 @@ fn parallel() -> OrthographicCamera {
     OrthographicCamera::new(pose(), [5.0, 5.0]).unwrap()
 }
 
-/// How many pixels a sphere at depth z covers.
+/// The number of pixels that a sphere at depth z covers.
 fn area(camera: &dyn Camera, z: f64) -> usize {
     let scene = Scene::new(&[Sphere::new([0.0, 0.0, z], 1.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(200, 200).unwrap();
@@ -231,7 +231,7 @@ fn things_shrink_with_distance() {
     let depths = [5.0, 0.0, -10.0, -50.0];
     let areas = depths.map(|z| area(&perspective(), z));
     assert!(areas.is_sorted_by(|near, far| near > far), "{areas:?}");
-    // Twice as far, a quarter of the area, but for pixels and the sphere's own depth.
+    // At twice the distance, a quarter of the area, except for the size of pixels and the sphere's own depth.
     let ratio = areas[1] as f64 / areas[2] as f64;
     assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
 
@@ -254,7 +254,7 @@ fn parallel_lines_into_the_picture_meet_in_one_point() {
         let end = *line(&perspective(), start.into(), direction).last().unwrap();
         assert!((end - vanishing_point).length() < 1e-5, "{end}");
     }
-    // Seen in parallel, they keep their distance.
+    // In an orthographic view, they keep their distance.
     let ends = STARTS.map(|start| *line(&parallel(), start.into(), direction).last().unwrap());
     let expected = DVec2::new(2.0, -1.0) / 5.0;
     assert!((ends[1] - ends[0] - expected).length() < 1e-5);
@@ -303,7 +303,7 @@ fn any_two_vectors_make_a_right_handed_basis() {
         let (a, b) = (random_vector(&mut random), random_vector(&mut random));
         let basis = OrthonormalBasis::from_vectors(a, b).unwrap();
         assert_orthonormal(&basis, &format!("{a} and {b}"));
-        // w lies along a, and b in the half plane of v.
+        // w lies along a, and b is in the half plane of v.
         assert!(basis.w().dot(a) > 0.0 && basis.v().dot(b) > 0.0, "{a} and {b}");
     }
 }

@@ -1,4 +1,4 @@
-//! The thin lens, panorama and fisheye, and two eyes: their rays on paper, and back.
+//! The thin lens, panorama and fisheye, and two eyes: known rays, and the way back from points to locations.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -12,7 +12,7 @@ use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cp
 
 const EYE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
 
-/// Right is x, up is y.
+/// A pose with x to the right and y up.
 fn pose() -> Pose {
     Pose::looking_along(EYE, [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap()
 }
@@ -25,7 +25,7 @@ fn random_point(random: &mut fastrand::Rng) -> DVec2 {
     DVec2::new(random.f64(), random.f64())
 }
 
-/// Where a ray meets the plane across the view at a distance, from the axis.
+/// The point where a ray hits the plane across the view at a distance, relative to the axis.
 fn at_distance(camera: &dyn Camera, location: DVec2, lens: DVec2, distance: f64) -> DVec2 {
     let ray = camera.ray_through_lens(location, lens);
     let point = ray.at((EYE.z - distance - ray.origin.z) / ray.direction.z) - EYE;
@@ -69,14 +69,14 @@ fn all_rays_of_a_location_meet_in_the_plane_of_focus() {
     assert!(widest < 0.1 && widest > 0.098, "{widest}");
 }
 
-/// A point at the distance S₂ seen through a lens of diameter A that is focused on S₁: on the sensor of a lens of
-/// focal length f its disk has the diameter A |S₂ − S₁|/S₂ · f/(S₁ − f).
+/// A point at the distance S₂, seen through a lens of diameter A that is focused on S₁. On the sensor of a lens of
+/// focal length f, its disk has the diameter A |S₂ − S₁|/S₂ · f/(S₁ − f).
 #[test]
 fn a_circle_of_confusion_is_as_wide_as_the_formula_says() {
     let (focal_length, f_stop, focus) = (0.05, 2.0, 2.0);
     let radius = ThinLensCamera::aperture_radius(focal_length, f_stop).unwrap();
     assert!((radius - 0.0125).abs() < 1e-15);
-    // The sensor, 36 by 24 millimetres, lies where the lens makes the picture of the plane of focus.
+    // The sensor, 36 by 24 millimetres, lies where the lens images the plane of focus.
     let sensor_distance = 1.0 / (1.0 / focal_length - 1.0 / focus);
     let half_extent = DVec2::new(0.018, 0.012);
     let film = PinholeCamera::new(pose(), sensor_distance, half_extent).unwrap();
@@ -84,7 +84,7 @@ fn a_circle_of_confusion_is_as_wide_as_the_formula_says() {
     for distance in [0.5, 1.0, 1.9, 2.0, 3.0, 50.0, 1e6] {
         for aside in [DVec2::ZERO, DVec2::new(0.1, -0.07)] {
             let target = aside * distance;
-            // The location whose ray through this point of the lens meets the target; all of this is linear.
+            // The location whose ray through this point of the lens hits the target. All of this is linear.
             let location = |lens: [f64; 2]| {
                 let at = |x, y| at_distance(&camera, DVec2::new(x, y), lens.into(), distance);
                 let none = at(0.0, 0.0);
@@ -113,7 +113,7 @@ fn the_plane_of_focus_goes_through_a_point() {
     assert!(behind.to_string().contains("`focus_on` along the view is -2.0"), "{behind}");
 }
 
-/// The lengths that are refused.
+/// The name of the length that an error refuses.
 fn length(error: &CameraError) -> &'static str {
     match error {
         CameraError::Length { parameter, .. } => parameter,
@@ -226,7 +226,7 @@ fn a_point_on_a_ray_is_seen_where_the_ray_comes_from() {
     assert_eq!(narrow.location_of(behind), None);
 }
 
-/// A sphere all around: every pixel of the disk, and none outside of it.
+/// A sphere all around fills every pixel of the disk, and no pixel outside it.
 #[test]
 fn outside_of_the_disk_there_is_nothing() {
     let scene = Scene::new(&[Sphere::new(EYE.to_array(), 5.0, LinearRgb::WHITE)]).unwrap();
@@ -254,7 +254,7 @@ fn angles_out_of_range_are_refused() {
     assert!(FisheyeCamera::new(pose(), FRAC_PI_2, 0.0).is_err());
 }
 
-/// By how much a point lies farther to the right for the left eye than for the right one.
+/// The distance by which a point lies farther to the right for the left eye than for the right one.
 fn disparity([left, right]: &[impl Camera; 2], point: DVec3) -> f64 {
     let [a, b] = [left, right].map(|camera| camera.location_of(point).unwrap());
     assert!((a.y - b.y).abs() < 1e-12, "eyes side by side see nothing higher or lower");
@@ -278,7 +278,7 @@ fn pinholes_see_the_same_in_the_plane_of_convergence() {
             let expected = 0.06 * 0.5 / 0.4 * (1.0 / depth - 0.5);
             assert!((disparity(&pair, at(depth)) - expected).abs() < 1e-12, "{depth}");
         }
-        // Each eye's ray is where its picture has it.
+        // The ray of each eye leads back to its location in that eye's picture.
         for camera in &pair {
             let back = camera.location_of(camera.ray_in_world(location).at(5.0)).unwrap();
             assert!((back - location).length() < 1e-12);
@@ -302,7 +302,7 @@ fn panoramas_meet_at_the_distance_of_convergence() {
         let location = 2.0 * random_point(&mut random) - 1.0;
         let middle = one.ray_in_world(location);
         let [left, right] = [&pair[0], &pair[1]].map(|camera| camera.ray_in_world(location));
-        // In the plane of u and w, across the ray, and the right eye to the right.
+        // In the plane of u and w, across the ray, with the right eye to the right.
         let aside = right.origin - left.origin;
         assert!((aside.length() - 0.06).abs() < 1e-14 && aside.y.abs() < 1e-15);
         assert!(aside.dot(middle.direction).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! Certificates of the answers of any renderer: the reference is never accused, what is planted is found.
+//! Certificates of the answers of any renderer. The reference is never accused, and planted faults are found.
 
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
@@ -15,7 +15,7 @@ use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 use crate::support::spheres;
 use crate::verify::{hostile_spheres, poses};
 
-/// What a renderer gives.
+/// The layers that a renderer returns.
 #[derive(Clone)]
 struct Layers {
     size: [u32; 2],
@@ -25,7 +25,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// By the reference, in f32 as its layers are.
+    /// The layers of the reference, in f32.
     fn by_reference(scene: &Scene, view: &View<'_>) -> Self {
         let image = cpu::render(scene, view, &RenderSettings::default(), LayerSet::DATA).unwrap();
         Self {
@@ -36,7 +36,7 @@ impl Layers {
         }
     }
 
-    /// Ids and depths of given rays by a function that finds the distance to a sphere.
+    /// Ids and depths of given rays, by a function that computes the distance to a sphere.
     fn by_testing_all(
         scene: &Scene,
         size: [u32; 2],
@@ -73,10 +73,10 @@ fn certified(scene: &Scene, answers: &Answers<'_>, rays: Rays<'_>) -> Conformanc
     Checker::new(scene).unwrap().certify_answers(answers, rays, None).unwrap()
 }
 
-/// The place of the camera that is far away among [`cameras`].
+/// The index of the camera that is far away, among [`cameras`].
 const FAR: usize = 1;
 
-/// From outside, from far away, from within, and in parallel.
+/// Cameras outside, far away, inside, and an orthographic one.
 fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
     let (size, [outside, far, within]) = poses(scene);
     vec![
@@ -94,7 +94,7 @@ fn the_reference_is_never_accused() {
     let random = spheres::random(400, 1, |rng| 0.02 + 0.1 * rng.f32());
     let scenes = std::iter::once(random).chain(hostile_spheres());
     for (number, spheres) in scenes.enumerate() {
-        // At any scale.
+        // The first scenes are plain, at any scale.
         let is_plain = number < 4;
         let scene = scene(&spheres);
         for (place, camera) in cameras(&scene).into_iter().enumerate() {
@@ -106,7 +106,7 @@ fn the_reference_is_never_accused() {
             // Depths and normals are rounded to f32.
             assert!(found.largest() <= 2.0, "{name}");
             assert_ne!(found.outcome(), Outcome::Violated, "{name}");
-            // From far away, spheres are small beside what rounding of their distance moves.
+            // From far away, spheres are small beside the rounding error of their distance.
             if is_plain && place != FAR {
                 assert_eq!(found.outcome(), Outcome::Proved, "{name}");
                 assert!(found.decided_fraction() >= 0.997, "{name}");
@@ -131,7 +131,7 @@ fn a_pixel_without_a_ray_must_be_a_miss() {
     assert_eq!(found.histogram().last(), Some(&(f64::INFINITY, 1)));
 }
 
-/// A picture of many spheres with its rays, rounded to f32, and what a careful renderer in f32 answers.
+/// A picture of many spheres with its rays, rounded to f32, and the answers of a careful f32 renderer.
 struct TestPicture {
     scene: Scene,
     rays: Vec<Ray>,
@@ -163,7 +163,7 @@ impl TestPicture {
         self.made.ids.iter().filter(|id| **id != NO_ID).count()
     }
 
-    /// A pixel whose sphere covers its neighbours, from the middle of a sphere.
+    /// A pixel in the middle of a sphere that also covers the neighbouring pixels.
     fn inner_hit(&self) -> usize {
         let (ids, width) = (&self.made.ids, self.made.size[0] as usize);
         let is_inner = |i: &usize| {
@@ -178,7 +178,7 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Haines and others, "Precision Improvements for Ray/Sphere Intersection" (2019), in f32.
+/// The method of Haines and others, "Precision Improvements for Ray/Sphere Intersection" (2019), in f32.
 fn careful(origin: [f32; 3], direction: [f32; 3], [x, y, z, r]: [f32; 4]) -> Option<f32> {
     let l = [x - origin[0], y - origin[1], z - origin[2]];
     let b = dot(l, direction);
@@ -225,7 +225,7 @@ fn two_wrong_ids_are_found() {
     }
 }
 
-/// Also without depths: a miss, a sphere behind another, and a sphere elsewhere.
+/// Wrong ids are found without depths: a miss, a sphere behind another, and a sphere elsewhere.
 #[test]
 fn wrong_ids_are_found_without_depths() {
     let picture = TestPicture::new();
@@ -253,7 +253,7 @@ fn wrong_ids_are_found_without_depths() {
         let found = certified(&picture.scene, &answers, Rays::Given(&picture.rays));
         assert_eq!(found.count(Outcome::Violated), 1, "{wrong}: {found}");
         assert_eq!(found.worst[0].reason, reason, "{found}");
-        // The margin is a length of the scene.
+        // The margin is a length in the scene.
         assert!(found.worst[0].margin > 1e-4, "{found}");
         tried += 1;
     }
@@ -353,7 +353,7 @@ fn a_smaller_limit_decides_more() {
     let (small, large) = (decided(10.0), decided(1e5));
     assert!(small.decided_fraction() > large.decided_fraction());
     assert_eq!((small.outcome(), large.outcome()), (Outcome::Proved, Outcome::Undecided));
-    // What a pixel needs does not depend on the limit.
+    // The least k of a pixel does not depend on the limit.
     for (small, large) in small.least.iter().zip(&large.least) {
         assert!((small - large).abs() <= 1e-6 * large, "{small} {large}");
     }
@@ -420,7 +420,7 @@ fn what_cannot_be_judged_is_refused() {
         let error = checker.certify_answers(&answers, rays, None).unwrap_err();
         assert!(error.to_string().starts_with(words), "{error}");
     }
-    // What is said of misses does not matter.
+    // The depth of a miss does not matter.
     let away = Ray { direction: DVec3::Z, ..ray };
     let miss = Answers { ids: &[NO_ID], depths: Some(&[f64::NAN]), ..good };
     assert_eq!(judge(miss, &[away], None).unwrap().outcome(), Outcome::Proved);

@@ -7,14 +7,14 @@ use pinhole::{
     Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, SphereArray, View, cpu, glam,
 };
 
-/// The most that a framed scene fills of the picture's half width or half height, if no margin is given.
+/// The largest fraction of the picture's half width or half height that a framed scene fills with the default margin.
 const FILL: f64 = 0.85;
 
 fn scene(spheres: Vec<[f64; 4]>) -> Scene {
     SphereArray::F64(spheres).scene(LinearRgb::WHITE).unwrap()
 }
 
-/// A cloud of spheres that is longer along one axis, and a pose in any direction.
+/// A cloud of spheres that is longest along one axis, and a pose in any direction.
 fn cloud(random: &mut fastrand::Rng, count: usize) -> (Scene, Pose) {
     let place = DVec3::from([0; 3].map(|_| random.f64() * 200.0 - 100.0));
     let size = DVec3::from([0; 3].map(|_| 10_f64.powf(random.f64() * 2.0)));
@@ -27,9 +27,9 @@ fn cloud(random: &mut fastrand::Rng, count: usize) -> (Scene, Pose) {
     (scene, Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap())
 }
 
-/// The silhouettes of all spheres in the picture: the smallest and the largest relative location. They are computed
-/// from angles: the lines through the eye that touch a circle of radius r at the distance l make the angle asin(r/l)
-/// with the line to its centre.
+/// The smallest and the largest relative location of all spheres' silhouettes. They are computed from angles. The lines
+/// through the eye that touch a circle of radius r at the distance l make the angle asin(r/l) with the line to its
+/// centre.
 fn silhouettes(camera: &dyn Camera, scene: &Scene) -> [DVec2; 2] {
     let v = camera.vectors();
     let ahead = v.forward / v.forward.length();
@@ -73,7 +73,7 @@ fn silhouettes_fill_the_tighter_side_and_lie_in_the_middle() {
     }
 }
 
-/// What fraction of the width and of the height the spheres cover, and how far off the centre they are, in pixels.
+/// The fractions of the width and the height that the spheres cover, and their distance from the centre in pixels.
 fn measured(scene: &Scene, camera: &dyn Camera, film: Film) -> ([f64; 2], [f64; 2]) {
     let view = View::new(camera, film);
     let image = cpu::render(scene, &view, &RenderSettings::default(), LayerSet::DATA).unwrap();
@@ -123,12 +123,12 @@ fn flat_data_is_recognized() {
     let with = |z: f64| scene(vec![[0.0, 0.0, 1.0, 1.0], [5.0, 1.0, 1.0, 0.5], [2.0, 7.0, z, 0.5]]);
     assert_eq!(with(1.0).subject().flat_axis(), Some(2));
     assert_eq!(with(1.5).subject().flat_axis(), None);
-    // A row or a single sphere has no plane of its own.
+    // A row of spheres or a single sphere has no plane of its own.
     assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
     assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
 }
 
-/// The silhouettes reach from side to side of what is left beside free parts, in one direction, and lie in its middle.
+/// The silhouettes fill the space beside the free parts in one direction, and lie in its middle in the other.
 #[test]
 fn free_sides_stay_free() {
     let mut random = fastrand::Rng::with_seed(12);

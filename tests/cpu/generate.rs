@@ -1,4 +1,4 @@
-//! Made-up scenes: the same on every machine, and what they promise to look like.
+//! Generated scenes: they are the same on every machine, and match their description.
 
 use pinhole::camera::Camera;
 use pinhole::generate::{Kind, MAX_COUNT, Standard};
@@ -8,7 +8,7 @@ fn spheres(kind: Kind, count: u64, seed: u64) -> Vec<[f32; 4]> {
     kind.spheres(count, seed).unwrap()
 }
 
-/// FNV-1a, of the bytes that a file would have.
+/// The FNV-1a hash of the bytes that a file would have.
 fn hash(spheres: &[[f32; 4]]) -> u64 {
     let bytes = spheres.as_flattened().iter().flat_map(|x| x.to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -16,8 +16,8 @@ fn hash(spheres: &[[f32; 4]]) -> u64 {
     })
 }
 
-/// Those of chance were found again, to the bit, by a program in another language. Whoever
-/// changes these changes every timing that was ever reported.
+/// A program in another language reproduced the random ones, to the bit. A change of these values changes all timings
+/// that were ever reported.
 #[test]
 fn the_same_bytes_everywhere() {
     for (kind, eighth, expected) in [

@@ -16,7 +16,7 @@ fn random_pose(random: &mut fastrand::Rng) -> Pose {
     Pose::looking_along(10.0 * in_cube(random), in_cube(random), in_cube(random)).unwrap()
 }
 
-/// The matrices of a host, and how it computes depth.
+/// Random matrices of a host with a convention for depth.
 fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DMat4) {
     let into = if random.bool() { 1.0 } else { -1.0 };
     let half = DVec2::new(0.2 + random.f64(), 0.2 + random.f64());
@@ -32,7 +32,7 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
             let place = DMat4::from_rotation_translation(turn, DVec3::new(1.0, -2.0, 0.5));
             view *= place * changes()[usize::from(change) + 1];
         }
-        // A screen that is turned by a quarter.
+        // A screen turned by a quarter.
         3 => projection = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2) * projection,
         // An oblique near plane.
         4 => {
@@ -44,7 +44,7 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
     (view, projection)
 }
 
-/// Every point of a ray has the clip coordinates of the ray's place on the film, and the depth that the matrices give.
+/// Every point of a ray has the clip coordinates of the ray's location on the film, and the matrices' depth.
 #[test]
 fn points_of_rays_are_projected_to_where_the_rays_are() {
     let mut random = fastrand::Rng::with_seed(3);
@@ -81,7 +81,7 @@ fn points_of_rays_are_projected_to_where_the_rays_are() {
     }
 }
 
-/// Matrices of our own cameras give their vectors, up to rounding in f64.
+/// Matrices of our own cameras reproduce the cameras' vectors, up to rounding in f64.
 #[test]
 fn our_own_cameras_come_back() {
     let mut random = fastrand::Rng::with_seed(4);
@@ -95,7 +95,7 @@ fn our_own_cameras_come_back() {
         } else {
             Box::new(PinholeCamera::new(pose, 1.0, half).unwrap())
         };
-        // Our orthographic camera starts at its origin, which is the near plane here.
+        // Our orthographic camera starts at its origin, which is the position of the near plane here.
         let near = if convention.is_orthographic() { 0.0 } else { 0.1 };
         for into in [1.0, -1.0] {
             let projection = convention.projection(edges, [near, 50.0], into);
@@ -111,8 +111,8 @@ fn our_own_cameras_come_back() {
     }
 }
 
-/// The middle of the left edge of the view plane at distance 1 is 0.5 to the left, that of the right edge 1.5 to the
-/// right: so the middle is 0.5 to the right, as of one eye of two.
+/// The left edge of the view plane at distance 1 is 0.5 to the left, and the right edge 1.5 to the right. So the middle
+/// is 0.5 to the right, as for one eye of a stereo pair.
 #[test]
 fn a_shifted_frustum_on_paper() {
     let edges = [-0.5, 1.5, -0.25, 0.75];
@@ -126,7 +126,7 @@ fn a_shifted_frustum_on_paper() {
     assert_eq!(vectors.origin, DVec3::ZERO);
 }
 
-/// Matrices in f32, as arrays of columns and as sixteen numbers.
+/// Matrices in f32 may be given as arrays of columns and as sixteen numbers.
 #[test]
 fn arrays_in_f32() {
     let mut random = fastrand::Rng::with_seed(5);
@@ -165,7 +165,7 @@ fn what_is_no_camera_is_refused() {
     for (view, projection, expected) in [
         (view, nan, "the projection matrix contains a number that is not finite"),
         (infinite, good, "the view matrix contains a number that is not finite"),
-        // Row by row, or the two exchanged.
+        // Matrices given row by row, and the two exchanged.
         (view.transpose(), good, "the last row of the view matrix is"),
         (view, good.transpose(), "the last row of the projection matrix is"),
         (good, view, "the last row of the view matrix is"),
@@ -190,7 +190,7 @@ fn what_is_no_camera_is_refused() {
     }
 }
 
-/// A reversed orthographic projection is not told from one of a camera at the other end, so the order decides.
+/// A reversed orthographic projection looks the same as that of a camera at the other end, so the order decides.
 #[test]
 fn the_order_says_from_which_end_an_orthographic_camera_looks() {
     let projection = Convention::Orthographic.projection([-1.0, 1.0, -1.0, 1.0], [2.0, 10.0], -1.0);

@@ -1,4 +1,4 @@
-//! Pages for people: every link leads somewhere, and every page can be found.
+//! Pages for people: every link has a target, and every page is linked.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Markdown files: those at the top, and those in the folders that have some.
+/// The Markdown files at the top, and those in the folders that have some.
 fn pages() -> Vec<PathBuf> {
     let folders =
         ["", "cli", "docs", "examples/hosts", "python", "python/gallery", "shaders", "viewer"];
@@ -30,7 +30,7 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The links of a page. Code in backticks has none.
+/// The links of a page. Code in backticks has no links.
 fn links(text: &str) -> Vec<String> {
     let prose: Vec<String> =
         lines(text).map(|line| line.split('`').step_by(2).collect::<String>()).collect();
@@ -39,7 +39,7 @@ fn links(text: &str) -> Vec<String> {
     ends.map(str::to_owned).collect()
 }
 
-/// How GitHub names a page's headings in links: small letters, hyphens for blanks, no punctuation.
+/// The names that GitHub gives a page's headings in links: small letters, hyphens for blanks, no punctuation.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = lines(text).filter_map(|line| line.strip_prefix('#'));
     headings
@@ -51,7 +51,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// What is wrong with a link of a page.
+/// The fault of a link of a page.
 fn fault(page: &Path, link: &str) -> Option<&'static str> {
     if link.contains("://") || link.starts_with("mailto:") {
         return None;
@@ -83,7 +83,7 @@ fn links_lead_somewhere() {
     assert!(count > 60, "{count}");
 }
 
-/// Files of Rust and WGSL that a page names in backticks are there: by their path from the top, or in one of the folders
+/// Files of Rust and WGSL that a page names in backticks exist, by their path from the top, or in one of the folders
 /// that a page may leave out.
 #[test]
 fn named_files_exist() {

@@ -1,4 +1,4 @@
-//! Pictures that are put together from parts of a film, of a scene, and of samples are those that are made at once.
+//! Pictures merged from parts of a film, of a scene, or of samples equal those rendered at once.
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::cpu::{self, RenderError, SampledPicture, SearchStructure};
@@ -22,7 +22,7 @@ const PARTS: [([u32; 2], [u32; 2]); 5] = [
     ([23, 7], [1, 11]),
 ];
 
-/// The settings of a view, of which a studio has outlines, without noise.
+/// The settings of a view without noise removal. A studio has outlines.
 fn finished(view: &RandomView) -> RenderSettings {
     let mut settings = RenderSettings {
         sampling: Sampling { samples: 3, ..view.settings.sampling },
@@ -35,7 +35,7 @@ fn finished(view: &RandomView) -> RenderSettings {
     settings
 }
 
-/// Whether what looks at neighbours changed the picture.
+/// Returns whether steps that read neighbours changed the picture.
 fn check(view: &RandomView, settings: &RenderSettings) -> bool {
     let search = SearchStructure::new(&view.scene).unwrap();
     let on = |film: Film, settings: &RenderSettings, layers: LayerSet| {
@@ -90,7 +90,7 @@ fn a_part_of_a_part_is_a_part() {
 
 const COLOR: LinearRgb = LinearRgb::WHITE;
 
-/// Spheres of which every fourth appears twice.
+/// Spheres, every fourth of which appears twice.
 fn spheres() -> Vec<[f32; 4]> {
     let mut rng = fastrand::Rng::with_seed(4);
     let mut all: Vec<[f32; 4]> = Vec::new();
@@ -114,7 +114,7 @@ fn settings() -> RenderSettings {
     }
 }
 
-/// The pictures of parts, whose spheres are given by their ids.
+/// The pictures of parts. The spheres of each part are given by their ids.
 fn parts(scene: &Scene, ids: &[Vec<u32>], view: &View<'_>) -> Vec<Nearest> {
     let whole = whole_of(scene);
     let part = |ids: &Vec<u32>| {
@@ -143,7 +143,7 @@ fn parts_in_any_order_and_grouping_make_the_picture_of_the_whole() {
             let mut left = parts(&scene, &ids, &view);
             while left.len() > 1 {
                 let part = left.swap_remove(rng.usize(..left.len()));
-                // As it travels between machines.
+                // Sends the part as bytes, as between machines.
                 let size = [film.width(), film.height()];
                 let bytes = part.to_le_bytes();
                 let part = Nearest::from_le_bytes(size, LayerSet::ALL, &bytes).unwrap();
@@ -156,7 +156,7 @@ fn parts_in_any_order_and_grouping_make_the_picture_of_the_whole() {
     }
 }
 
-/// What a part hides is behind it, and never what it does not.
+/// A part hides boxes behind its spheres, and only those.
 #[test]
 fn a_part_hides_only_what_changes_nothing() {
     let scene = Scene::from_f32(spheres(), COLOR).unwrap();
@@ -195,13 +195,13 @@ fn a_part_hides_only_what_changes_nothing() {
     assert!(near.keep_nearer(&other[0]).is_err());
 }
 
-/// A picture of several strips and tiles, and of pieces of them.
+/// The size of a picture with several strips and tiles, some of them incomplete.
 const FILM: [u32; 2] = [37, 29];
 
-/// A picture for which a batch of samples takes a while.
+/// The size of a picture for which a batch of samples takes a while.
 const TALL: [u32; 2] = [37, 1601];
 
-/// Calls `test` with a picture of paths and one of a studio.
+/// Calls `test` with a lit picture of the path integrator and one of the studio integrator.
 fn with_lit(
     [width, height]: [u32; 2],
     samples: u32,
@@ -216,7 +216,7 @@ fn with_lit(
     }
 }
 
-/// The picture with so many samples, which nobody watches.
+/// The picture with `samples` samples, rendered without a watch.
 fn whole(
     tree: &SearchStructure<'_>,
     view: &View<'_>,
@@ -228,7 +228,7 @@ fn whole(
     cpu::render(tree, view, &settings, LayerSet::ALL).unwrap()
 }
 
-/// The colours of all pixels, pixel by pixel: the means of their samples, without batches.
+/// The colours of all pixels, pixel by pixel. They are the means of samples taken without batches.
 fn means(
     tree: &SearchStructure<'_>,
     view: &View<'_>,
@@ -266,7 +266,7 @@ fn batches_give_the_picture_of_all_samples_at_once() {
     }
 }
 
-/// What is told rises to the end, and each batch is told of.
+/// Progress rises to the end, and the caller is told of each batch.
 #[test]
 fn the_caller_is_told_of_every_batch() {
     with_lit(FILM, 9, |tree, view, settings| {
@@ -301,7 +301,7 @@ fn a_level_of_noise_ends_a_picture() {
         assert_eq!(found.samples, 16);
         assert!(found.image == whole(tree, view, settings, 16));
         assert_eq!(noises.last(), found.noise.map(|noise| (16, noise)).as_ref());
-        // The noise is that of the layers, which are narrower.
+        // The noise follows from the layers, up to their rounding to f32.
         let variance = found.image.variance().unwrap().iter().map(|v| f64::from(*v)).sum::<f64>();
         let colors = found.image.color().iter().map(|color| color.map(f64::from));
         let light: f64 = colors.map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b).sum();
@@ -314,7 +314,7 @@ fn a_level_of_noise_ends_a_picture() {
     });
 }
 
-/// A picture that is finished within a batch keeps what the batch has done.
+/// A picture that is finished within a batch keeps the samples taken in the batch.
 #[test]
 fn every_pixel_has_the_samples_that_the_layer_says() {
     with_lit(TALL, 4000, |tree, view, settings| {
@@ -348,7 +348,7 @@ fn the_caller_may_stop() {
             let done = cpu::render_watched(tree, view, settings, LayerSet::ALL, stop);
             assert_eq!(done.err(), Some(RenderError::Stopped));
         }
-        // Without a sample there is no picture, whether it is to be finished or not.
+        // Without a sample there is no picture, even if it is to be finished.
         let mut calls = 0;
         let finish = &mut |progress: &Progress| {
             calls += 1;
@@ -360,7 +360,7 @@ fn the_caller_may_stop() {
     });
 }
 
-/// The sums need more than the picture, and a refusal is no panic.
+/// The sums need more memory than the picture, and a refusal is not a panic.
 #[test]
 fn a_picture_without_memory_is_refused() {
     let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();

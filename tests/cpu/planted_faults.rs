@@ -1,4 +1,4 @@
-//! The checker by itself: it overlooks nothing that is planted in a recording.
+//! Tests the checker without a device. It finds every fault planted in a recording.
 
 use pinhole::image::NO_ID;
 use pinhole::internals::NO_HIT;
@@ -9,7 +9,7 @@ use crate::support::legal_device::{Habit, LegalDevice};
 use crate::support::spheres_of;
 use crate::verify::{certify, legal_recording};
 
-/// What is found where a pixel with a hit, or one with a miss, was spoilt.
+/// The stages that the checker names after `spoil` changed a pixel with a hit, or one with a miss.
 fn spoilt(of_hit: bool, spoil: impl Fn(&mut TracedPixel)) -> Vec<&'static str> {
     let (scene, mut recording) = legal_recording();
     let hits = recording.pixels.iter().filter(|pixel| (pixel.id != NO_ID) == of_hit).count();
@@ -21,7 +21,7 @@ fn spoilt(of_hit: bool, spoil: impl Fn(&mut TracedPixel)) -> Vec<&'static str> {
     certificate.violations.iter().map(|violation| violation.stage).collect()
 }
 
-/// Numbers that are none, ids of no sphere, hits that are made misses and the other way round, misses with a distance.
+/// NaN and infinities, ids without a sphere, hits changed to misses and misses to hits, and misses with a distance.
 #[test]
 fn what_is_no_legal_answer_is_found() {
     for (row, (of_hit, stage, spoil)) in [
@@ -53,7 +53,7 @@ fn what_is_no_legal_answer_is_found() {
             camera(false, &|ray| ray.direction[axis] = value);
             camera(true, &|ray| ray.distance = value);
         }
-        // Each component may be where it is for some entry into the box, but not for the same one.
+        // Each component is legal for some entry into the box, but not for the same one.
         camera(true, &|ray| ray.origin[axis] += 2e-5);
     }
 }
@@ -67,13 +67,13 @@ fn a_ray_that_is_not_traced_has_no_hit() {
         let certificate = certify(&scene, &recording);
         certificate.violations.first().map(|violation| violation.stage)
     };
-    // Some ray does not meet the box, and need not be traced.
+    // Some ray misses the box, and need not be traced.
     let index = (0..61 * 47).find(|index| untraced(*index, NO_HIT, NO_ID).is_none()).unwrap();
     assert_eq!(untraced(index, -3.0, 7), Some("hit"));
     assert_eq!(untraced(index, 1.0, NO_ID), Some("hit"));
 }
 
-/// What is found in what a device was given, where that was spoilt.
+/// The violation in a changed upload.
 fn upload(spoil: impl Fn(&mut Recording)) -> Option<String> {
     let (scene, mut recording) = legal_recording();
     spoil(&mut recording);
@@ -86,8 +86,8 @@ fn says(found: Option<String>, words: &str) {
     assert!(found.contains(words), "{found} lacks {words}");
 }
 
-/// What is found where a picture that was rendered beside the recording has another pixel, and in how many pixels that
-/// is another.
+/// The violations in a picture that was rendered beside the recording and has one pixel changed, and the number of
+/// pixels that differ.
 fn rendered(of_hit: bool, spoil: impl Fn(&mut Layers)) -> (Vec<String>, Option<usize>) {
     let (scene, mut recording) = legal_recording();
     let Recording { image, pixels, .. } = &recording;
@@ -107,7 +107,7 @@ fn rendered(of_hit: bool, spoil: impl Fn(&mut Layers)) -> (Vec<String>, Option<u
     (found.collect(), certificate.rendered_otherwise)
 }
 
-/// Of a picture, and a pixel of it.
+/// The layers of a picture, and the index of one pixel.
 struct Layers {
     color: Vec<[f32; 3]>,
     depth: Vec<f32>,
@@ -127,7 +127,7 @@ impl Layers {
         }
     }
 
-    /// As large as another picture.
+    /// The image of the layers, with the size of another picture.
     fn image(self, other: &Image) -> Image {
         let size = [other.width(), other.height()];
         Image::from_layers(size, self.color, self.depth, self.normal, self.id).unwrap()
@@ -146,7 +146,7 @@ fn a_rendered_pixel_that_is_another_is_judged_by_itself() {
     assert_eq!(rendered(true, |_| ()), (vec![], Some(0)));
     let next = |depth: f32| depth.next_up();
     assert_eq!(rendered(true, |l| l.depth[l.at] = next(l.depth[l.at])), (vec![], Some(1)));
-    // By value: a zero has no sign.
+    // Compares values, because a zero has no sign.
     assert_eq!(rendered(false, |l| l.normal[l.at][1] = -0.0), (vec![], Some(0)));
     for (of_hit, words, spoil) in [
         (true, "hit: sphere ", (|l| l.depth[l.at] *= 1.001) as fn(&mut Layers)),
@@ -163,7 +163,7 @@ fn a_rendered_pixel_that_is_another_is_judged_by_itself() {
         assert_eq!((found.len(), count), (1, Some(1)), "{words}");
         assert!(found[0].starts_with(words), "{} is not {words}", found[0]);
     }
-    // Of another size, and without a layer.
+    // Pictures of another size, and without a layer.
     let other = |[width, height]: [u32; 2], layers| {
         upload(|recording| recording.compare(Image::new(width, height, layers).unwrap()))
     };
@@ -223,7 +223,7 @@ fn a_violation_is_told_with_both_values() {
     let [violation] = &certificate.violations[..] else { panic!("{certificate}") };
     let TracedPixel { id, t, ray, .. } = recording.pixels[index];
     let (_, told) = violation.message.split_once("; legal is ").unwrap();
-    // What is told is what is legal: that sphere, and not at that distance.
+    // The message gives the legal answer: that sphere, but not at that distance.
     let TracedRay { origin, direction, .. } = ray.unwrap();
     let legal = Checker::new(&scene).unwrap().legal_hits(origin, direction);
     assert!(legal.of(id).is_some() && !legal.allows(id, t.into()), "{legal}");
@@ -246,7 +246,7 @@ fn of_too_many_violations_all_are_counted() {
     assert_eq!(certificate.violations[0].pixel, [0, 0]);
 }
 
-/// Changes the layers of each pixel.
+/// Changes the layers at each pixel.
 fn change_layers(recording: &mut Recording, change: impl Fn(&mut Layers)) {
     let mut layers = Layers::of(&recording.image);
     for at in 0..layers.id.len() {
@@ -256,7 +256,7 @@ fn change_layers(recording: &mut Recording, change: impl Fn(&mut Layers)) {
     recording.image = layers.image(&recording.image);
 }
 
-/// The largest power of two of which a relative error is found somewhere in a picture.
+/// The largest p up to 23 for which a relative error of 2⁻ᵖ is found somewhere in a picture.
 fn least_found(spoil: impl Fn(&mut Recording, f32)) -> i32 {
     let (scene, recording) = legal_recording();
     let is_found = |power: &i32| {
@@ -267,7 +267,7 @@ fn least_found(spoil: impl Fn(&mut Recording, f32)) -> i32 {
     (4..24).take_while(is_found).last().unwrap_or(0)
 }
 
-/// The table of docs/verify.md says these sizes.
+/// These sizes must match the table in docs/verify.md.
 #[test]
 fn errors_are_found_from_the_documented_size_on() {
     let (scene, recording) = legal_recording();
@@ -294,7 +294,7 @@ fn errors_are_found_from_the_documented_size_on() {
     let of_normal = least_found(|spoilt, size| {
         change_layers(spoilt, |l| {
             let [x, y, z] = l.normal[l.at];
-            // Turned about the third axis, by about as much as `size`.
+            // Turned about the third axis by about `size`.
             l.normal[l.at] = [x - size * y, y + size * x, z];
         });
     });

@@ -1,4 +1,4 @@
-//! The CPU reference against answers known on paper, and the comparator, which must find what is planted, and only that.
+//! Compares the CPU reference with known answers. The comparator must find planted differences, and only those.
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::{NO_ID, Pixel};
@@ -15,14 +15,14 @@ fn headlight() -> RenderSettings {
     shaded(Shading::Headlight, background)
 }
 
-/// All layers of a square picture.
+/// A square picture with all layers.
 fn rendered(spheres: &[Sphere], camera: &dyn Camera, side: u32) -> Image {
     let film = Film::new(side, side).unwrap();
     let view = pinhole::View::new(camera, film);
     cpu::render(&Scene::new(spheres).unwrap(), &view, &headlight(), LayerSet::ALL).unwrap()
 }
 
-/// Towards the origin along −z, as far to each side of it as `reach`.
+/// A camera that looks at the origin along −z, and sees as far to each side of it as `reach`.
 fn pinhole(z: f64, reach: f64) -> PinholeCamera {
     let pose = Pose::looking_at([0.0, 0.0, z], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     PinholeCamera::new(pose, 1.0, [reach; 2]).unwrap()
@@ -30,7 +30,7 @@ fn pinhole(z: f64, reach: f64) -> PinholeCamera {
 
 #[test]
 fn layers_of_one_sphere() {
-    // Seen in parallel along −z from z = 8, a pixel per unit.
+    // An orthographic view along −z from z = 8, with one pixel per unit.
     let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [3.5, 3.5]).unwrap();
     let image = rendered(&[Sphere::new([0.0; 3], 2.0, LinearRgb::WHITE)], &camera, 7);
@@ -79,7 +79,7 @@ fn from_inside_the_far_side_is_seen() {
     let sphere = Sphere::new([0.0; 3], 3.0, LinearRgb::WHITE);
     let image = rendered(&[sphere], &pinhole(1.0, 1.0), 1);
     assert_eq!(image.depth().unwrap(), [4.0]);
-    // Still away from the centre, so it points along the view; the light does not mind.
+    // The normal still points away from the centre, so along the view. The light does not depend on its side.
     assert_eq!(image.normal().unwrap(), [[0.0, 0.0, -1.0]]);
     assert_eq!(image.color(), [[1.0; 3]]);
 }
@@ -139,7 +139,7 @@ fn seen_in_parallel_the_three_spheres_are_equally_large() {
     assert_eq!([middle[0], middle[400], middle[799]], [0, 2, 1], "red, blue, green");
 }
 
-/// A pixel in the middle of the red sphere, and one of the background.
+/// A pixel in the middle of the red sphere, and one in the background.
 const RED: [u32; 2] = [19, 30];
 const BACKGROUND: [u32; 2] = [2, 3];
 
@@ -154,7 +154,7 @@ fn picture(view: &View) -> Picture {
     Picture::from(&view.reference())
 }
 
-/// What is found in a picture of the scene with something changed.
+/// The violations in a picture of the scene with something changed.
 fn found(change: impl FnOnce(&mut View)) -> Vec<Violation> {
     let view = scene();
     let mut other = scene();
@@ -162,7 +162,7 @@ fn found(change: impl FnOnce(&mut View)) -> Vec<Violation> {
     compare(&view, &picture(&view), &picture(&other)).violations
 }
 
-/// The layers that are wrong in the scene's picture with one pixel changed, and nowhere else.
+/// The layers with violations in the scene's picture with one pixel changed. Other pixels must have none.
 fn spoilt([i, j]: [u32; 2], change: impl FnOnce(&mut Pixel)) -> Vec<&'static str> {
     let view = scene();
     let mut other = picture(&view);
@@ -172,7 +172,7 @@ fn spoilt([i, j]: [u32; 2], change: impl FnOnce(&mut Pixel)) -> Vec<&'static str
     violations.iter().map(|violation| violation.layer).collect()
 }
 
-/// The scene with every sphere changed.
+/// The scene with its spheres changed.
 fn with_spheres(view: &View, change: impl Fn(&mut Vec<Sphere>)) -> Scene {
     let mut spheres = spheres_of(&view.scene);
     change(&mut spheres);
@@ -191,7 +191,7 @@ fn one_pixel_of_each_layer_is_found() {
         (&[RED, BACKGROUND], "albedo", |p| p.albedo[1] += 1e-7),
         (&[RED], "depth", |p| p.depth *= 1.000_01),
         (&[BACKGROUND], "depth", |p| p.depth = 1e30),
-        // A miss in the middle of a sphere, and a normal that is turned over or too short.
+        // A miss in the middle of a sphere, and normals that are turned over or too short.
         (&[RED], "id", |p| p.id = NO_ID),
         (&[RED], "normal", |p| p.normal = p.normal.map(|x| -x)),
         (&[RED], "normal", |p| p.normal = p.normal.map(|x| 0.999_9 * x)),
@@ -214,7 +214,7 @@ fn one_shifted_row_is_found() {
     let mut other = picture(&view);
     other.pixels[30 * 80..31 * 80].rotate_right(1);
     let violations = compare(&view, &picture(&view), &other).violations;
-    // The row crosses three spheres: six silhouettes.
+    // The row crosses three spheres, which have six silhouettes.
     let ids = violations.iter().filter(|violation| violation.layer == "id").count();
     assert_eq!(ids, 6, "{violations:?}");
 }

@@ -1,4 +1,4 @@
-//! Run files: what is written is read again and leads to the same certificate, and nothing else is taken for it.
+//! Run files: written files are read again and lead to the same certificate, and nothing else is taken for a run file.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -24,7 +24,7 @@ use sha2::{Digest, Sha256};
 use crate::support::shaded;
 use crate::verify::uploaded;
 
-/// A recording by hand: the numbers are of no device, and every kind of number is there.
+/// A recording made by hand. Its numbers come from no device, and every kind of number occurs.
 pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let grey = LinearRgb::new([0.25, 0.5, 1.5]).unwrap();
     let settings = shaded(Shading::Flat, grey);
@@ -67,7 +67,7 @@ fn written(scene: &Scene, recording: &Recording) -> Vec<u8> {
     written_with(scene, recording, Extras::default())
 }
 
-/// Three spheres of two colours, in a frame of its own, 3 by 2 pixels.
+/// A run file of three spheres in two colours, in a frame of its own, with 3 by 2 pixels.
 fn small() -> Vec<u8> {
     let far = |x: f64, color| Sphere::new([4e6 + x, 0.1, 0.0], 1.5, color);
     let scene = Scene::new(&[
@@ -81,20 +81,20 @@ fn small() -> Vec<u8> {
     let film = Film::new(3, 2).unwrap().with_y_axis(YAxis::Down);
     let scene = scene.unwrap();
     let mut recording = made(&scene, &camera, film);
-    // With another background.
+    // Compares with a picture with another background.
     let (view, settings) = (View::new(&camera, film), shaded(Shading::Flat, LinearRgb::WHITE));
     recording.compare(cpu::render(&scene, &view, &settings, LayerSet::DATA).unwrap());
     written(&scene, &recording)
 }
 
-/// One pixel, and nothing in it.
+/// A run file with one pixel, and no spheres.
 fn smallest() -> Vec<u8> {
     let scene = Scene::new(&[]).unwrap();
     let camera = OrthographicCamera::new(pose(), [1.0, 1.0]).unwrap();
     written(&scene, &made(&scene, &camera, Film::new(1, 1).unwrap()))
 }
 
-/// As if it had been written so.
+/// Replaces the digest by that of the bytes, as if the file had been written like this.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let before = b"\"sha256\":\"";
     let Some(place) = bytes.windows(before.len()).position(|window| window == before) else {
@@ -107,7 +107,7 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// With another header of any length, signed.
+/// Replaces a part of the header, which may change its length, and signs the file.
 fn with_header(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let length = u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
     let header = str::from_utf8(&bytes[8..8 + length]).unwrap();
@@ -121,7 +121,7 @@ fn bytes_of_header(bytes: &[u8]) -> usize {
     u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize
 }
 
-/// Puts numbers into an array.
+/// Writes numbers into an array, and signs the file.
 fn with_numbers(bytes: &[u8], name: &str, at: usize, numbers: &[u8]) -> Vec<u8> {
     let file = safetensors::SafeTensors::deserialize(bytes).unwrap();
     let data = file.tensor(name).unwrap().data();
@@ -148,7 +148,7 @@ fn with_light(scene: &Scene, picture: &Recording, made: &LitRecording) -> Vec<u8
     written_with(scene, picture, Extras { light: Some(&samples), ..Extras::default() })
 }
 
-/// The certificate of the light in a file.
+/// The certificate of the light in a run file.
 fn replayed(bytes: &[u8]) -> Result<Option<LitCertificate>, RunFileError> {
     let mut source = Cursor::new(bytes);
     let file = RunFile::open(&mut source)?;
@@ -159,8 +159,8 @@ fn replayed(bytes: &[u8]) -> Result<Option<LitCertificate>, RunFileError> {
     Ok(has_light.then_some(certificate))
 }
 
-/// Two samples that an adapter took, and the picture by one ray for each pixel: `pinhole verify light.toml --paths 2
-/// --save light.run` in `tests/cpu/run_file_light`. Whenever the format has another version, they are recorded again.
+/// Two samples that an adapter took, and the picture with one ray per pixel: `pinhole verify light.toml --paths 2
+/// --save light.run` in `tests/cpu/run_file_light`. A new version of the format needs a new recording.
 fn recorded() -> (Scene, Recording, LitRecording) {
     let mut source = Cursor::new(include_bytes!("run_file_light/light.run"));
     let file = RunFile::open(&mut source).unwrap();
@@ -175,7 +175,7 @@ fn recorded() -> (Scene, Recording, LitRecording) {
     (scene, recording, made.unwrap())
 }
 
-/// The samples of a recording in a rectangle alone.
+/// The samples of a recording in a rectangle only.
 fn cut(made: &LitRecording, [x, y, width, height]: [u32; 4]) -> LitRecording {
     let mut cut = made.clone();
     let whole = made.given.size[0];
@@ -199,7 +199,7 @@ fn cut(made: &LitRecording, [x, y, width, height]: [u32; 4]) -> LitRecording {
     cut
 }
 
-/// A small file, which still has everything.
+/// A small run file that still has everything.
 fn small_lit() -> (Scene, Recording, Vec<u8>) {
     let (scene, picture, made) = recorded();
     let bytes = with_light(&scene, &picture, &cut(&made, [4, 4, 3, 1]));
@@ -219,9 +219,9 @@ fn what_is_read_is_what_was_written_to_the_bit() {
     for bytes in [small(), smallest()] {
         let run = run_file::read(&bytes).unwrap();
         assert_eq!(run.provenance, provenance());
-        // Of everything that the file has; NaN equals nothing.
+        // Compares the whole file. NaN equals nothing.
         assert!(written(&run.scene, &run.recording) == bytes);
-        // What others do not alter stays as it is.
+        // A file that is not changed keeps its digest.
         assert!(signed(bytes.clone()) == bytes);
     }
     let run = run_file::read(&small()).unwrap();
@@ -232,7 +232,7 @@ fn what_is_read_is_what_was_written_to_the_bit() {
     assert!(run.recording.pixels.iter().any(|pixel| pixel.ray.is_none()));
 }
 
-/// The format's own reader takes the whole file.
+/// The format's own reader reads the whole file.
 #[test]
 fn others_read_it() {
     let bytes = small();
@@ -304,7 +304,7 @@ fn hostile_contents_with_a_right_digest() {
     ] {
         contradicts(&with_header(&bytes, from, to), words);
     }
-    // A header that adds up to more than there is.
+    // A header whose sizes add up to more than the file.
     let most = u64::MAX / 9;
     let arrays: Vec<String> = (0..9)
         .map(|i| {
@@ -344,7 +344,7 @@ fn what_scenes_cameras_and_settings_refuse() {
         let words = words.split('|').next_back().unwrap();
         contradicts(&with_numbers(&bytes, name, at, numbers), words);
     }
-    // An empty scene needs no colour; one with spheres does.
+    // An empty scene needs no colour, but one with spheres does.
     let scene = Scene::from_f32(Vec::new(), LinearRgb::BLACK).unwrap();
     let camera = OrthographicCamera::new(pose(), [1.0, 1.0]).unwrap();
     let bytes = written(&scene, &made(&scene, &camera, Film::new(1, 1).unwrap()));
@@ -359,14 +359,14 @@ fn what_is_saved_is_judged_as_before() {
     assert!(legal.violation_count == 0 && legal.stages().checked > 1000, "{legal}");
     let bytes = with_light(&scene, &picture, &made);
     assert_eq!(replayed(&bytes).unwrap(), Some(legal));
-    // What the device did wrong is kept, in rays that go on and in those that have ended.
+    // The file keeps errors of the device, in rays that go on and in rays that have ended.
     let surfaces = &mut made.samples[1].surfaces;
     surfaces[0].states[40].slots[3][1] ^= 1 << 20;
     surfaces.last_mut().unwrap().states[7].slots[4][0] ^= 1;
     let wrong = checker.certify_lit(&made);
     assert_eq!((wrong.outcome(), wrong.violation_count >= 2), (Outcome::Violated, true));
     assert_eq!(replayed(&with_light(&scene, &picture, &made)).unwrap(), Some(wrong));
-    // And so is what it was given.
+    // The file also keeps errors in the device's input.
     made.given.lighting.zenith[1] += 0.1;
     let other = checker.certify_lit(&made);
     assert!(other.upload.is_some());
@@ -389,7 +389,7 @@ fn rectangles_differ_and_pictures_do_not() {
         written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
     let certificate = replayed(&bytes).unwrap().unwrap();
     assert_eq!((certificate.paths, certificate.violation_count), (109, 0), "{certificate}");
-    // Lists that do not have the size of the rectangle, and samples of another picture.
+    // Lists that do not match the size of the rectangle, and samples of another picture.
     other.given.size = [2, 1];
     assert!(samples.add(&other).is_err());
     let mut other = part(1..2);
@@ -403,7 +403,7 @@ fn rectangles_differ_and_pictures_do_not() {
     let extras = Extras { light: Some(&light), ..Extras::default() };
     let error = write_with(&scene, &picture, &provenance(), extras, &mut Vec::new()).unwrap_err();
     assert!(error.to_string().contains("another camera"), "{error}");
-    // What is forgotten is not written.
+    // Cleared samples are not written.
     samples.clear();
     let bytes =
         written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
@@ -439,10 +439,10 @@ fn hostile_light_with_a_right_digest() {
     let request = "the light is not that of this scene and these settings";
     let word = |word: u32| word.to_le_bytes();
     for (name, at, numbers, words) in [
-        // Something else was requested.
+        // Another request.
         ("camera", 0, &1_f64.to_le_bytes()[..], request),
         ("palette", 0, &word(0), request),
-        // Samples of no picture.
+        // Samples outside the picture.
         ("sample_0_place", 4, &word(10), "the rectangle of sample 0 is not in the picture"),
         ("sample_1_place", 12, &word(0), "the rectangle of sample 1 is not in the picture"),
         ("sample_1_place", 12, &word(u32::MAX), "the rectangle of sample 1"),
@@ -457,7 +457,7 @@ fn hostile_light_with_a_right_digest() {
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"5000\"", "there must be 1 to 4096"),
         ("\"lit_samples\":\"2\"", "\"lit_samples\":\"two\"", "`lit_samples` is not a valid number"),
         ("\"sample_0_open\"", "\"sample_0_oven\"", "`sample_0_open` is missing"),
-        // Something else was requested, what says nothing, and no number.
+        // Another request, an unknown key, and a text that cannot be parsed.
         ("\\\"max_depth\\\":", "\\\"max_depth\\\":1", request),
         ("\\\"sampling\\\":", "\\\"samplings\\\":", request),
         ("\"given\":\"{", "\"given\":\"[", "the text `given`: "),
@@ -468,7 +468,7 @@ fn hostile_light_with_a_right_digest() {
     ] {
         contradicts(&with_header(&bytes, from, to), words);
     }
-    // Spheres of another scene with the digest of theirs.
+    // Spheres of another scene with a matching digest.
     let sphere = with_numbers(&bytes, "spheres", 12, &0.07_f32.to_le_bytes());
     let mut spheres = scene.spheres().to_vec();
     spheres[0][3] = 0.07;
@@ -477,10 +477,10 @@ fn hostile_light_with_a_right_digest() {
     contradicts(&with_header(&sphere, &before, &after), request);
 }
 
-/// Whatever the device answered is for the checker to judge, and none of it makes it stumble.
+/// The checker judges any answers of a device, and none of them make it fail.
 #[test]
 fn noise_with_a_right_digest_is_judged_or_refused() {
-    // So many files, each altered in fewer than `most` places, of which some may be in the header.
+    // Alters `count` files, each in fewer than `most` places. Some of the places may be in the header.
     let noise = |bytes: &[u8], seed, count, most, in_header: &dyn Fn(&mut Rng) -> bool| {
         let start = 8 + bytes_of_header(bytes);
         let mut random = Rng::with_seed(seed);
@@ -552,7 +552,7 @@ fn materials_and_pictures_are_kept() {
     assert_eq!((again.normal(), again.depth()), (noisy.normal(), noisy.depth()));
     assert_eq!((again.albedo(), again.variance()), (noisy.albedo(), noisy.variance()));
     assert_eq!((again.layers(), quiet.layers()), (GUIDES, LayerSet::COLOR));
-    // No such material, one that is out of range, and one that no sphere has.
+    // A material that does not exist, one that is out of range, and one that no sphere has.
     let number = |x: f32| x.to_le_bytes();
     for (name, at, numbers, words) in [
         ("surfaces", 20, number(4.0), "the surface 1: there is no such material"),

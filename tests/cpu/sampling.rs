@@ -1,6 +1,7 @@
-//! Sample points: as evenly spread as Owen-scrambled Sobol points must be, and pairs and pixels independent.
+//! Sample points: they are as evenly spread as Owen-scrambled Sobol points must be, and pairs and pixels are
+//! independent.
 //!
-//! What is expected of chance is derived for Owen's scrambling with ideal random bits; seeds are fixed.
+//! The expected statistics are derived for Owen's scrambling with ideal random bits. Seeds are fixed.
 
 use pinhole::camera::sampling::{pair, pixel_seed, unit};
 
@@ -10,7 +11,7 @@ fn point(pixel: [u32; 2], sample: u32, number: u32) -> [f64; 2] {
     pair(pixel_seed(pixel, SEED), sample, number).map(unit)
 }
 
-/// Of 2ᵐ samples that start at a multiple of 2ᵐ, every box of 2⁻ᵃ by 2ᵃ⁻ᵐ has one.
+/// In every aligned block of 2ᵐ samples, every box of 2⁻ᵃ by 2ᵃ⁻ᵐ contains one sample.
 #[test]
 fn every_aligned_block_is_a_net() {
     let addresses =
@@ -50,7 +51,7 @@ fn every_aligned_block_is_a_net() {
 /// 1/144 + ∑ 2ᵈ 2^(−6d−8) = 1/144 + 2⁻⁸/(1 − 2⁻⁵).
 const EXPECTED: f64 = 1.0 / 144.0 + 1.0 / (256.0 - 8.0);
 
-/// The mean of N times that square over many tries, relative to what is expected.
+/// The mean of N times that square over many tries, relative to the expectation.
 fn relative_dependence(tries: u32, samples: u32, product: impl Fn(u32, u32) -> f64) -> f64 {
     let total: f64 = (0..tries)
         .map(|n| {
@@ -61,7 +62,7 @@ fn relative_dependence(tries: u32, samples: u32, product: impl Fn(u32, u32) -> f
     total / f64::from(tries) / EXPECTED
 }
 
-/// Five standard deviations: the square of a nearly normal number varies by twice its squared expectation.
+/// Five standard deviations. The square of a nearly normal number varies by twice its squared expectation.
 fn bound(tries: u32) -> f64 {
     5.0 * (2.0 / f64::from(tries)).sqrt()
 }
@@ -92,7 +93,7 @@ fn pixels_are_independent() {
         for [x, y] in [[1, 0], [0, 1], [1, 1], [2, 0], [0, 4096]] {
             for c in [0, 1] {
                 let found = relative_dependence(TRIES, samples, |n, i| {
-                    // Apart, so that no pixel is in two tries.
+                    // The pixels are far apart, so that no pixel is in two tries.
                     let pixel = [4 * (n % 64), 2 * (n / 64)];
                     let other = [pixel[0] + x, pixel[1] + y];
                     (point(pixel, i, 0)[c] - 0.5) * (point(other, i, 0)[c] - 0.5)
@@ -103,8 +104,7 @@ fn pixels_are_independent() {
     }
 }
 
-/// One sample of each pixel, as the picture of one sample has them: its mean, and that of products of
-/// neighbours, are those of independent uniform numbers.
+/// One sample of each pixel. Its mean, and the mean products of neighbours, are those of independent uniform numbers.
 #[test]
 fn a_picture_of_one_sample_is_white_noise() {
     const SIDE: u32 = 256;
@@ -138,7 +138,7 @@ fn slope(error: impl Fn(u32) -> f64) -> f64 {
 #[test]
 fn smooth_functions_are_integrated_well() {
     let smooth = |[x, y]: [f64; 2]| (x + 0.5 * y).exp() * (3.0 * x * y).cos();
-    // By the midpoint rule, whose error is far below that of the samples.
+    // Uses the midpoint rule, whose error is far below that of the samples.
     let n = 2000;
     let middle = |i: i32| (f64::from(i) + 0.5) / f64::from(n);
     let cells = (0..n).flat_map(|i| (0..n).map(move |j| [middle(i), middle(j)]));
@@ -153,7 +153,7 @@ fn smooth_functions_are_integrated_well() {
     };
     let found = slope(|samples| error(&|pixel, i| point(pixel, i, 3), samples));
     assert!(found < -1.2, "{found}");
-    // The other half of the test: what has no nets fails it. A sample's number as a pair's.
+    // The other half of the test. Points without nets fail it, such as one sample from each of many pairs.
     let independent = slope(|samples| error(&|pixel, i| point(pixel, 0, i), samples));
     assert!((independent + 0.5).abs() < 0.1, "{independent}");
 }

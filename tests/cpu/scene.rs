@@ -1,4 +1,4 @@
-//! Scenes: what they accept, in which frame they keep it, what spheres look like, and updates.
+//! Scenes: the data that they accept, their frame, the appearance of spheres, and updates.
 
 use fastrand::Rng;
 use pinhole::glam::DVec3;
@@ -14,7 +14,7 @@ use pinhole::{
 use crate::run_file::made;
 use crate::support::appearances::{Numbers, camera, kinds, settings};
 
-/// A scene of spheres with colours by their numbers.
+/// A scene of spheres with colours by index.
 pub(crate) fn colored(spheres: &[[f32; 4]], color: impl Fn(usize) -> [f32; 3]) -> Scene {
     let one = |(i, s): (usize, &[f32; 4])| {
         let [x, y, z, radius] = s.map(f64::from);
@@ -64,11 +64,11 @@ fn data_far_from_the_origin_keeps_its_shape() {
         let world = scene.origin() + DVec3::new(kept[0].into(), kept[1].into(), kept[2].into());
         assert!((world - DVec3::from(given.center)).length() < 1e-6, "{world}");
     }
-    // In f32 without a frame, neighbours would fall together: its step there is 8.
+    // In f32 without a frame, neighbours would coincide, because the step of numbers there is 8.
     assert_eq!(far as f32, (far + 0.01) as f32);
 }
 
-/// Only the axis along which the data is far is moved; what was exact in f32 stays exact.
+/// Only the axis along which the data is far away is moved. Numbers that were exact in f32 stay exact.
 #[test]
 fn data_that_was_exact_in_f32_stays_exact() {
     let mut random = fastrand::Rng::with_seed(14);
@@ -129,8 +129,7 @@ fn arrays_make_the_scene_that_spheres_make() {
     }
 }
 
-/// f64 data ten million units away has the shape that it has at the origin, to the last bit of what f64
-/// keeps there.
+/// f64 data ten million units away keeps its shape from the origin, to the last bit that f64 keeps there.
 #[test]
 fn arrays_far_from_the_origin_keep_their_shape() {
     let mut random = fastrand::Rng::with_seed(16);
@@ -173,7 +172,7 @@ fn film() -> Film {
     Film::new(24, 24).unwrap()
 }
 
-/// By one ray a pixel, in a studio, and along paths.
+/// Pictures of primary rays, of a studio, and of paths.
 fn pictures(scene: &Scene) -> [Image; 3] {
     let camera = camera();
     let view = View::new(&camera, film());
@@ -211,7 +210,7 @@ fn run_files_keep_every_kind() {
     }
 }
 
-/// Whatever the allocator gave for the spheres and colours, the scene has.
+/// The scene keeps the allocations of the spheres and colours.
 #[test]
 fn nothing_is_copied() {
     let spheres = vec![[0.5, 0.25, 0.0, 0.5]; 1000];
@@ -278,7 +277,7 @@ fn what_does_not_fit_is_named_by_index() {
     }
 }
 
-/// A color that only a lamp may have is refused of the sphere that is none, and not where no sphere has it.
+/// A colour that only an emissive sphere may have is refused for other spheres, but not if no sphere has it.
 #[test]
 fn what_creates_light_is_named_by_index() {
     let palette = [0.5, 7.0].map(|level| LinearRgb::new([level; 3]).unwrap());
@@ -298,13 +297,13 @@ fn what_creates_light_is_named_by_index() {
     assert!(named, "{refused:?}");
 }
 
-/// All that a scene consists of.
+/// All parts of a scene.
 fn parts(scene: &Scene) -> (Vec<[f32; 4]>, Appearance, String) {
     let bounds = format!("{:?} {:?}", scene.bounds(), scene.origin());
     (scene.spheres().to_vec(), scene.appearance().clone(), bounds)
 }
 
-/// The same scene, made of its numbers.
+/// The same scene, made again from its numbers.
 fn fresh(scene: &Scene) -> Scene {
     let spheres = SphereArray::F32(scene.spheres().to_vec());
     Scene::from_parts(spheres, scene.appearance().clone()).unwrap()
@@ -408,7 +407,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
             SceneUpdate { colors: Some(NewColors::Rgba8(&[[0; 4]])), ..update },
             "sphere 4 cannot be given individual colors: the scene's spheres have palette colors",
         ),
-        // What comes before it is right, and is not kept.
+        // The values before it are valid, but are not kept.
         (
             SceneUpdate { radii: Some(&[0.25]), colors: Some(NewColors::Palette(&[9])), ..update },
             "sphere 4 has no color: its index is out of range; the palette has 3 colors",

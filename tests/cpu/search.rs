@@ -1,4 +1,4 @@
-//! Pictures with a structure against those of testing every sphere: equal to the bit.
+//! Compares pictures with a structure to those of testing every sphere, to the bit.
 
 use fastrand::Rng;
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose};
@@ -14,7 +14,7 @@ use pinhole::{
 use crate::support::random_light;
 use crate::support::spheres_of;
 
-/// Compares all layers, of which an image compares every number.
+/// Compares all layers. Images compare every number.
 fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) -> Image {
     let tree = SearchStructure::new(scene).unwrap();
     let wanted = cpu::render(scene, view, settings, LayerSet::ALL).unwrap();
@@ -31,10 +31,10 @@ fn point(random: &mut Rng) -> DVec3 {
     DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0))
 }
 
-/// The scene with so many more spheres that there is a structure.
+/// The scene with so many more spheres that it gets a structure.
 fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
     let mut spheres = spheres_of(scene);
-    // A grid is for many opaque spheres.
+    // A grid needs many opaque spheres.
     let is_opaque = random.bool();
     let more = if is_opaque { 300 } else { 20 };
     for _ in 0..more {
@@ -43,7 +43,7 @@ fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
         let opacity = if is_opaque || random.bool() { 1.0 } else { random.f32() };
         let center = (2.0 * point(random)).to_array();
         let mut sphere = Sphere::new(center, radius, color(random));
-        // Some are within others, some in the same place.
+        // Some are inside others, and some coincide.
         match random.u32(0..4) {
             0 => sphere.center = other.center,
             1 => sphere = Sphere::new(other.center, other.radius, color(random)),
@@ -54,7 +54,7 @@ fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
     Scene::new(&spheres).unwrap()
 }
 
-/// Paths, studios and primary rays, with every kind of light.
+/// Random pictures with paths, studios and primary rays, and every kind of light.
 #[test]
 fn random_pictures() {
     let mut random = Rng::with_seed(41);
@@ -98,8 +98,8 @@ fn studio(random: &mut Rng, size: f64) -> RenderSettings {
     settings
 }
 
-/// Scenes at any scale, in the world's origin or far from it, with spheres of many sizes, some of them equal, some in
-/// others; seen from near, from far and from within a sphere.
+/// Scenes at any scale, at the world's origin or far from it. Their spheres have many sizes, and some are equal or
+/// nested. They are seen from near, from far and from inside a sphere.
 #[test]
 fn pictures_at_any_scale() {
     const ROUNDS: usize = 50;
@@ -154,7 +154,7 @@ fn pictures_at_any_scale() {
     assert!(shown > ROUNDS * 60, "{shown}");
 }
 
-/// Of many equal spheres only some hide light, whichever comes first; and many opaque ones, for which there is a grid.
+/// Only some of many equal spheres hide light, in any order. Many opaque ones get a grid.
 #[test]
 fn many_equal_spheres_hide_light_by_their_own_opacity() {
     let mut random = Rng::with_seed(43);

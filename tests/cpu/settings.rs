@@ -1,4 +1,4 @@
-//! Settings: what contradicts itself is refused, what is odd is noted, and primary rays are one of the integrators.
+//! Settings: contradictions are refused, unusual settings are noted, and primary rays are one of the integrators.
 
 use glam::DVec3;
 use pinhole::camera::{PinholeCamera, Pose};
@@ -87,7 +87,7 @@ fn what_belongs_together_is_accepted() {
     for settings in accepted {
         assert_eq!(settings.check(&scene), Ok(()), "{settings:?}");
     }
-    // Light that is created concerns lit pictures alone.
+    // Surfaces that create light matter only for lit pictures.
     let bright = one(Sphere::new([0.0; 3], 1.0, LinearRgb::new([2.0; 3]).unwrap()));
     assert_eq!(RenderSettings::default().check(&bright), Ok(()));
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
@@ -135,7 +135,7 @@ fn what_is_odd_is_noted() {
     }
 }
 
-/// A ball of a thousand spheres is deep, and what is behind many of them is seen if they are clear enough.
+/// A round heap of a thousand spheres is deep. Spheres behind many others are visible if these are clear enough.
 #[test]
 fn surfaces_that_are_left_out_are_noted() {
     let ball = |count: u32, opacity: f32| {
@@ -160,7 +160,7 @@ fn surfaces_that_are_left_out_are_noted() {
     assert_eq!(more.notes(&ball(1000, 0.1)), [""; 0]);
 }
 
-/// Where nothing is hit, a transparent picture has neither colour nor alpha; elsewhere it is as it was.
+/// If nothing is hit, a transparent picture has neither colour nor alpha. Elsewhere it does not change.
 #[test]
 fn primary_rays_may_have_no_background() {
     let (scene, camera) = (one(sphere()), camera());

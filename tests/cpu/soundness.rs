@@ -1,5 +1,5 @@
-//! The set of legal answers holds the exact answer, by arithmetic without rounding, and whatever a device may
-//! come to that uses all the freedom of WGSL: for hostile rays, and for rays of all cameras, locations and points of the
+//! Checks that the set of legal answers contains the exact answer, computed without rounding, and every answer of a
+//! device that uses all the freedom of WGSL. Rays are hostile, or come from all cameras, locations and points of the
 //! lens.
 
 use std::f64::consts::TAU;
@@ -21,13 +21,13 @@ use crate::support::hosts::{Convention, view};
 use crate::support::legal_device::{Habit, LegalDevice};
 use crate::verify;
 
-/// How many cases there are if all run.
+/// The number of cases if all of them run.
 const CASES: u32 = 1_000_000;
 
-/// Numbers of any length: sums and products are exact.
+/// Numbers of any length, whose sums and products are exact.
 type Exact = FBig<mode::HalfEven, 2>;
 
-/// Where a square root is cut off: far beyond what any bound could tell.
+/// The number of bits of a square root, which is far more than any bound can tell.
 const ROOT_BITS: usize = 160;
 
 fn exact(value: f32) -> Exact {
@@ -38,7 +38,7 @@ fn dot(a: &[Exact; 3], b: &[Exact; 3]) -> Exact {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// The ray's parameter at the first point of a sphere in front of its origin, from inside at the far side.
+/// The ray's parameter at the first point of a sphere in front of its origin, or from inside at the far side.
 fn exact_hit(origin: &[Exact; 3], direction: &[Exact; 3], sphere: [f32; 4]) -> Option<Exact> {
     let [x, y, z, radius] = sphere.map(exact);
     let l = [&x - &origin[0], &y - &origin[1], &z - &origin[2]];
@@ -59,7 +59,7 @@ fn exact_hit(origin: &[Exact; 3], direction: &[Exact; 3], sphere: [f32; 4]) -> O
     Some(context.div(numerator.repr(), s.repr()).unwrap().value())
 }
 
-/// Whether the exact nearest sphere, at its exact distance, is legal.
+/// Whether the legal answers contain the exact nearest sphere at its exact distance.
 fn holds_exact(case: &Case, scene: &Scene, legal: &LegalHits) -> bool {
     let (origin, direction) = (case.origin.map(exact), case.direction.map(exact));
     let hits: Vec<_> = (0..)
@@ -75,12 +75,12 @@ fn holds_exact(case: &Case, scene: &Scene, legal: &LegalHits) -> bool {
     [t.clone(), t * length].iter().all(|t| legal.allows(*id, t.to_f64().value()))
 }
 
-/// Whether what a device answers is legal.
+/// Whether the legal answers contain the answer of a device.
 fn allows(device: &mut LegalDevice, case: &Case, scene: &Scene, legal: &LegalHits) -> bool {
     let ray = TracedRay { origin: case.origin, direction: case.direction, distance: 0.0 };
     let mut nearest = (NO_HIT, u32::MAX);
     for (id, sphere) in (0..).zip(scene.spheres()) {
-        // Of spheres that are the same the kernel finds the same, which chance would not.
+        // A kernel finds the same distance for equal spheres, but a random device would not.
         if scene.spheres()[..id as usize].contains(sphere) {
             continue;
         }
@@ -95,7 +95,7 @@ fn allows(device: &mut LegalDevice, case: &Case, scene: &Scene, legal: &LegalHit
     }
 }
 
-/// Runs `judge` on many cases, on two threads, and shows the first that it refuses.
+/// Runs `judge` on many cases, on two threads, and shows the first case that fails.
 fn on_cases(seed: u64, judge: impl Fn(&Case, &Scene, &LegalHits, &mut Rng) -> bool + Sync) {
     let cases = u64::from(tries(CASES));
     let undecided: u64 = std::thread::scope(|scope| {
@@ -104,7 +104,7 @@ fn on_cases(seed: u64, judge: impl Fn(&Case, &Scene, &LegalHits, &mut Rng) -> bo
             let mut undecided = 0;
             for _ in 0..cases.div_ceil(2) {
                 let case = case(&mut random);
-                // In the scene's own frame, whichever that is.
+                // In the scene's own frame, wherever its origin is.
                 let Ok(scene) = Scene::from_f32(case.spheres.clone(), LinearRgb::WHITE) else {
                     continue;
                 };
@@ -124,7 +124,7 @@ fn on_cases(seed: u64, judge: impl Fn(&Case, &Scene, &LegalHits, &mut Rng) -> bo
         let handles = [0, 1].map(|thread| scope.spawn(move || run(thread)));
         handles.into_iter().map(|handle| handle.join().unwrap()).sum()
     });
-    // They are hostile, and yet most have one answer: a set of everything would be sound as well.
+    // The cases are hostile, yet most have one answer. A set of all answers would be sound as well.
     assert!(undecided < cases / 2, "{undecided}");
     assert!(undecided > cases / 100, "{undecided}");
 }
@@ -144,7 +144,7 @@ fn no_conforming_device_is_accused() {
     });
 }
 
-/// A ray and a few spheres, exactly as a device has them.
+/// A ray and a few spheres, with exactly the numbers that a device gets.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     pub(crate) origin: [f32; 3],
@@ -161,12 +161,12 @@ fn unit(random: &mut Rng) -> DVec3 {
     }
 }
 
-/// Ten to a power between two.
+/// Ten to a random power between two numbers.
 fn decades(random: &mut Rng, low: f64, high: f64) -> f64 {
     10_f64.powf(low + (high - low) * random.f64())
 }
 
-/// As normalized in f32, or a little off unit length.
+/// A direction as normalized in f32, or slightly off unit length.
 fn narrow_direction(direction: DVec3, random: &mut Rng) -> [f32; 3] {
     let off = 1.0 + (random.f64() - 0.5) * 2e-6 * f64::from(random.u8(0..2));
     (direction * off).as_vec3().to_array()
@@ -177,7 +177,7 @@ fn sphere(center: DVec3, radius: f64) -> [f32; 4] {
     [center.x, center.y, center.z, radius as f32]
 }
 
-/// A sphere that a ray passes at nearly the distance of its radius, ahead by `along`.
+/// A sphere that the ray passes at nearly the distance of its radius, at `along` ahead.
 fn nearly_tangent(origin: DVec3, direction: DVec3, along: f64, random: &mut Rng) -> [f32; 4] {
     let radius = along * decades(random, -4.0, 0.5);
     let across = direction.cross(unit(random)).normalize_or(direction.any_orthonormal_vector());
@@ -185,7 +185,7 @@ fn nearly_tangent(origin: DVec3, direction: DVec3, along: f64, random: &mut Rng)
     sphere(origin + along * direction + radius * off * across, radius)
 }
 
-/// A sphere on whose wall a ray nearly starts.
+/// A sphere with the ray's origin nearly on its wall.
 fn nearly_on_wall(origin: DVec3, random: &mut Rng) -> [f32; 4] {
     let radius = decades(random, -3.0, 3.0);
     let off = 1.0 + (random.f64() - 0.5) * decades(random, -9.0, -3.0);
@@ -218,7 +218,7 @@ pub(crate) fn case(random: &mut Rng) -> Case {
         let made = match random.u8(0..6) {
             0 => nearly_tangent(origin, exact, distance * (0.1 + random.f64()), random),
             1 => nearly_on_wall(origin, random),
-            // A tie: as far along the ray as another, or the same again.
+            // A tie: a sphere as far along the ray as another, or an equal one.
             2 if !spheres.is_empty() => {
                 let [x, y, z, radius] = spheres[random.usize(0..spheres.len())];
                 let center = DVec3::new(x.into(), y.into(), z.into());
@@ -227,7 +227,7 @@ pub(crate) fn case(random: &mut Rng) -> Case {
                 sphere(center + exact * (grown - f64::from(radius) + off), grown)
             }
             3 if !spheres.is_empty() => spheres[random.usize(0..spheres.len())],
-            // Aimed at, and of any size.
+            // A sphere in the ray's way, of any size.
             4 => sphere(origin + exact * distance, distance * decades(random, -5.0, 0.5)),
             _ => sphere(near(random), decades(random, -3.0, 0.0)),
         };
@@ -244,7 +244,7 @@ pub(crate) fn case(random: &mut Rng) -> Case {
     Case { origin: scaled(origin), direction, spheres }
 }
 
-/// How many rays of cameras there are if all run.
+/// The number of rays of cameras if all of them run.
 const RAYS: u32 = 400_000;
 
 /// Any camera, with lengths over some decades.
@@ -271,7 +271,7 @@ fn any_camera(random: &mut fastrand::Rng) -> Box<dyn Camera> {
     }
 }
 
-/// Right, up and forward are at any angles.
+/// A host camera whose right, up and forward are at any angles.
 fn any_host(random: &mut fastrand::Rng, pose: Pose, half: [f64; 2]) -> HostCamera {
     let convention = [Convention::Perspective, Convention::Orthographic][random.usize(0..2)];
     let [x, y] = half.map(|half| (random.f64() - 0.5) * half);
@@ -283,7 +283,7 @@ fn any_host(random: &mut fastrand::Rng, pose: Pose, half: [f64; 2]) -> HostCamer
     HostCamera::new(to_view, projection, DepthOrder::NearIsZero).unwrap()
 }
 
-/// As a device is given it, with any advance.
+/// The camera as a device gets it, with any advance.
 fn uploaded(camera: &dyn Camera, random: &mut fastrand::Rng) -> UploadedView {
     let vectors = camera.vectors();
     let can_advance = camera.location_of(vectors.origin + vectors.forward).is_some()
@@ -294,7 +294,7 @@ fn uploaded(camera: &dyn Camera, random: &mut fastrand::Rng) -> UploadedView {
     verify::uploaded(&vectors, vectors.origin, advance, [[0.0; 3]; 2])
 }
 
-/// In the whole square, in its corners, on its diagonals and in the very middle.
+/// A point in the whole square, in its corners, on its diagonals or exactly in the middle.
 fn point(random: &mut fastrand::Rng) -> [f32; 2] {
     let [a, b] = [random.f32(), random.f32()];
     match random.u8(0..10) {
@@ -335,12 +335,12 @@ fn no_ray_of_a_conforming_device_is_accused() {
         );
         seen[usize::from(ray.is_seen)] += 1;
     }
-    // Fisheyes see nothing in the corners, or that would not be judged.
+    // Fisheyes see nothing in the corners. Otherwise those would not be tested.
     assert!(seen[0] > cases / 100 && seen[1] > cases / 2, "{seen:?}");
 }
 
-/// How narrow the bounds are: a fault of eighty roundings is seen. The widest are those of a fisheye of 360
-/// degrees, whose angle is up to π times as uncertain as the radius that it is made of.
+/// The bounds are narrow: an error of eighty roundings is found. The widest bounds are those of a fisheye of 360
+/// degrees, whose angle is up to π times as uncertain as the radius from which it is computed.
 #[test]
 fn the_references_ray_is_near_the_middle_of_what_is_legal() {
     const ROUNDINGS: f64 = 80.0 / (1 << 23) as f64;
@@ -363,7 +363,7 @@ fn the_references_ray_is_near_the_middle_of_what_is_legal() {
                 (legal.origin[axis], ray.origin[axis], ray.origin.length() + reach),
             ] {
                 let context = format!("case {case}, {camera:?} at {location:?}, lens {lens:?}");
-                // Wide lenses, and views to the side, have rays much shorter than their terms.
+                // Wide lenses, and views to the side, have rays that are much shorter than their terms.
                 let terms =
                     if scale == 1.0 { 1.0 + reach / shortest(camera.as_ref()) } else { scale };
                 let error = ROUNDINGS * terms;
@@ -375,7 +375,7 @@ fn the_references_ray_is_near_the_middle_of_what_is_legal() {
     }
 }
 
-/// No ray's vector is shorter, before it is made a unit vector.
+/// A lower bound of the lengths of the camera's ray vectors before normalization.
 fn shortest(camera: &dyn Camera) -> f64 {
     let vectors = camera.vectors();
     let across = vectors.right.cross(vectors.up);

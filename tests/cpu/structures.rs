@@ -1,20 +1,20 @@
-//! Every structure, in one brick and in several: each sphere is in one brick, and none takes more memory than was planned.
+//! Every structure, in one brick and in several. Each sphere is in one brick, and no buffer exceeds the plan.
 
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use pinhole::glam::Vec3;
 
 use crate::support::spheres::{self, Spheres, crowd_and_outliers};
 
-/// What a large device binds.
+/// The largest binding of a large device.
 const ROOMY: u64 = 1 << 30;
 
-/// 256 spheres a brick, for what needs 16 bytes a sphere.
+/// A binding for 256 spheres of 16 bytes each.
 const TINY: u64 = 4096;
 
-/// What a grid with balls may take beside its lists, and 68 bytes for each of 300 spheres.
+/// A binding for the fixed part of a grid with balls, and for 300 spheres with 68 bytes each.
 const TINY_FOR_BALLS: u64 = (1 << 20) + 300 * 68;
 
-/// Every structure of the spheres, with its plan.
+/// Every structure of the spheres, each with its plan.
 fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
     let kinds = [
         (Structure::List, TINY),
@@ -35,7 +35,7 @@ fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
     all
 }
 
-/// A plan binds nothing larger than the device can, if it can hold more than one sphere at all.
+/// Checks that no planned binding exceeds the device's, if a brick can hold more than one sphere.
 fn check_bindings(plan: &AccelPlan, binding_bytes: u64) {
     if plan.statistics.count.div_ceil(plan.brick_count) <= 1 {
         return;
@@ -45,7 +45,7 @@ fn check_bindings(plan: &AccelPlan, binding_bytes: u64) {
     }
 }
 
-/// Bytes of each buffer of a brick, by the names that plans give them.
+/// The bytes of each buffer of a brick, by the names in plans.
 fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     let ids = size_of_val(&brick.ids[..]) as u64;
     let mut buffers = vec![("spheres", size_of_val(&brick.spheres[..]) as u64)];
@@ -64,7 +64,7 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     buffers
 }
 
-/// No buffer is larger than planned, in any brick and in all together; what was not planned is not there.
+/// Checks that no buffer is larger than planned, in any brick and in all together, and that no buffer is unplanned.
 fn check_memory(name: &str, plan: &AccelPlan, accel: &Accel) {
     assert!(accel.bricks().len() <= plan.brick_count, "{name}");
     let planned = |buffer: &str| {
@@ -86,7 +86,7 @@ fn check_memory(name: &str, plan: &AccelPlan, accel: &Accel) {
     assert!(sums.values().sum::<u64>() <= plan.device_bytes(), "{name}");
 }
 
-/// Each sphere of the input is in one brick, and boxes for ray queries hold their spheres.
+/// Checks that each input sphere is in one brick, and that boxes for ray queries contain their spheres.
 fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
     let (low, high) = accel.bounds();
     for [x, y, z, radius] in spheres {
@@ -130,7 +130,7 @@ fn check(scene: &str, spheres: &Spheres) {
     }
 }
 
-/// Few, random, all alike, in order, of uneven size and density, far away, and very long and very short.
+/// Few, random, equal and sorted spheres, of uneven size and density, far away, and very long and very short scenes.
 #[test]
 fn every_scene_in_every_structure() {
     let decades = spheres::four_decades(1_000);
@@ -162,7 +162,7 @@ fn every_scene_in_every_structure() {
     }
 }
 
-/// Bindings for a few spheres each.
+/// Bindings for a few spheres each give many bricks.
 #[test]
 fn many_small_bricks() {
     let spheres = spheres::random(60, 22, |_| 0.1);
@@ -174,7 +174,7 @@ fn many_small_bricks() {
     check_memory("many bricks", &plan, &accel);
 }
 
-/// The scenes do lead to every structure.
+/// The scenes lead to every structure.
 #[test]
 fn every_structure_is_met() {
     let mut met: Vec<Structure> = [spheres::clusters(10, 300), spheres::random(2_000, 2, |_| 0.02)]
@@ -186,7 +186,7 @@ fn every_structure_is_met() {
     assert_eq!(met.len(), 5, "{met:?}");
 }
 
-/// All in one place: lists keep the one that counts, and building ends.
+/// Spheres in one place. Lists keep the one that counts, and building ends.
 #[test]
 fn a_million_coincident_centres() {
     for count in [100_000, 1_000_000] {
@@ -200,7 +200,7 @@ fn a_million_coincident_centres() {
     }
 }
 
-/// Bindings for about a thousand spheres.
+/// A binding for about a thousand spheres.
 const FOR_A_THOUSAND: u64 = 1 << 14;
 
 fn check_crowd(name: &str, spheres: &Spheres) {
@@ -230,7 +230,7 @@ fn outliers_at_all_distances() {
     check_crowd("none", &crowd_and_outliers(4_000, 0, 1.0, false));
 }
 
-/// Beside a crowd of equal spheres, and beside one that is far from the origin of the frame.
+/// Outliers beside a crowd of equal spheres, and beside a crowd far from the origin of the frame.
 #[test]
 fn crowds_of_equal_spheres_and_crowds_elsewhere() {
     let mut equal: Spheres = vec![[0.25, 0.5, 0.75, 0.02]; 3_000];
@@ -246,7 +246,7 @@ fn crowds_of_equal_spheres_and_crowds_elsewhere() {
     check_crowd("equal outliers", &same);
 }
 
-/// The plan says what it knows, and takes a tree where a grid's margin would be too large.
+/// The plan reports outliers, and chooses a tree if a grid's margin would be too large.
 #[test]
 fn plans_know_outliers() {
     let plan = |spheres: &Spheres, choice| AccelPlan::new(spheres, choice, ROOMY);
@@ -261,7 +261,7 @@ fn plans_know_outliers() {
         let says = format!("{outliers} of {} spheres lie far away", spheres.len());
         assert!(auto.reason.contains(&says), "{}", auto.reason);
         assert_eq!(plan(&spheres, AccelChoice::Grid).structure, Structure::Grid);
-        // One brick, as for any tree of so many.
+        // One brick, as for any tree with as many spheres.
         assert_eq!(auto.build(&spheres).bricks().len(), 1);
     }
 }

@@ -1,4 +1,4 @@
-//! The checker by itself: it accuses no device that does what WGSL lets it do. `planted_faults.rs` has what it finds.
+//! Tests the checker without a device. It must not accuse conforming devices. `planted_faults.rs` tests its finds.
 
 use std::f64::consts::TAU;
 
@@ -20,7 +20,7 @@ use crate::support::legal_device::{Habit, LegalDevice};
 use crate::support::spheres::{self, Spheres};
 use crate::written::assert_is_not_accused;
 
-/// The upload of a camera, whose origin is moved up by `advance`, and of the corners of a scene's box.
+/// The upload of a camera, with its origin advanced by `advance`, and of the corners of a scene's box.
 pub(crate) fn uploaded(
     vectors: &CameraVectors,
     origin: DVec3,
@@ -40,7 +40,7 @@ pub(crate) fn uploaded(
     }
 }
 
-/// What a device is given; it has made nothing of it yet.
+/// A recording with a device's input, and without any output.
 pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let vectors = camera.vectors();
     let bounds = scene.bounds_to_frame();
@@ -59,7 +59,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
         })
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
-    // Rays of the others go to all sides.
+    // Rays of panoramas and fisheyes go in all directions, so they are not advanced.
     let is_moved = !matches!(camera.kind(), CameraKind::Panorama | CameraKind::Fisheye);
     let advance = if is_moved { nearest as f32 } else { 0.0 };
     let corners = [low, high].map(|corner| corner.as_vec3().to_array());
@@ -78,7 +78,7 @@ fn scene(spheres: &[[f32; 4]]) -> Scene {
     colored(spheres, |i| [3, 5, 7].map(|k| ((i * k) % 17) as f32 / 16.0))
 }
 
-/// The size of a scene, and poses outside of it, far away, and within.
+/// The size of a scene, and poses outside it, far away, and inside.
 pub(crate) fn poses(scene: &Scene) -> (f64, [Pose; 3]) {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
@@ -89,7 +89,7 @@ pub(crate) fn poses(scene: &Scene) -> (f64, [Pose; 3]) {
     (size, [outside, far, within])
 }
 
-/// From all poses, by every camera.
+/// Every camera from all poses.
 fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
     let (size, [outside, far, within]) = poses(scene);
     let pinhole = PinholeCamera::with_vertical_fov(outside, 0.7, 1.3).unwrap();
@@ -107,12 +107,12 @@ fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
         Box::new(PinholeCamera::new(far, 100.0 * size, [0.6 * size, 0.5 * size]).unwrap()),
         Box::new(PinholeCamera::with_vertical_fov(within, 1.9, 1.3).unwrap()),
         Box::new(OrthographicCamera::new(outside, [0.9 * size, 0.7 * size]).unwrap()),
-        // Recordings to be spoilt are this one's.
+        // Other tests change recordings of this camera.
         Box::new(pinhole),
     ]
 }
 
-/// Spheres at any scale, of all sizes, in one place, in each other, in touch, far away, huge, and none.
+/// Spheres at any scale: of all sizes, coincident, nested, touching, far away, huge, and none.
 pub(crate) fn hostile_spheres() -> [Spheres; 10] {
     let few = spheres::random(40, 2, |_| 0.1);
     let mut far_from_the_origin = spheres::random(40, 3, |rng| 0.02 + 0.1 * rng.f32());
@@ -137,7 +137,7 @@ pub(crate) fn certify(scene: &Scene, recording: &Recording) -> Certificate {
     Checker::new(scene).unwrap().certify(recording)
 }
 
-/// Whatever a device may do, by every habit.
+/// Checks that no habit of a legal device is accused.
 fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Film) -> usize {
     let habits = [
         (Habit::Nearest, 0),
@@ -165,7 +165,7 @@ fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Fi
         let view = View::new(camera, film);
         assert_is_not_accused(name, scene, &view, &recording.image);
     }
-    // Which says something only if habits differ.
+    // This has a meaning only if habits differ.
     let is_seen = made[0].pixels.iter().any(|pixel| pixel.id != NO_ID);
     assert_eq!(otherwise > 0, is_seen, "{name}, {camera:?}");
     habits.len() * film.pixel_count() as usize
@@ -186,7 +186,7 @@ fn no_picture_of_a_conforming_device_is_accused() {
     assert!(pixels > 400_000, "{pixels}");
 }
 
-/// A flat box, along whose wall rays go: where they enter it depends on the last bit of their direction.
+/// A flat box with rays along its wall. Where these enter depends on the last bit of their direction.
 #[test]
 fn rays_that_graze_the_box_are_not_accused() {
     let plate: Vec<[f32; 4]> = (0..48)
@@ -201,7 +201,7 @@ fn rays_that_graze_the_box_are_not_accused() {
     }
 }
 
-/// Squares of such lengths are normal numbers, but those of their components may become zero.
+/// Squares of such lengths are normal numbers, but the squares of their components may become zero.
 #[test]
 fn the_smallest_lengths_are_not_accused() {
     let up = [0.0, 1.0, 0.0];
@@ -219,7 +219,7 @@ fn the_smallest_lengths_are_not_accused() {
     }
 }
 
-/// A recording of a device that rounds to the nearest.
+/// A recording of a device that rounds to nearest.
 pub(crate) fn legal_recording() -> (Scene, Recording) {
     let scene = scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()));
     let camera = cameras(&scene).pop().unwrap();

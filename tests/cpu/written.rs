@@ -1,5 +1,5 @@
-//! Pictures as they stand in files, and denoised ones: those of a conforming device are never accused, and what is planted
-//! is found.
+//! Pictures in files, and denoised pictures. Those of a conforming device are never accused, and planted faults are
+//! found.
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::denoise::GUIDES;
@@ -57,7 +57,7 @@ fn linear(image: &Image) -> Vec<[f32; 4]> {
     image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect()
 }
 
-/// The picture that a device made, in light and in one of the encodings.
+/// Checks that a device's picture is not accused, neither as light nor in one of the encodings.
 pub(crate) fn assert_is_not_accused(name: &str, scene: &Scene, view: &View<'_>, image: &Image) {
     let checker = Checker::new(scene).unwrap();
     let primary = PrimarySettings::default();
@@ -97,7 +97,7 @@ fn settings(shading: Shading, is_transparent: bool) -> RenderSettings {
     RenderSettings { integrator, background, is_transparent, ..RenderSettings::default() }
 }
 
-/// Bytes of the reference's picture, with what they are judged by.
+/// Bytes of the reference's picture, with the data for judging them.
 struct Picture {
     scene: Scene,
     camera: PinholeCamera,
@@ -123,7 +123,7 @@ impl Picture {
         Self::new(settings(Shading::Headlight, false), Encoding::default())
     }
 
-    /// Judges bytes, by a scene and a camera that may be others.
+    /// Judges bytes with a scene and a camera, which may be different ones.
     fn judge_by(&self, scene: &Scene, camera: &dyn Camera, bytes: &[u8]) -> WrittenCertificate {
         let checker = Checker::new(scene).unwrap();
         let primary = self.settings.primary().unwrap();
@@ -155,7 +155,7 @@ fn the_references_picture_is_proved_in_every_encoding() {
     }
 }
 
-/// What a byte may be is narrow: nearly every byte that is two steps away is not legal.
+/// The legal range of a byte is narrow: nearly every byte that is two steps away is not legal.
 #[test]
 fn a_byte_two_steps_away_is_found() {
     let made = Picture::plain();
@@ -173,7 +173,7 @@ fn a_byte_two_steps_away_is_found() {
     assert!(violation.to_string().starts_with("pixel (39, 30): green is "), "{violation}");
 }
 
-/// Changes of bytes that a fault may make.
+/// Changes of bytes that a fault can make are found.
 #[test]
 fn pictures_that_are_changed_are_found() {
     let made = Picture::plain();
@@ -197,7 +197,7 @@ fn pictures_that_are_changed_are_found() {
     }
 }
 
-/// Pictures of other scenes, cameras and settings than is said.
+/// Pictures of other scenes, cameras and settings are found.
 #[test]
 fn pictures_of_something_else_are_found() {
     let made = Picture::plain();
@@ -300,6 +300,6 @@ fn what_is_off_by_a_thousandth_is_found() {
     assert_eq!((found.violation_count, found.outcome()), (1, Outcome::Violated));
     assert!(found.violations[0].to_string().starts_with("pixel (30, 24): red is "));
     assert_eq!(changed(&|_, _| f32::NAN).outcome(), Outcome::Violated);
-    // The noisy picture itself is none that was denoised.
+    // The noisy picture itself is not accepted as denoised.
     assert_eq!(certify(&noisy, &noisy).unwrap().outcome(), Outcome::Violated);
 }

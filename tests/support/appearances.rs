@@ -1,4 +1,4 @@
-//! Scenes whose spheres look like something in every way that there is, and the same spheres one by one.
+//! Scenes with every kind of appearance, and the same spheres one by one.
 
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::render::Sampling;
@@ -9,10 +9,10 @@ use pinhole::{
     SurfaceProperties,
 };
 
-/// How many spheres each has.
+/// The number of spheres of each scene.
 const COUNT: u32 = 60;
 
-/// What some spheres look like, and the same as `Scene::new` has it.
+/// A scene with a kind of appearance, and the same scene made by `Scene::new`.
 #[derive(Debug)]
 pub(crate) struct Kind {
     pub(crate) name: String,
@@ -20,7 +20,7 @@ pub(crate) struct Kind {
     pub(crate) expected: Scene,
 }
 
-/// By one ray a pixel, in a studio, and along paths.
+/// Settings with primary rays, of a studio, and with paths.
 pub(crate) fn settings() -> [RenderSettings; 3] {
     let sampling = Sampling { samples: 4, ..Sampling::default() };
     [
@@ -30,7 +30,7 @@ pub(crate) fn settings() -> [RenderSettings; 3] {
     ]
 }
 
-/// Every kind of colours, with one surface and with several.
+/// Every kind of colours, with one set of surface properties and with several.
 pub(crate) fn kinds() -> Vec<Kind> {
     let mut kinds = Vec::new();
     for (name, colors) in colors() {
@@ -90,7 +90,7 @@ fn colors() -> Vec<(&'static str, Colors)> {
     let indices = (0..COUNT).map(|_| random.u32(..40)).collect();
     let values = (0..COUNT).map(|_| random.f32() * 14.0 - 2.0).collect();
     let rgba = (0..COUNT).map(|_| [0; 4].map(|_| random.u8(..)));
-    // Of which some are opaque.
+    // Some of these colours are opaque.
     let rgba = rgba.map(|[r, g, b, a]| [r, g, b, if a > 99 { 255 } else { a }]).collect();
     vec![
         ("one_color", Colors::One(table[3])),
@@ -111,13 +111,13 @@ fn surfaces() -> Vec<SurfaceProperties> {
     ]
 }
 
-/// In front of the spheres.
+/// A camera in front of the spheres.
 pub(crate) fn camera() -> PinholeCamera {
     let pose = Pose::looking_at([1.0, 2.0, 8.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
 }
 
-/// An update of all kinds of values, for any spheres.
+/// New values of every kind, for updates of any spheres.
 pub(crate) struct Numbers {
     pub(crate) centers: Vec<[f32; 3]>,
     pub(crate) radii: Vec<f32>,
@@ -136,7 +136,7 @@ impl Numbers {
         }
     }
 
-    /// New colours of the kind that a scene has.
+    /// New colours of the same kind as the scene's.
     pub(crate) fn colors(&self, scene: &Scene) -> Option<NewColors<'_>> {
         match scene.appearance().colors() {
             Colors::One(_) => None,

@@ -1,4 +1,4 @@
-//! Files of NumPy, made by hand, so that they can be wrong.
+//! NumPy files, made by hand, so that they can be invalid.
 
 use std::io::Write;
 
@@ -8,7 +8,7 @@ use rawzip::{CompressionMethod, ZipArchiveWriter};
 pub(crate) fn npy(dtype: &str, by_column: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if by_column { "True" } else { "False" };
     let text = format!("{{'descr': '{dtype}', 'fortran_order': {order}, 'shape': {shape}, }}");
-    // As NumPy pads it: the data starts at a multiple of 64 bytes.
+    // Padded as NumPy does. The data starts at a multiple of 64 bytes.
     let length = (10 + text.len() + 1).next_multiple_of(64) - 10;
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
     file.extend(u16::try_from(length).unwrap().to_le_bytes());

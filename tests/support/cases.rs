@@ -1,4 +1,4 @@
-//! Cases in text files: the files that a command reads, the command, and what it answers.
+//! Cases in text files: the files that a command reads, the command, and its answer.
 //!
 //! ```text
 //! $ cat short.xyz
@@ -9,9 +9,9 @@
 //! error: short.xyz: line 1: frame 0 declares 4 atoms, but the file ends after 1
 //! ```
 //!
-//! Below `$ cat NAME` stands the text of a file, up to the next line that starts with `$ `. Below `$ printf NAME` it stands
-//! with escapes (`\n`, `\r`, `\t`, `\\`, `\xff`), and the end of its last line is not part of it. Below `$ pinhole` stands the
-//! answer. An empty line separates cases.
+//! The text below `$ cat NAME` is that of a file, up to the next line that starts with `$ `. The text below `$ printf
+//! NAME` has escapes (`\n`, `\r`, `\t`, `\\`, `\xff`), and the end of its last line is not part of it. The text below
+//! `$ pinhole` is the answer. An empty line separates cases.
 
 #![allow(dead_code, reason = "each test program uses some of it")]
 
@@ -24,7 +24,7 @@ pub(crate) struct Case<'a> {
     pub(crate) arguments: &'a str,
 }
 
-/// Returns the text of a file of cases with what `answer` returns below each command.
+/// Returns the text of a file of cases in which the text below each command is what `answer` returns.
 pub(crate) fn answered(text: &str, mut answer: impl FnMut(&Case<'_>) -> String) -> String {
     let starts = text.match_indices("$ ").map(|(at, _)| at);
     let starts = starts.filter(|at| *at == 0 || text[..*at].ends_with('\n'));

@@ -1,8 +1,8 @@
-//! Is a picture what the CPU reference says, up to f32 rounding?
+//! Compares a picture with the CPU reference, up to f32 rounding.
 //!
-//! Ids must be equal, unless the reference itself gives the other id a thousandth of a pixel away.
-//! Depth, normal, position and headlight colour must lie within the bounds that follow from one number, how much
-//! the rounding of the kernel can displace a ray; flat colours, albedo and misses must be equal to the bit.
+//! Ids must be equal, unless the reference itself gives the other id a thousandth of a pixel away. Depth, normal,
+//! position and headlight colour must lie within bounds. All bounds follow from one number, the largest displacement of
+//! a ray by the kernel's rounding. Flat colours, albedo and misses must be equal to the bit.
 
 use std::fmt::Debug;
 
@@ -13,16 +13,15 @@ use pinhole::{Image, Integrator, Shading, cpu, glam};
 
 use super::View;
 
-/// How far a pixel's ray may be displaced by rounding, relative to the lengths involved: four roundings
-/// of f32. The chains in the kernels are longer, but their errors do not add up in one direction: in all
-/// scenes here, lavapipe stays within 0.36 of the bounds that follow.
+/// The largest displacement of a pixel's ray by rounding, relative to the lengths involved: four roundings of f32. The
+/// chains in the kernels are longer, but their errors do not add up in one direction. In all scenes here, lavapipe
+/// stays within 0.36 of the resulting bounds.
 const DISPLACEMENT: f64 = 4.0 / (1_u64 << 24) as f64;
 
-/// Within this part of a pixel of a silhouette, or of the line where two spheres meet, either id is
-/// right.
+/// Within this fraction of a pixel of a silhouette, or of the line where two spheres meet, either id is right.
 const NUDGE_PIXELS: f64 = 1e-3;
 
-/// All layers of an image, pixel by pixel, so that a test can spoil one.
+/// All layers of an image, pixel by pixel, so that a test can change one.
 #[derive(Clone, Debug)]
 pub(crate) struct Picture {
     pub(crate) size: [u32; 2],
@@ -43,23 +42,23 @@ impl From<&Image> for Picture {
     }
 }
 
-/// What a comparison found.
+/// The result of a comparison.
 #[derive(Debug, Default)]
 pub(crate) struct Comparison {
-    /// Pixels whose id differs but is right a nudge away.
+    /// The number of pixels whose id differs but is right a nudge away.
     pub(crate) ambiguous: usize,
-    /// Everything that is wrong, in the order of pixels.
+    /// All violations, in the order of pixels.
     pub(crate) violations: Vec<Violation>,
 }
 
-/// One thing that is wrong.
+/// A difference that exceeds its bound.
 #[derive(Debug)]
 #[allow(dead_code, reason = "some tests print it alone")]
 pub(crate) struct Violation {
     /// `size`, or the name of a layer.
     pub(crate) layer: &'static str,
     pub(crate) pixel: [u32; 2],
-    /// The reference's value and the result's.
+    /// The values of the reference and of the result.
     pub(crate) values: [String; 2],
 }
 
@@ -97,7 +96,7 @@ pub(crate) fn compare(view: &View, reference: &Picture, result: &Picture) -> Com
 
 fn differences(view: &View, pixel: [u32; 2], a: &Pixel, b: &Pixel) -> Vec<Violation> {
     let bounds = bounds(view, pixel, a);
-    // Two misses are equal, although the difference of two infinities is not a number.
+    // Two misses are equal, although the difference of two infinities is NaN.
     let same_depth = a.depth.to_bits() == b.depth.to_bits()
         || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
     let same_normal = distance(a.normal, b.normal) <= bounds.normal && is_unit_or_zero(b);
@@ -115,7 +114,7 @@ fn differences(view: &View, pixel: [u32; 2], a: &Pixel, b: &Pixel) -> Vec<Violat
     different.map(|(_, layer, values)| Violation::new(layer, pixel, values)).collect()
 }
 
-/// How far each layer may be from the reference.
+/// The largest allowed difference of each layer from the reference.
 struct PixelBounds {
     depth: f64,
     normal: f64,
@@ -134,22 +133,22 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     let cosine = normal.dot(ray.direction).abs();
 
     let depth = f64::from(reference.depth);
-    // A fisheye rounds the angle itself, relative to it: at that angle from the view, it is an arc's length.
+    // A fisheye rounds the angle itself, relative to it. At that angle from the view, the error is an arc's length.
     let arc = match view.camera.kind() {
         CameraKind::Fisheye => depth * view.camera.vectors().forward.angle_between(ray.direction),
         _ => 0.0,
     };
     let lengths = (ray.origin - view.scene.origin()).length() + depth + arc + radius;
     let displacement = DISPLACEMENT * lengths;
-    // A ray displaced sideways meets the sphere earlier or later: by displacement/cosine where the
-    // surface faces the ray, and at most by the half chord's change at the silhouette, sqrt(2 r d).
+    // A ray displaced sideways meets the sphere earlier or later. The change is displacement/cosine where the surface
+    // faces the ray, and at most the half chord's change at the silhouette, sqrt(2 r d).
     let along = displacement + (displacement / cosine).min((2.0 * radius * displacement).sqrt());
     let normal = (displacement + along) / radius;
     let brightest = view.scene.color(reference.id).to_array().into_iter().fold(0.0, f32::max);
     PixelBounds {
         depth: along,
         normal,
-        // On the exact ray, and rounded to f32 in the world.
+        // The error along the exact ray, and the rounding to f32 in the world.
         position: along + DISPLACEMENT * distance(reference.position, [0.0; 3]),
         color: match view.settings.integrator {
             Integrator::Primary(Shading::Flat) => 0.0,
@@ -158,7 +157,7 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     }
 }
 
-/// However far the bound lets a normal stray, it has unit length, up to rounding; a miss has none.
+/// A normal of any legal direction has unit length, up to rounding. That of a miss is zero.
 fn is_unit_or_zero(pixel: &Pixel) -> bool {
     let length = distance(pixel.normal, [0.0; 3]);
     let expected = if pixel.id == NO_ID { 0.0 } else { 1.0 };

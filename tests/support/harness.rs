@@ -1,11 +1,11 @@
-//! What tests on an adapter share: one device, and trials that are ignored where there is to be none.
+//! Helpers of tests on an adapter: one shared device, and trials that are ignored where no adapter is expected.
 
 use std::sync::LazyLock;
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 
-/// One device for all tests, so that it is opened, and printed, once.
+/// The device of all tests, which is opened, and printed, only once.
 static HEADLESS: LazyLock<Result<Headless, String>> = LazyLock::new(|| {
     Headless::open(&HeadlessOptions::default()).wait().map_err(|error| error.to_string())
 });
@@ -18,7 +18,7 @@ pub(crate) fn headless() -> Result<&'static Headless, Failed> {
     })
 }
 
-/// A trial from a plain function.
+/// Makes a trial of a plain function.
 pub(crate) fn trial(name: &str, test: fn(&'static Headless)) -> Trial {
     Trial::test(name, move || {
         test(headless()?);
@@ -26,7 +26,7 @@ pub(crate) fn trial(name: &str, test: fn(&'static Headless)) -> Trial {
     })
 }
 
-/// A trial for some adapters or systems. Where `lacking` gives a reason, nothing is run, and the trial counts as
+/// Makes a trial for some adapters or systems. If `lacking` gives a reason, nothing runs, and the trial counts as
 /// ignored.
 pub(crate) fn trial_unless(
     name: impl Into<String>,

@@ -30,7 +30,7 @@ impl Host {
         self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     }
 
-    /// A texture that passes draw to, and that is read or written with copies.
+    /// A texture that passes draw to, and that copies read or write.
     pub(crate) fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
         let usage = match format.is_depth_stencil_format() {
             true => wgpu::TextureUsages::RENDER_ATTACHMENT,
@@ -154,7 +154,7 @@ impl Layers {
         [&self.color, &self.depth, &self.normal, &self.id]
     }
 
-    /// Calls `then` with all layers, or only the colours.
+    /// Calls `then` with all layers, or with colour only.
     pub(crate) fn with<T>(&self, has_data: bool, then: impl FnOnce(&Targets<'_>) -> T) -> T {
         let [color, depth, normal, id] = self.all().map(view_of);
         let data = DataTargets { depth: &depth, normal: &normal, id: &id };

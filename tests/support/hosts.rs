@@ -1,9 +1,9 @@
-//! Matrices as host programs make them, written down from their definitions.
+//! Matrices of host programs, written down from their definitions.
 
 use pinhole::camera::{DepthOrder, Pose};
 use pinhole::glam::{DMat4, DQuat, DVec3, DVec4};
 
-/// How a host program computes depth.
+/// The way in which a host program computes depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Convention {
     Perspective,
@@ -81,8 +81,8 @@ pub(crate) fn view(pose: &Pose, into: f64) -> DMat4 {
     from_rows([row(basis.u()), row(basis.v()), row(-into * basis.w()), DVec4::W])
 }
 
-/// What hosts do to a scene: nothing, mirror it as for a reflecting plane, stretch and shear it, or place it in their world,
-/// smaller and turned.
+/// Changes that hosts make to a scene: none, a mirror image for a reflecting plane, stretching and shearing, or a place
+/// in their world, smaller and turned.
 pub(crate) fn changes() -> [DMat4; 4] {
     let mirror = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0));
     let stretch = DMat4::from_cols(

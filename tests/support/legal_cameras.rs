@@ -1,4 +1,4 @@
-//! The cameras of a device that does whatever WGSL leaves it free to do.
+//! The cameras of a simulated device that uses all the freedom of WGSL.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ pub(crate) struct LegalRay {
 }
 
 impl LegalDevice {
-    /// `camera_ray` of the cameras in `shaders/camera`.
+    /// Does what `camera_ray` of the cameras in `shaders/camera` does.
     pub(crate) fn camera_ray(
         &mut self,
         kind: CameraKind,
@@ -58,7 +58,7 @@ impl LegalDevice {
         (self.vector(|this, k| this.mul(toward[k], inverse)), length)
     }
 
-    /// a p + b q.
+    /// The vector a p + b q.
     fn sum(&mut self, a: f32, p: [f32; 3], b: f32, q: [f32; 3]) -> [f32; 3] {
         self.vector(|this, k| this.dot(&mut [(a, p[k]), (b, q[k])]))
     }
@@ -112,7 +112,7 @@ impl LegalDevice {
         LegalRay { origin: view.origin, direction, distance: 0.0, is_seen: radius <= 1.0 }
     }
 
-    /// The function of shaders/math/disk.wgsl.
+    /// Does what the function of shaders/math/disk.wgsl does.
     fn concentric_disk(&mut self, square: [f32; 2]) -> [f32; 2] {
         let spot = square.map(|x| self.mul_add(2.0, x, -1.0));
         let is_wide = spot[0].abs() > spot[1].abs();
@@ -125,7 +125,7 @@ impl LegalDevice {
         point.map(|x| self.mul(radius, x))
     }
 
-    /// The functions of shaders/math/trigonometry.wgsl.
+    /// Does what the functions of shaders/math/trigonometry.wgsl do.
     fn sin_cos_half_turns(&mut self, half_turns: f32) -> [f32; 2] {
         let quarters = (2.0 * half_turns).round_ties_even();
         let rest = half_turns - 0.5 * quarters;
@@ -149,7 +149,7 @@ impl LegalDevice {
         [self.add(angle, sine), self.add(1.0, cosine)]
     }
 
-    /// factor · z · (c₀ + z (c₁ + …)), or the same multiplied out.
+    /// The polynomial factor · z · (c₀ + z (c₁ + …)), as written or multiplied out.
     fn polynomial(&mut self, coefficients: &[f64], z: f32, factor: f32) -> f32 {
         let coefficients: Vec<f32> = coefficients.iter().map(|c| self.round(*c)).collect();
         if self.habit == Habit::Random && self.random.bool() {

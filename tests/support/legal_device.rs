@@ -1,4 +1,4 @@
-//! A device that does whatever WGSL leaves it free to do, at random: for tests that it is never accused.
+//! A simulated device that uses, at random, all the freedom that WGSL leaves. The checker must never accuse it.
 
 use fastrand::Rng;
 use pinhole::camera::CameraKind;
@@ -8,18 +8,18 @@ use pinhole::internals::NO_HIT;
 use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
-/// How it rounds.
+/// The rounding of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Habit {
-    /// As most real devices, which compute as plain f32 does.
+    /// To the nearest number, like most real devices, which compute in plain f32.
     Nearest,
-    /// Always up, or always down: errors add up.
+    /// Always up, or always down, so that errors add up.
     Up,
     Down,
-    /// Up where a bit is set, from the lowest bit on, and else down; quotients and roots by all that they may be.
+    /// Up for each bit that is set, lowest bit first, and else down. Quotients and roots are off by the legal limit.
     Chosen(u64),
-    /// Either neighbour, each time anew; fused or not; sums in any order; quotients and roots off by what
-    /// they may be; small numbers become zero.
+    /// Randomly to either neighbour in each operation, with fused or separate products, and sums in any order.
+    /// Quotients and roots have any legal error. Subnormal numbers become zero.
     Random,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct LegalDevice {
 }
 
 impl LegalDevice {
-    /// One of the neighbours of a number, or the number itself if there is such an f32.
+    /// Rounds a number to one of its neighbours, or returns the number itself if it is an f32.
     pub(crate) fn round(&mut self, exact: f64) -> f32 {
         let nearest = exact as f32;
         if self.habit == Habit::Nearest {
@@ -54,14 +54,14 @@ impl LegalDevice {
         }
     }
 
-    /// Which way the next operation of a device rounds that was told so.
+    /// The direction in which the next operation of [`Habit::Chosen`] rounds.
     fn next_bit(&mut self) -> bool {
         let Habit::Chosen(bits) = self.habit else { return false };
         self.habit = Habit::Chosen(bits.rotate_right(1));
         bits & 1 != 0
     }
 
-    /// Off by up to so many ULP.
+    /// A result that is off by up to `ulps` ULP.
     pub(crate) fn off(&mut self, exact: f64, ulps: f64) -> f32 {
         let rounded = self.round(exact);
         if self.habit == Habit::Nearest || rounded == 0.0 {
@@ -75,7 +75,7 @@ impl LegalDevice {
             Habit::Down | Habit::Chosen(_) => -1.0,
             _ => self.random.f64() * 2.0 - 1.0,
         };
-        // Truncated, so that it is off by no more.
+        // Truncated, so that the error does not exceed `ulps`.
         let off = exact + part * (ulps - 0.5) * ulp * 0.99;
         off as f32
     }
@@ -88,7 +88,7 @@ impl LegalDevice {
         self.round(f64::from(a) * f64::from(b))
     }
 
-    /// a b + c, perhaps fused.
+    /// Computes a b + c, possibly fused.
     pub(crate) fn mul_add(&mut self, a: f32, b: f32, c: f32) -> f32 {
         if self.habit == Habit::Random && self.random.bool() {
             self.round(f64::from(a) * f64::from(b) + f64::from(c))
@@ -98,7 +98,7 @@ impl LegalDevice {
         }
     }
 
-    /// The quotient, or the product with the inverse, which compilers put in its place.
+    /// The quotient, or the product with the inverse, by which compilers may replace it.
     pub(crate) fn divide(&mut self, a: f32, b: f32) -> f32 {
         if matches!(self.habit, Habit::Chosen(_))
             || self.habit != Habit::Nearest && self.random.bool()
@@ -113,7 +113,7 @@ impl LegalDevice {
         self.off(f64::from(a).sqrt(), 4.5)
     }
 
-    /// A sum of products, in any order.
+    /// The sum of products, in any order.
     pub(crate) fn dot(&mut self, products: &mut [(f32, f32)]) -> f32 {
         if self.habit == Habit::Random {
             self.random.shuffle(products);
@@ -125,7 +125,7 @@ impl LegalDevice {
         sum
     }
 
-    /// The lines of `intersect_sphere` in shaders/scene/sphere.wgsl that lead to its roots.
+    /// The lines of `intersect_sphere` in shaders/scene/sphere.wgsl that lead to the roots.
     pub(crate) fn triangle(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> Triangle {
         let (center, d) = ([x, y, z], ray.direction);
         let l = [0, 1, 2].map(|k| self.add(center[k], -ray.origin[k]));
@@ -134,7 +134,7 @@ impl LegalDevice {
         let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
         let [fx, fy, fz] = squares(foot, -1.0);
         let discriminant = match self.habit {
-            // As the kernel says it; in any order, it may be otherwise.
+            // In the order of the kernel. Other habits may use any order.
             Habit::Nearest => self.dot(&mut [fx, fy, fz]) + radius * radius,
             _ => self.dot(&mut [(radius, radius), fx, fy, fz]),
         };
@@ -145,7 +145,7 @@ impl LegalDevice {
         Triangle { b, foot, discriminant, c, from_foot }
     }
 
-    /// `intersect_sphere` of shaders/scene/sphere.wgsl.
+    /// Does what `intersect_sphere` of shaders/scene/sphere.wgsl does.
     pub(crate) fn intersect(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> f32 {
         let Triangle { b, discriminant, c, from_foot, .. } = self.triangle(ray, sphere);
         let t = if self.mul(b, from_foot) >= 0.0 {
@@ -158,7 +158,7 @@ impl LegalDevice {
     }
 }
 
-/// Of ray, foot point and hit.
+/// The right triangle of ray, foot point and hit.
 pub(crate) struct Triangle {
     b: f32,
     pub(crate) foot: [f32; 3],
@@ -167,7 +167,7 @@ pub(crate) struct Triangle {
     pub(crate) from_foot: f32,
 }
 
-/// The kernels of a picture, one after the other.
+/// The kernels of a picture, in their order.
 impl LegalDevice {
     pub(crate) fn vector(
         &mut self,
@@ -176,7 +176,7 @@ impl LegalDevice {
         [0, 1, 2].map(|k| component(self, k))
     }
 
-    /// `relative_location` of shaders/camera/film.wgsl.
+    /// Does what `relative_location` of shaders/camera/film.wgsl does.
     fn location(&mut self, film: &Film, pixel: [u32; 2]) -> [f32; 2] {
         let sign = if film.y_axis() == YAxis::Up { -1.0 } else { 1.0 };
         let along = |this: &mut Self, i: u32, side: u32| {
@@ -187,7 +187,7 @@ impl LegalDevice {
         [x, sign * along(self, pixel[1], film.height())]
     }
 
-    /// The ray of a pixel in the scene's box, and whether it meets that.
+    /// The ray of a pixel in the scene's box, and whether it meets the box.
     pub(crate) fn ray(
         &mut self,
         kind: CameraKind,
@@ -202,7 +202,7 @@ impl LegalDevice {
         (TracedRay { distance, ..entered }, ray.is_seen && is_inside)
     }
 
-    /// `enter_scene` of shaders/scene/enter.wgsl, and whether the ray meets the box.
+    /// Does what `enter_scene` of shaders/scene/enter.wgsl does. Also returns whether the ray meets the box.
     pub(crate) fn enter(
         &mut self,
         view: &UploadedView,
@@ -224,7 +224,7 @@ impl LegalDevice {
         (TracedRay { origin, direction, distance: near }, near <= far)
     }
 
-    /// `sphere_normal` of shaders/scene/sphere.wgsl.
+    /// Does what `sphere_normal` of shaders/scene/sphere.wgsl does.
     fn normal(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> [f32; 3] {
         let Triangle { foot, from_foot, .. } = self.triangle(ray, sphere);
         let d = ray.direction;
@@ -234,8 +234,8 @@ impl LegalDevice {
         self.vector(|this, k| this.divide(outward[k], length))
     }
 
-    /// A picture of headlight-lit spheres. `made` is a recording of the same view: of it only what the device is
-    /// given is used.
+    /// Renders a picture of headlight-lit spheres. `made` is a recording of the same view, of which only the device's
+    /// input is used.
     pub(crate) fn record(&mut self, scene: &Scene, made: &Recording) -> Recording {
         let Recording { camera, uploaded, film, primary, .. } = made;
         let mut layers = Vec::new();
@@ -257,7 +257,7 @@ impl LegalDevice {
                 layers.push(if id == NO_ID {
                     Pixel::miss(primary.background.to_array())
                 } else {
-                    // Another kernel makes the ray anew.
+                    // Another kernel computes the ray again.
                     let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
                     shading_ray = Some(again);
                     let normal = self.normal(&again, scene.spheres()[id as usize]);
@@ -275,7 +275,7 @@ impl LegalDevice {
     }
 }
 
-/// All layers of pixels, row by row from the top.
+/// A picture with all layers of the pixels, row by row from the top.
 fn image_of(film: &Film, pixels: &[Pixel]) -> Image {
     Image::from_layers(
         [film.width(), film.height()],

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 
-/// Not turned.
+/// The rotation of a map that is not turned.
 pub(crate) const AS_IT_IS: [f32; 2] = [1.0, 0.0];
 
 /// Texels whose brightness varies over five orders of magnitude, some black, and a black row if there are three.
@@ -20,7 +20,7 @@ pub(crate) fn random_map(seed: u64, [width, height]: [u32; 2]) -> Environment {
     Environment::new(width, height, texels.collect()).unwrap()
 }
 
-/// By parts of the way around, from the left edge of the map, and from up to down.
+/// The direction at fractions of the way around, from the left edge of the map, and of the way from up to down.
 pub(crate) fn direction(around: f64, down: f64) -> DVec3 {
     let ((sine, cosine), (radius, y)) = ((TAU * (around - 0.5)).sin_cos(), (PI * down).sin_cos());
     DVec3::new(radius * sine, y, -radius * cosine)

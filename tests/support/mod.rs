@@ -1,4 +1,4 @@
-//! Shared by the CPU and the GPU tests.
+//! Helpers that the CPU and the GPU tests share.
 #![allow(dead_code, reason = "each test program uses some of it")]
 
 pub(crate) mod appearances;
@@ -16,13 +16,13 @@ use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, Shading, Sphere};
 
 pub(crate) use view::View;
 
-/// Primary rays, shaded over a background.
+/// Settings for primary rays with a shading and a background.
 pub(crate) fn shaded(shading: Shading, background: LinearRgb) -> RenderSettings {
     let integrator = Integrator::Primary(shading);
     RenderSettings { integrator, background, ..RenderSettings::default() }
 }
 
-/// The spheres of a scene one by one, to be changed.
+/// The spheres of a scene, one by one, so that a test can change them.
 pub(crate) fn spheres_of(scene: &Scene) -> Vec<Sphere> {
     let one = |(id, s): (u32, &[f32; 4])| {
         let [x, y, z, radius] = s.map(f64::from);

@@ -1,5 +1,5 @@
-//! Random lit scenes whose paths are followed: all kinds of materials, lights, skies, grounds and cameras, spheres in
-//! the place of others, and eyes inside spheres. The same seed is the same scene.
+//! Random lit scenes: all kinds of materials, lights, skies, grounds and cameras, coincident spheres, and eyes inside
+//! spheres. The same seed gives the same scene.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use pinhole::{
     Sphere, SphereArray,
 };
 
-/// A scene, how it is lit and seen, and what there is in it, in words.
+/// A scene, its lighting and view, and a description of it in words.
 pub(crate) struct RandomView {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
@@ -28,12 +28,12 @@ pub(crate) struct RandomView {
     pub(crate) name: String,
 }
 
-/// The view of a seed, with light along paths.
+/// The view of a seed, with the path integrator.
 pub(crate) fn view(seed: u64) -> RandomView {
     view_with(seed, Random::settings)
 }
 
-/// The view of a seed in a studio.
+/// The view of a seed, with the studio integrator.
 pub(crate) fn studio(seed: u64) -> RandomView {
     view_with(seed, Random::studio)
 }
@@ -59,7 +59,7 @@ fn view_with(seed: u64, settings: fn(&mut Random) -> RenderSettings) -> RandomVi
     RandomView { scene, camera, film: Film::new(24, 18).unwrap(), settings, name }
 }
 
-/// Half the side of the cube in which centres are.
+/// Half the side of the cube that contains all centres.
 const SIDE: f64 = 2.0;
 
 struct Random(Rng);
@@ -77,7 +77,7 @@ impl Random {
         DVec3::from([0; 3].map(|_| self.between(-half, half)))
     }
 
-    /// Of any length but none.
+    /// A random direction of random length, never zero.
     fn direction(&mut self) -> DVec3 {
         let [longitude, y] = [self.between(0.0, TAU), self.between(-0.95, 0.95)];
         let across = (1.0 - y * y).sqrt();
@@ -85,7 +85,7 @@ impl Random {
         DVec3::new(across * longitude.cos(), y, across * longitude.sin()) * length
     }
 
-    /// With components up to this, some of them nothing or all of it.
+    /// A random colour with components up to `most`. Some of them are zero or `most`.
     fn color(&mut self, most: f32) -> LinearRgb {
         let component = |random: &mut Self| match random.0.u32(0..12) {
             0 => 0.0,
@@ -129,7 +129,7 @@ impl Random {
         }
     }
 
-    /// The spheres with their own colors, with bytes and alpha in their place, or with numbers and a color map.
+    /// A scene of the spheres with their own colours, with bytes and alpha instead, or with numbers and a colour map.
     fn scene(&mut self, spheres: &[Sphere]) -> Scene {
         let count = spheres.len();
         let colors = match self.0.u32(0..3) {
@@ -158,7 +158,7 @@ impl Random {
 
     fn spheres(&mut self) -> Vec<Sphere> {
         let is_matt = self.chance(0.2);
-        // So many that there is a structure, or not.
+        // Either so many spheres that there is a structure, or few.
         let count = if self.chance(0.15) { self.0.usize(40..120) } else { self.0.usize(1..24) };
         let [translucent, coincident] = [0.5, 0.4].map(|share| {
             let is_any = self.chance(0.6);
@@ -173,7 +173,7 @@ impl Random {
                 self.color(1.0),
             );
             if !spheres.is_empty() && self.chance(coincident) {
-                // In the place of another: the same, of another surface, in it, or around it.
+                // Coincides with another sphere: equal, with another surface, inside it, or around it.
                 let other = spheres[self.0.usize(0..spheres.len())];
                 match self.0.u32(0..4) {
                     0 => {
@@ -287,7 +287,7 @@ impl Random {
     }
 
     fn studio(&mut self) -> RenderSettings {
-        // More lights and directions than are taken at once, or fewer.
+        // More lights and directions than a kernel takes at once, or fewer.
         let lights = if self.chance(0.05) { 40 } else { self.0.usize(0..5) };
         let directions = if self.chance(0.05) { 40 } else { self.0.u32(1..6) };
         let radius = self.chance(0.6).then(|| self.between(0.1, 3.0));

@@ -1,23 +1,23 @@
-//! Scenes that a structure may lose spheres in: what is equal, nested, flat, in step with cells, far away, or
-//! of uneven size and density.
+//! Scenes in which a structure may lose spheres: equal, nested, flat, aligned with cells, far away, or of uneven size
+//! and density.
 
 use fastrand::Rng;
 
-/// Centre and radius of each, in the scene's frame.
+/// Centre and radius of each sphere, in the scene's frame.
 pub(crate) type Spheres = Vec<[f32; 4]>;
 
-/// In the unit cube.
+/// Spheres at random positions in the unit cube.
 pub(crate) fn random(count: usize, seed: u64, radius: impl Fn(&mut Rng) -> f32) -> Spheres {
     let mut rng = Rng::with_seed(seed);
     (0..count).map(|_| [rng.f32(), rng.f32(), rng.f32(), radius(&mut rng)]).collect()
 }
 
-/// Coordinates and radii times a factor.
+/// The same spheres with coordinates and radii times a factor.
 pub(crate) fn scaled(spheres: &Spheres, factor: f32) -> Spheres {
     spheres.iter().map(|sphere| sphere.map(|x| x * factor)).collect()
 }
 
-/// Radii from 0.3 down to 0.00003.
+/// Spheres with radii from 0.3 down to 0.00003.
 pub(crate) fn four_decades(count: usize) -> Spheres {
     random(count, 4, |rng| 10_f32.powf(-4.0 * rng.f32() - 0.5))
 }
@@ -26,32 +26,32 @@ pub(crate) fn coincident(count: usize) -> Spheres {
     vec![[0.0, 0.0, 0.0, 1.0]; count]
 }
 
-/// One centre, many radii.
+/// Spheres with one centre and many radii.
 pub(crate) fn concentric(count: usize) -> Spheres {
     (0..count).map(|i| [7.0, 7.0, 7.0, 1.0 + i as f32 * 1e-3]).collect()
 }
 
-/// Equal pairs, so that every answer is a tie.
+/// Equal pairs of spheres, so that every answer is a tie.
 pub(crate) fn twice(count: usize) -> Spheres {
     let mut spheres = random(count, 5, |_| 0.03);
     spheres.extend_from_within(..);
     spheres
 }
 
-/// Pairs, each other's mirror images in the plane y = 0. A ray in it meets both at one distance, but of the large
-/// ones on its way through cells that only one of them is listed in. Either has the smaller id.
+/// Pairs of spheres that are mirror images in the plane y = 0. A ray in that plane meets both at the same distance. On
+/// its way to the large ones, it crosses cells that list only one of the two. Either has the smaller id.
 pub(crate) fn mirrored(pairs: usize) -> Spheres {
     let mut rng = Rng::with_seed(16);
     let pairs = (0..pairs).flat_map(|i| {
         let (x, z, side) = (rng.f32(), rng.f32(), if rng.bool() { 1.0 } else { -1.0 });
-        // Small ones beside the plane make the cells small.
+        // Small spheres beside the plane make the cells small.
         let (y, radius) = if i % 32 == 0 { (0.08, 0.1) } else { (0.2 + 0.2 * rng.f32(), 0.005) };
         [[x, side * y, z, radius], [x, -side * y, z, radius]]
     });
     pairs.collect()
 }
 
-/// A sheet far behind a single sphere: boxes that are thin beside the way to them.
+/// A sheet of spheres far behind a single sphere. Its boxes are thin beside their distance.
 pub(crate) fn distant_sheet(count: usize) -> Spheres {
     let sheet = random(count, 17, |_| 0.05).into_iter();
     let mut spheres: Spheres = sheet.map(|[x, y, _, r]| [x * 40.0, y * 40.0, 0.0, r]).collect();
@@ -59,27 +59,27 @@ pub(crate) fn distant_sheet(count: usize) -> Spheres {
     spheres
 }
 
-/// One centre, and radii so close together that no structure tells them apart.
+/// Spheres with one centre, and radii so close together that no structure can separate them.
 pub(crate) fn nearly_coincident(count: usize) -> Spheres {
     (0..count).map(|i| [0.0, 0.0, 0.0, 1.0 + i as f32 * f32::EPSILON]).collect()
 }
 
-/// Each touches the next.
+/// Spheres in a row. Each touches the next.
 pub(crate) fn line(count: usize) -> Spheres {
     (0..count).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect()
 }
 
-/// Each inside the next.
+/// Nested spheres. Each is inside the next.
 pub(crate) fn nested(count: usize) -> Spheres {
     (0..count).map(|i| [i as f32 * 1e-3, 0.0, 0.0, 1.0 + i as f32]).collect()
 }
 
-/// Along a line, each larger and farther by the same factor.
+/// Spheres along a line. Each is larger and farther away by the same factor.
 pub(crate) fn geometric(count: i32) -> Spheres {
     (0..count).map(|i| [1.03_f32.powi(i), 0.0, 0.0, 0.01 * 1.03_f32.powi(i)]).collect()
 }
 
-/// Face-centred cubic, touching neighbours, with integer centres.
+/// A face-centred cubic lattice of touching spheres with integer centres.
 pub(crate) fn lattice(side: usize) -> Spheres {
     (0..side * side * side)
         .filter_map(|i| {
@@ -90,14 +90,14 @@ pub(crate) fn lattice(side: usize) -> Spheres {
         .collect()
 }
 
-/// A huge one around many small ones.
+/// A huge sphere around many small ones.
 pub(crate) fn one_around_all(count: usize) -> Spheres {
     let mut around = random(count, 6, |_| 0.005);
     around.insert(count / 3, [0.5, 0.5, 0.5, 3.0]);
     around
 }
 
-/// Dense in a few places, of sizes from 1 to 0.001.
+/// Dense clusters in a few places, with sizes from 1 to 0.001.
 pub(crate) fn clusters(count: usize, each: usize) -> Spheres {
     let mut rng = Rng::with_seed(8);
     (0..count)
@@ -113,29 +113,29 @@ pub(crate) fn clusters(count: usize, each: usize) -> Spheres {
         .collect()
 }
 
-/// Coordinates about 10⁷, where neighbours in f32 are 1 apart, and radii of 10⁻².
+/// Spheres with coordinates about 10⁷, where neighbours in f32 are 1 apart, and radii of 10⁻².
 pub(crate) fn far(count: usize) -> Spheres {
     scaled(&random(count, 9, |_| 1e-9), 1e7)
 }
 
-/// All in a plane.
+/// Spheres whose centres all lie in one plane.
 pub(crate) fn flat(count: usize) -> Spheres {
     random(count, 11, |_| 0.004).into_iter().map(|[x, y, _, r]| [x, y, 0.25, r]).collect()
 }
 
-/// All on a line, and far apart.
+/// Spheres whose centres all lie on one line, far apart.
 pub(crate) fn needle(count: usize) -> Spheres {
     random(count, 12, |_| 1e-4).into_iter().map(|[x, _, _, r]| [0.5, 0.5, x, r]).collect()
 }
 
-/// Many in a small place, and a huge one far away.
+/// Many spheres in a small place, and a huge one far away.
 pub(crate) fn outlier(count: usize) -> Spheres {
     let mut spheres = random(count, 13, |_| 0.02);
     spheres.push([3e4, -2e4, 1e4, 2e3]);
     spheres
 }
 
-/// A crowd in a corner of what is nearly empty: grids inside cells, and long ways through empty ones.
+/// A crowd in a corner of a nearly empty box. It gives grids inside cells, and long ways through empty cells.
 pub(crate) fn crowd(count: usize) -> Spheres {
     let mut spheres = random(count, 14, |_| 0.02);
     for sphere in &mut spheres {
@@ -145,8 +145,8 @@ pub(crate) fn crowd(count: usize) -> Spheres {
     spheres
 }
 
-/// A crowd in the unit cube, and among its spheres some outliers at up to `far` times its size; far along one axis only if
-/// `is_in_line`.
+/// A crowd in the unit cube, with some outliers in the list of its spheres, at up to `far` times its size. They are far
+/// along only one axis if `is_in_line`.
 pub(crate) fn crowd_and_outliers(
     count: usize,
     outliers: usize,
@@ -162,7 +162,7 @@ pub(crate) fn crowd_and_outliers(
             place = [far * (0.5 + rng.f32()), 0.5, 0.5];
         }
         let [x, y, z] = place;
-        // Most are like the others; some are as large as the crowd, and more.
+        // Most outliers are as small as the others. Some are as large as the crowd, or larger.
         let radius = if i % 8 == 7 { 0.05 * far } else { 0.02 };
         spheres.insert(rng.usize(..=spheres.len()), [x, y, z, radius]);
     }

@@ -1,10 +1,10 @@
-//! One picture to be made.
+//! A scene with the camera, the film and the settings for one picture of it.
 
 use pinhole::camera::Camera;
 use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, cpu};
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile};
 
-/// One picture to be made.
+/// A scene with the camera, the film and the settings for one picture of it.
 #[derive(Debug)]
 pub(crate) struct View {
     pub(crate) scene: Scene,
@@ -14,7 +14,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// What a scene file without data shows.
+    /// The view of a scene file without data.
     pub(crate) fn from_toml(text: &str) -> Self {
         let file = SceneFile::parse(text).unwrap();
         let scene = file.scene(&[]).unwrap();
@@ -28,17 +28,17 @@ impl View {
         Self::from_toml(include_str!("../../examples/three-spheres.toml"))
     }
 
-    /// The same scene, seen in parallel.
+    /// The same scene with an orthographic camera.
     pub(crate) fn three_spheres_orthographic() -> Self {
         Self::from_toml(include_str!("../../examples/three-spheres-orthographic.toml"))
     }
 
-    /// Its camera and film.
+    /// The camera and the film.
     pub(crate) fn seen(&self) -> pinhole::View<'_> {
         pinhole::View::new(self.camera.as_ref(), self.film)
     }
 
-    /// As the CPU reference sees it.
+    /// The picture of the CPU reference.
     pub(crate) fn reference(&self) -> Image {
         cpu::render(&self.scene, &self.seen(), &self.settings, LayerSet::ALL).unwrap()
     }

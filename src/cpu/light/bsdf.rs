@@ -1,4 +1,4 @@
-//! BSDFs: how surfaces scatter light. Directions are in a frame with the normal on the viewer's side as z.
+//! BSDFs, which say how surfaces scatter light. Directions are in a frame whose z is the normal on the viewer's side.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use super::surface_ray::Interaction;
 use crate::light::energy::{self, ENTRIES};
 use crate::scene::material::Material;
 
-/// The smallest cosine of a direction; smaller ones are replaced by it.
+/// The smallest cosine of a direction. Smaller ones are replaced by it.
 const MIN_COSINE: f64 = 1e-6;
 
 /// The BSDF of a surface at a point, for light towards a given direction.
@@ -28,7 +28,7 @@ enum Kind {
 }
 
 impl Bsdf {
-    /// The BSDF of a surface for light towards the local direction `out`; `None` for an emissive sphere, which does not
+    /// The BSDF of a surface for light towards the local direction `out`. `None` for an emissive sphere, which does not
     /// scatter light.
     pub(super) fn of(
         context: &LightingContext<'_>,
@@ -66,7 +66,7 @@ impl Bsdf {
         Some(Self { out, kind })
     }
 
-    /// The BSDF that the studio integrator uses: metal and glass become matt; Lambert surfaces keep their lobe.
+    /// The BSDF that the studio integrator uses. Metal and glass become matt. Lambert surfaces keep their lobe.
     pub(super) fn in_studio(
         context: &LightingContext<'_>,
         interaction: &Interaction,
@@ -82,7 +82,7 @@ impl Bsdf {
         })
     }
 
-    /// The response to light from a direction. `None` for directions from behind, and for glass, whose light comes only
+    /// The response to light from a direction. `None` for directions from behind, and for glass, which gets light only
     /// from scattered rays.
     pub(super) fn response(&self, into: DVec3) -> Option<Response> {
         if into.z <= 0.0 {
@@ -100,7 +100,7 @@ impl Bsdf {
         !matches!(self.kind, Kind::Dielectric(_))
     }
 
-    /// A random scattered direction; `None` if the light is lost.
+    /// Chooses a random scattered direction. `None` if the light is lost.
     pub(super) fn scatter(&self, u: [u32; 2], choice: f64) -> Option<BsdfSample> {
         match &self.kind {
             Kind::Lambert(lambert) => lambert.scatter(self.out, u, choice),
@@ -121,10 +121,10 @@ pub(super) struct Response {
 /// A direction chosen at random by a BSDF.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BsdfSample {
-    /// On the other side of the surface if its z is negative.
+    /// The direction. If its z is negative, it is on the other side of the surface.
     pub(super) direction: DVec3,
     pub(super) weight: DVec3,
-    /// Density per steradian; `None` if light sampling cannot choose the direction.
+    /// The density per steradian. `None` if light sampling cannot choose the direction.
     pub(super) density: Option<f64>,
 }
 
@@ -182,7 +182,7 @@ impl Conductor {
         self.color + (1.0 - self.color) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
     }
 
-    /// The factor that compensates for light that is scattered several times within the surface, after Turquin.
+    /// The factor that compensates for light that is scattered several times within the surface, after E. Turquin.
     fn compensation(&self) -> DVec3 {
         1.0 + self.color * ((1.0 - self.energy) / self.energy)
     }
@@ -211,7 +211,7 @@ impl Conductor {
 }
 
 /// Glass. `eta` is the index of refraction on the far side relative to the viewer's side. `rough` is the distribution
-/// of normals and the energy that it keeps; `None` for smooth glass.
+/// of normals and the energy that it keeps. `None` for smooth glass.
 #[derive(Clone, Copy, Debug)]
 struct Dielectric {
     eta: f64,
@@ -238,8 +238,8 @@ impl Dielectric {
     }
 }
 
-/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction (Fresnel's
-/// equations).
+/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction, by Fresnel's
+/// equations.
 fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
     if sine_squared >= 1.0 {
@@ -261,7 +261,7 @@ impl Ggx {
         Self(f64::from(roughness) * f64::from(roughness))
     }
 
-    /// Smith's Λ at a cosine.
+    /// Smith's function Λ at a cosine.
     fn lambda(self, cosine: f64) -> f64 {
         let square = cosine * cosine;
         0.5 * ((1.0 + self.0 * self.0 * (1.0 - square) / square).sqrt() - 1.0)

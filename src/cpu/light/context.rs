@@ -1,5 +1,5 @@
-//! The lighting context: all data that is the same for every ray of a picture, in the scene's frame; and light sampling of
-//! the path integrator: a sample of a light source, and the densities of directions.
+//! The lighting context: all data that is the same for every ray of a picture, in the scene's frame. Also the light
+//! sampling of the path integrator: samples of light sources, and the densities of directions.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::scene::material::Material;
 
 #[derive(Debug)]
 pub(super) struct LightingContext<'a> {
-    /// How rays find spheres.
+    /// The way in which rays find spheres.
     pub(super) search: Search<'a>,
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a RenderSettings,
@@ -51,7 +51,7 @@ pub(super) struct Plane {
     pub(super) is_shadow_catcher: bool,
 }
 
-/// An image of the sky, which is not black.
+/// An image of the sky that is not black.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SkyImage<'a> {
     pub(super) environment: &'a Environment,
@@ -135,7 +135,7 @@ impl<'a> LightingContext<'a> {
         }
     }
 
-    /// The radiance that a surface emits; `None` if it is not emissive.
+    /// The radiance that a surface emits. `None` if it is not emissive.
     pub(super) fn emission(&self, surface: Surface) -> Option<DVec3> {
         let Surface::Sphere(id) = surface else { return None };
         match self.scene.surface(id).material {
@@ -144,7 +144,7 @@ impl<'a> LightingContext<'a> {
         }
     }
 
-    /// The energy table of a sphere's material, starting `skip` entries after its beginning.
+    /// The entries of the energy table of a sphere's material, without the first `skip` ones.
     pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
         let surface = self.scene.checked_appearance().surface_index(id) as usize;
         let start = self.energies.starts[surface].map_or(0, |start| start as usize);
@@ -169,15 +169,15 @@ pub(super) struct LightSample {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SampledLight {
-    /// For a light that scattered rays cannot hit: radiance that a white surface facing it would reflect, divided by
-    /// the probability of the choice.
+    /// For a light that scattered rays cannot hit, the radiance that a white surface facing it would reflect, divided
+    /// by the probability of the choice.
     Lamp(DVec3),
-    /// Radiance, and the density per steradian with which the direction was sampled.
+    /// For other lights, radiance, and the density per steradian with which the direction was sampled.
     Radiance(DVec3, f64),
 }
 
 impl LightingContext<'_> {
-    /// A sample of a randomly chosen light source, seen from a point.
+    /// Samples a randomly chosen light source, seen from a point.
     pub(super) fn sample_light(
         &self,
         point: DVec3,
@@ -223,7 +223,7 @@ impl LightingContext<'_> {
         let k = cone_of_sphere(radius, distance)?;
         let direction = TangentFrame::around(to_center / distance).to_scene(cone(u, k));
         let surface = Surface::Sphere(id);
-        // The near side of the sphere, weighted by its opacity; scattered rays find the light of the far side.
+        // The near side of the sphere, weighted by its opacity. Scattered rays find the light of the far side.
         let radiance = self.emission(surface)? * self.opacity(surface);
         let density = self.density_at_emitter(point, id)?;
         Some(LightSample {
@@ -234,16 +234,16 @@ impl LightingContext<'_> {
         })
     }
 
-    /// The density with which light sampling at a point chooses each direction towards an emissive sphere; `None` from
-    /// inside.
+    /// The density with which light sampling at a point chooses each direction towards an emissive sphere. `None` from
+    /// inside the sphere.
     pub(super) fn density_at_emitter(&self, point: DVec3, id: u32) -> Option<f64> {
         let (center, radius) = self.sphere(id);
         let k = cone_of_sphere(radius, (center - point).length())?;
         Some(self.emitters.probability(id) * cone_density(k) / self.sources.count())
     }
 
-    /// The radiance of the sky, and the density with which light sampling chooses the direction; `None` if it does not
-    /// sample the sky.
+    /// The radiance of the sky, and the density with which light sampling chooses the direction. The density is `None`
+    /// if light sampling does not sample the sky.
     pub(super) fn sky(&self, direction: DVec3) -> (DVec3, Option<f64>) {
         let density = self.sky_image.map(|image| {
             image.environment.density(direction, image.rotation) / self.sources.count()

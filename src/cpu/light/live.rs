@@ -1,5 +1,5 @@
-//! Live pictures: visible shares of light, with one ray to a lamp and a few of ambient light for each pixel and frame, are
-//! averaged over frames and over neighbouring pixels.
+//! Live pictures: each frame has one ray to a lamp and a few rays of ambient light per pixel. The visible shares of
+//! light are averaged over frames and over neighbouring pixels.
 
 use std::f64::consts::PI;
 
@@ -20,13 +20,13 @@ use crate::image::NO_ID;
 use crate::light::LightKind;
 use crate::render::{Integrator, RenderSettings, Studio};
 
-/// Number of rays of ambient light for each pixel and frame.
+/// The number of rays of ambient light for each pixel and frame.
 const OCCLUSION_RAYS: u32 = 2;
-/// Maximum number of frames in an average, and that of lamps which have just moved.
+/// The largest number of frames in an average, in general and for lamps that have just moved.
 const MOST: u32 = 64;
 const MOST_MOVING: u32 = 4;
 
-/// The frames of a live picture, one after another.
+/// Renders the frames of a live picture, one after another.
 #[derive(Debug, Default)]
 pub struct LiveReference {
     known: Vec<History>,
@@ -41,9 +41,9 @@ pub struct LiveFrame {
     pub color: Vec<[f64; 3]>,
     /// Opacities.
     pub alpha: Vec<f64>,
-    /// Distances along rays; infinite for misses.
+    /// Distances along rays. Infinite for misses.
     pub depth: Vec<f64>,
-    /// Ids of spheres; `NO_ID` for the ground and for misses.
+    /// Ids of spheres. `NO_ID` for the ground and for misses.
     pub id: Vec<u32>,
 }
 
@@ -54,7 +54,7 @@ struct Before {
     lights: Vec<LightKind>,
 }
 
-/// What is known of the light at a pixel.
+/// The averages of light at a pixel over earlier frames.
 #[derive(Clone, Copy, Debug)]
 struct History {
     shares: DVec2,
@@ -64,8 +64,8 @@ struct History {
 }
 
 impl LiveReference {
-    /// Renders the next frame of the same spheres. Only the camera and the lamps may differ between frames. `None` if the
-    /// integrator is not `studio`.
+    /// Renders the next frame of the same spheres. Only the camera and the lamps may differ between frames. Returns
+    /// `None` if the integrator is not `studio`.
     pub fn frame(
         &mut self,
         search: Search<'_>,
@@ -122,7 +122,7 @@ impl LiveReference {
         Some(frame)
     }
 
-    /// What the frame before knew of a point in world space.
+    /// The history of the previous frame at a point in world space.
     fn found_before(
         &self,
         view: &View<'_>,
@@ -158,7 +158,7 @@ impl LiveReference {
     }
 }
 
-/// The place in pixels, as column and row, of a relative location on the film.
+/// The column and row, in pixels, of a relative location on the film.
 fn place_of(view: &View<'_>, location: DVec2) -> [f64; 2] {
     let down = match view.film.y_axis() {
         YAxis::Up => -location.y,
@@ -168,14 +168,14 @@ fn place_of(view: &View<'_>, location: DVec2) -> [f64; 2] {
     [part(location.x, view.film.width()), part(down, view.film.height())]
 }
 
-/// Index of the pixel at a column and row, if it is in the picture.
+/// The index of the pixel at a column and row, if it is in the picture.
 fn pixel_number(view: &View<'_>, [column, row]: [f64; 2]) -> Option<usize> {
     let (width, height) = (f64::from(view.film.width()), f64::from(view.film.height()));
     let is_inside = column >= 0.0 && row >= 0.0 && column < width && row < height;
     is_inside.then_some((row * width + column) as usize)
 }
 
-/// Height of a pixel at a distance.
+/// The height of a pixel at a distance.
 fn footprint(view: &View<'_>, distance: f64) -> f64 {
     let CameraVectors { up, forward, .. } = view.camera.vectors();
     let height = 2.0 * up.length() / f64::from(view.film.height());
@@ -185,7 +185,7 @@ fn footprint(view: &View<'_>, distance: f64) -> f64 {
     }
 }
 
-/// The mean of the shares of a pixel and of neighbours that show the same surface.
+/// The mean of the shares of a pixel and of those neighbours that show the same surface.
 fn smoothed(view: &View<'_>, [x, y]: [u32; 2], known: &[History], found: &[LivePixel]) -> DVec2 {
     let index = (y * view.film.width() + x) as usize;
     let own = known[index];
@@ -214,16 +214,16 @@ struct Shade {
     alpha: f64,
 }
 
-/// What a pixel shows: `steady`, plus `lamps` and `ambient` times their visible shares.
+/// The light of a pixel: `steady`, plus `lamps` and `ambient` times their visible shares.
 #[derive(Clone, Copy, Debug)]
 struct LivePixel {
     steady: Shade,
     lamps: Shade,
     ambient: Shade,
-    /// The visible shares of lamps and of ambient light, from one ray and from a few.
+    /// The visible shares of lamps and of ambient light, from one ray and from a few rays.
     shares: [f64; 2],
     normal: DVec3,
-    /// Distance along the ray; infinite for a miss.
+    /// The distance along the ray. Infinite for a miss.
     depth: f64,
     id: u32,
 }
@@ -233,7 +233,7 @@ struct LiveLight<'a> {
     context: LightingContext<'a>,
     studio: &'a Studio,
     view: View<'a>,
-    /// That of the frame, which determines the random numbers.
+    /// The number of the frame, which determines the random numbers.
     number: u32,
 }
 
@@ -315,7 +315,7 @@ impl SeenSurface<'_> {
         found
     }
 
-    /// A ground on which only shadows are seen: what would be missing if all lamps were hidden, and all ambient light.
+    /// Shades a ground that shows only shadows: the light that would be missing without lamps and ambient light.
     fn caught(&self, mut found: LivePixel, behind: DVec3) -> LivePixel {
         let Self { context, studio, interaction, .. } = self;
         let ambient = luminance(rgb(studio.ambient));
@@ -339,7 +339,7 @@ impl SeenSurface<'_> {
         found
     }
 
-    /// Whether one lamp, chosen by these weights, is visible.
+    /// Whether one lamp, chosen at random with these weights, is visible.
     fn lamps_share(&self, weights: &[f64]) -> f64 {
         let mut u = sampling::unit(self.address.pair(2 + 4094)[0]);
         let (mut total, mut chosen) = (0.0, None);

@@ -21,7 +21,7 @@ pub(super) fn disk(u: [u32; 2]) -> DVec2 {
     concentric_disk(DVec2::from(u.map(unit)))
 }
 
-/// Two unit vectors that form a right-handed frame with a third.
+/// A tangent frame: two unit vectors that form a right-handed frame with a third.
 ///
 /// T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani and R. Villemin, "Building an Orthonormal
 /// Basis, Revisited", JCGT 6(1), 2017.
@@ -54,8 +54,8 @@ pub(super) fn cosine(u: [u32; 2]) -> DVec3 {
     spot.extend((1.0 - spot.length_squared()).max(0.0).sqrt())
 }
 
-/// A random direction in a cone around +z, uniformly distributed. `k` is 1 minus the cosine of the half-angle; 2 means
-/// all directions.
+/// A random direction in a cone around +z, uniformly distributed. `k` is 1 minus the cosine of the half-angle. The
+/// value 2 means all directions.
 pub(super) fn cone(u: [u32; 2], k: f64) -> DVec3 {
     let spot = disk(u);
     let q = spot.length_squared() * k;
@@ -72,7 +72,7 @@ pub(super) fn versine(radians: f64) -> f64 {
     2.0 * (0.5 * radians).sin().powi(2)
 }
 
-/// The parameter `k` of [`cone`] for the cone that a sphere fills at a distance from its centre; `None` from inside.
+/// The parameter `k` of [`cone`] for the cone that a sphere fills at a distance from its centre. `None` from inside.
 pub(super) fn cone_of_sphere(radius: f64, distance: f64) -> Option<f64> {
     let sine = radius / distance;
     (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))

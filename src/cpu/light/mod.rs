@@ -1,7 +1,7 @@
-//! Lighting of the CPU reference, in f64.
+//! The lighting of the CPU reference, in f64.
 //!
 //! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
-//! sample. Only the input is shared with them.
+//! sample. The reference shares only its input with the kernels.
 
 use std::ops::Range;
 
@@ -48,11 +48,11 @@ pub struct SampledPicture<'a> {
 }
 
 impl<'a> SampledPicture<'a> {
-    /// The bytes that each pixel needs beside the picture while it is rendered batch by batch.
+    /// The number of bytes that each pixel needs, in addition to the picture, during rendering batch by batch.
     pub const BYTES_PER_PIXEL: u64 = size_of::<PixelSums>() as u64;
 
-    /// Checks the settings, and prepares the data that all samples share. With a reference to a scene, rays test every
-    /// sphere.
+    /// Checks the settings, and prepares the data that all samples share. If `search` is a reference to a scene, rays
+    /// test every sphere.
     ///
     /// # Errors
     /// Returns an error if [`RenderSettings::check`] fails.
@@ -70,8 +70,8 @@ impl<'a> SampledPicture<'a> {
         })
     }
 
-    /// One sample of a pixel, given as column and row. With the integrator `primary`, all samples of a pixel are the
-    /// same.
+    /// Computes one sample of a pixel, given as column and row. With the integrator `primary`, all samples of a pixel
+    /// are the same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
@@ -91,11 +91,11 @@ impl<'a> SampledPicture<'a> {
         found.unwrap_or_else(nothing)
     }
 
-    /// The ray of a sample in the scene's frame; `None` where the camera has no ray.
+    /// The ray of a sample in the scene's frame. `None` if the camera has no ray there.
     fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
         let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
         let View { camera, film } = self.view;
-        // In the whole film, so that a part rounds as the whole does.
+        // Computed in the whole film, so that parts round as the whole does.
         let place = film.in_whole(pixel);
         let [column, row] = [0, 1].map(|axis| f64::from(place[axis]) + 0.5 + offset[axis]);
         let location = film.whole().relative_location(column, row);
@@ -120,8 +120,8 @@ impl<'a> SampledPicture<'a> {
         Sample { color: wide(color), alpha, albedo: wide(albedo) }
     }
 
-    /// Renders all pixels batch by batch of samples, and asks after parts of each batch how to continue; see
-    /// [`super::render_watched`]. However a render is divided, each pixel adds its samples in the same order.
+    /// Renders all pixels in batches of samples, and asks `watch` after parts of each batch how to continue; see
+    /// [`super::render_watched`]. Each pixel adds its samples in the same order, however a render is divided.
     pub(super) fn render(
         &self,
         layers: LayerSet,
@@ -139,7 +139,7 @@ impl<'a> SampledPicture<'a> {
         Ok(Picture { image, samples, noise: totals.noise(samples), hits: Some(totals.opacity) })
     }
 
-    /// Fills the layers of the ray through the centre of each pixel.
+    /// Fills the layers whose data comes from the ray through the centre of each pixel.
     fn data_layers(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(), RenderError> {
         let has_data = image.rows_mut(0..1).first().is_some_and(|row| row.has_data());
         if !has_data {
@@ -160,10 +160,10 @@ impl<'a> SampledPicture<'a> {
         })
     }
 
-    /// Takes samples until all are complete or the caller finishes the render. Then some strips may have more samples
-    /// than others.
+    /// Takes samples until all are complete or the caller finishes the render. In the latter case, some strips may have
+    /// more samples than others.
     fn gather(&self, sums: &mut FilmSums, watch: &mut Watch<'_>) -> Result<(), RenderError> {
-        // Its own, because a sample may take many times as long as what the layers of data need.
+        // A pace of its own, because a sample may take many times as long as a pixel of the data layers.
         let mut pace = Pace::new();
         let total = self.context.settings.sampling.samples;
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
@@ -219,9 +219,8 @@ fn rows_of(strips: &Range<usize>, height: usize) -> Range<usize> {
 }
 
 /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers
-/// [`RenderSettings::layers_for`]: removes noise and draws outlines, as `settings` ask for, and keeps `layers`. The result
-/// is that of [`super::render`] with `settings`, to the bit. A picture that lacks layers for one of the steps is not
-/// changed by it.
+/// [`RenderSettings::layers_for`]. Removes noise and draws outlines, as `settings` ask, and keeps `layers`. The result
+/// is that of [`super::render`] with `settings`, to the bit. Steps whose layers the picture lacks are skipped.
 #[must_use]
 pub fn finish(mut image: Image, settings: &RenderSettings, layers: LayerSet) -> Image {
     if settings.is_denoised {

@@ -1,4 +1,4 @@
-//! Path tracing: paths follow light backwards, from the camera to its sources.
+//! The path integrator: paths follow light backwards, from the camera to its sources.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use crate::light::LightKind;
 use crate::render::{LightSampling, PathTracing};
 use crate::scene::material::Material;
 
-/// The use of each pair of random numbers at a surface.
+/// The purpose of each pair of random numbers at a surface.
 #[derive(Clone, Copy)]
 enum Purpose {
     Direction = 0,
@@ -25,16 +25,16 @@ enum Purpose {
     Roulette = 4,
 }
 
-/// How a ray was generated.
+/// The way in which a ray was generated.
 #[derive(Clone, Copy)]
 enum Origin {
-    /// Without a random choice of direction, or where light sampling could not have found what the ray hits.
+    /// Without a random choice of direction, or where light sampling cannot find what the ray hits.
     Only,
     /// By scattering at a point, with a density per steradian.
     Scattered { point: DVec3, density: f64 },
 }
 
-/// The light along a ray from the camera.
+/// Computes the light along a ray from the camera.
 pub(super) fn follow(
     context: &LightingContext<'_>,
     tracing: &PathTracing,
@@ -78,7 +78,7 @@ impl Path<'_> {
         self.address.pair(2 + 8 * v + purpose as u32)
     }
 
-    /// Continues the path to surface number `v`; `None` if the path ends.
+    /// Continues the path to its surface number `v`. Returns `None` if the path ends.
     fn step(&mut self, v: u32) -> Option<()> {
         let context = self.context;
         let Some(interaction) = nearest(context, &self.surface_ray) else {
@@ -125,7 +125,7 @@ impl Path<'_> {
     }
 
     /// The weight of light that a scattered ray happens to hit. `density_from` returns the density with which light
-    /// sampling at the point of scattering would have chosen the same direction; `None` if it could not.
+    /// sampling at the point of scattering would have chosen the same direction, or `None` if it could not.
     fn weight(&self, density_from: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
         let Origin::Scattered { point, density } = self.origin else { return 1.0 };
         let Some(light_density) = density_from(point) else { return 1.0 };
@@ -163,7 +163,7 @@ impl Path<'_> {
         }
     }
 
-    /// The absorption coefficient inside a sphere of glass; `None` for other surfaces.
+    /// The absorption coefficient inside a sphere of glass. `None` for other surfaces.
     fn dielectric(&self, interaction: &Interaction) -> Option<DVec3> {
         let Surface::Sphere(id) = interaction.surface else { return None };
         match self.context.scene.surface(id).material {

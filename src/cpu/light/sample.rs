@@ -1,4 +1,4 @@
-//! One sample of a pixel: its random numbers and its result; and the sums over samples of all pixels, with the
+//! One sample of a pixel, with its random numbers and its result. Also the sums over samples of all pixels, and the
 //! means that follow from them.
 
 use std::ops::Range;
@@ -16,7 +16,7 @@ use crate::render::Totals;
 pub struct Sample {
     /// Radiance, in linear light.
     pub color: DVec3,
-    /// How much the sample hides the background: 0 to 1.
+    /// The fraction of the background that the sample hides, from 0 to 1.
     pub alpha: f64,
     /// Colour of the first surface, each component at most 1. With the path integrator, this is the first surface that
     /// the path does not pass through. Zero for a miss, and for a shadow catcher.
@@ -39,14 +39,14 @@ impl Address {
         sampling::pair(self.seed, self.sample, pair)
     }
 
-    /// The address of the j-th of `count` parts of the sample. Beyond 2³² parts addresses repeat.
+    /// The address of the j-th of `count` parts of the sample. Beyond 2³² parts, addresses repeat.
     pub(super) fn part(self, j: u32, count: u32) -> Self {
         let sample = self.sample.wrapping_mul(count).wrapping_add(j);
         Self { sample, ..self }
     }
 }
 
-/// The rows of a strip, and the width of a tile: rays of near pixels meet the same spheres, which stay in the caches.
+/// The rows of a strip, and the width of a tile. Rays of near pixels meet the same spheres, which stay in the caches.
 pub(super) const STRIP: usize = 8;
 
 /// The sums over the samples of a pixel.
@@ -59,7 +59,7 @@ pub(super) struct PixelSums {
     square: f64,
 }
 
-/// The means over the samples of a pixel, before they are narrowed.
+/// The means over the samples of a pixel, before conversion to f32.
 struct Means {
     averages: Averages,
     totals: Totals,
@@ -92,7 +92,7 @@ impl PixelSums {
     }
 }
 
-/// The sums of all pixels, strip by strip from the top, and in a strip tile by tile.
+/// The sums of all pixels. They are stored strip by strip from the top, and tile by tile in a strip.
 pub(super) struct FilmSums {
     size: [usize; 2],
     sums: Vec<PixelSums>,
@@ -100,7 +100,7 @@ pub(super) struct FilmSums {
     samples: Vec<u32>,
 }
 
-/// The sums of some pixels beside each other.
+/// The sums of some adjacent pixels.
 struct Tile<'a> {
     origin: [usize; 2],
     width: usize,
@@ -108,7 +108,7 @@ struct Tile<'a> {
 }
 
 impl FilmSums {
-    /// No samples. The error counts the bytes of the sums alone.
+    /// Starts without samples. The error counts only the bytes of the sums.
     pub(super) fn new(width: u32, height: u32) -> Result<Self, ImageTooLarge> {
         let pixels = u64::from(width) * u64::from(height);
         let bytes = pixels.saturating_mul(size_of::<PixelSums>() as u64);
@@ -201,7 +201,7 @@ mod tests {
     use super::*;
     use crate::image::LayerSet;
 
-    /// Every pixel gets its own samples, wherever strips and tiles end.
+    /// Every pixel gets its own samples, at any width and height of strips and tiles.
     #[test]
     fn every_pixel_has_its_place() {
         for [width, height] in [[1, 1], [8, 8], [7, 9], [17, 16], [30, 25]] {

@@ -1,5 +1,5 @@
-//! Light that arrives at a point from the lights of the settings, and the light sources among which the path integrator
-//! chooses.
+//! The light that arrives at a point from the lights of the settings, and the light sources that the path integrator
+//! samples.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use super::maps::{TangentFrame, cone, cone_density, cone_of_sphere, rgb, versine
 use crate::light::LightKind;
 use crate::render::LightSampling;
 
-/// A light source that can be sampled. Each has the same probability.
+/// A light source that can be sampled. All have the same probability.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
     /// A light that scattered rays cannot hit.
@@ -24,7 +24,7 @@ pub(super) enum Source {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sun {
     pub(super) toward: DVec3,
-    /// 1 minus the cosine of its angular radius.
+    /// 1 minus the cosine of the sun's angular radius.
     pub(super) k: f64,
     pub(super) radiance: DVec3,
 }
@@ -37,7 +37,7 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Collects the light sources, in the order in which random numbers choose them.
+    /// Collects the light sources. Their order is that in which random numbers choose them.
     pub(super) fn new(
         lights: &[LightKind],
         has_emitters: bool,
@@ -93,8 +93,8 @@ pub(super) struct Arrival {
     pub(super) distance: f64,
 }
 
-/// Light from a random point of a light, such that the mean of many samples is the light's contribution. `None` for a
-/// light at the eye, and for a point light at the point itself.
+/// Light from a random point of a light. The mean of many samples is the light's contribution. `None` for a light at
+/// the eye, and for a point light at the point itself.
 pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Arrival> {
     match *light {
         LightKind::Head { .. } => None,
@@ -137,7 +137,7 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
     }
 }
 
-/// Light from the middle of a light, as a measure of how much light could arrive.
+/// Light from the middle of a light, which measures how much light could arrive.
 pub(super) fn arrival_of_middle(light: &LightKind, point: DVec3) -> Option<Arrival> {
     let arrival = arrival(light, point, [1 << 31; 2])?;
     match *light {
@@ -150,12 +150,12 @@ pub(super) fn arrival_of_middle(light: &LightKind, point: DVec3) -> Option<Arriv
     }
 }
 
-/// The radiance of a sun's disk for strength 1, which is the light that a surface facing it reflects.
+/// The radiance of a sun's disk for strength 1. The strength is the light that a surface facing the sun reflects.
 fn sun_radiance(angular_radius: f64) -> f64 {
     1.0 / angular_radius.sin().powi(2)
 }
 
-/// [`sun_radiance`] times the solid angle of the disk over π; 1 for a light without angular radius.
+/// [`sun_radiance`] times the solid angle of the disk, divided by π. It is 1 for a light without angular radius.
 fn sun_factor(angular_radius: f64) -> f64 {
     if angular_radius > 0.0 {
         sun_radiance(angular_radius) * 2.0 * versine(angular_radius)
@@ -164,8 +164,8 @@ fn sun_factor(angular_radius: f64) -> f64 {
     }
 }
 
-/// The distance to a sphere's near side, or from inside to its far side, along a direction that hits it. If rounding
-/// makes the ray miss, the distance to the foot point.
+/// The distance along a direction to a sphere's near side, or from inside to its far side. If rounding makes the ray
+/// miss, the distance to the foot point.
 pub(super) fn distance_to_sphere(
     to_center: DVec3,
     radius: f64,

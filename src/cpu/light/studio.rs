@@ -1,4 +1,4 @@
-//! The studio integrator: light that arrives at visible surfaces directly from lights.
+//! The studio integrator, in which light reaches visible surfaces directly from lights.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ use crate::geometry::ray::Ray;
 use crate::light::LightKind;
 use crate::render::Studio;
 
-/// The light along a ray from the camera.
+/// Computes the light along a ray from the camera.
 pub(super) fn follow(
     context: &LightingContext<'_>,
     studio: &Studio,
@@ -64,7 +64,7 @@ pub(super) fn follow(
     found
 }
 
-/// How much of a colour at a distance is replaced by another, and that colour.
+/// The fraction of a colour at a distance that depth cueing replaces, and the colour that replaces it.
 pub(super) fn fading(studio: &Studio, distance: f64) -> (f64, DVec3) {
     studio.depth_cue.map_or((0.0, DVec3::ZERO), |cue| {
         (((distance - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
@@ -79,7 +79,7 @@ pub(super) struct SeenSurface<'a> {
     /// Direction of the ray that hits the surface.
     pub(super) direction: DVec3,
     pub(super) address: Address,
-    /// The number of surfaces in front of it.
+    /// The number of surfaces in front of this one.
     pub(super) m: u32,
 }
 
@@ -137,8 +137,7 @@ impl SeenSurface<'_> {
         is_occluded(self.context, &surface_ray, t_max, Occluders::Opaque, None)
     }
 
-    /// The fraction of light that is missing on the ground because of shadows; each light is weighted by the light of
-    /// its middle.
+    /// The fraction of light that shadows take from the ground. Each light is weighted by the light from its middle.
     fn shadow(&self, plane: &Plane) -> f64 {
         let mut whole = luminance(rgb(self.studio.ambient));
         let mut missing = whole * self.ambient_occlusion();

@@ -1,4 +1,4 @@
-//! Rays that know on which surface they start, so that they need no offset and no smallest distance.
+//! Rays that remember the surface on which they start, so that they need no offset and no smallest distance.
 
 use glam::{DVec3, Vec4};
 
@@ -14,17 +14,17 @@ pub(super) struct SurfaceRay {
     pub(super) start: Start,
 }
 
-/// Where a ray starts: the surface that it leaves, and on which side. Spheres with the same centre and radius are left
-/// together, because only the first of them can be hit.
+/// The start of a ray: the surface that it leaves, and the side. A ray leaves all spheres with the same centre and
+/// radius together, because only the first of them can be hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
     /// At the camera.
     Free,
-    /// On a sphere, outwards: the ray cannot hit this sphere.
+    /// On a sphere, outwards. The ray cannot hit this sphere.
     Outside(u32),
-    /// On a sphere, inwards: the ray hits the far side of this sphere, if nothing is nearer.
+    /// On a sphere, inwards. The ray hits the far side of this sphere, unless something is nearer.
     Inside(u32),
-    /// On the ground, upwards: the ray cannot hit the ground.
+    /// On the ground, upwards. The ray cannot hit the ground.
     Ground,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Interaction {
     pub(super) surface: Surface,
     /// Distance along the ray from its origin.
     pub(super) distance: f64,
-    /// Hit point; on the surface, up to rounding.
+    /// The hit point, which is on the surface up to rounding.
     pub(super) point: DVec3,
     /// Unit normal on the side from which the ray arrives.
     pub(super) normal: DVec3,
@@ -62,7 +62,7 @@ impl Interaction {
     }
 }
 
-/// Which spheres occlude light.
+/// The spheres that occlude light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Occluders {
     /// All spheres.
@@ -71,7 +71,7 @@ pub(super) enum Occluders {
     Opaque,
 }
 
-/// The nearest interaction. At equal distances, the sphere with the smallest id is hit, and a sphere before the ground.
+/// The nearest interaction. At equal distances, spheres win over the ground, and smaller ids over larger ones.
 pub(super) fn nearest(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
@@ -104,7 +104,7 @@ pub(super) fn nearest(
     })
 }
 
-/// Whether any surface is nearer than `t_max`, apart from the sphere `exempt` and spheres equal to it.
+/// Whether any surface is nearer than `t_max`, except the sphere `exempt` and spheres equal to it.
 pub(super) fn is_occluded(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
@@ -158,7 +158,7 @@ impl StartSphere {
         }
     }
 
-    /// Whether it has the centre and radius of another sphere.
+    /// Whether the ray starts on a sphere with this centre and radius.
     fn is_same(self, sphere: [f32; 4]) -> bool {
         matches!(self, Self::Outside(own) | Self::Inside(own) if is_same(own, sphere))
     }
@@ -170,12 +170,12 @@ struct SphereHit {
     distance: f64,
     /// Unit normal, pointing away from the centre.
     outward: DVec3,
-    /// Whether the ray arrives from outside. This is not computed from the normal, whose side rounding may change for
-    /// grazing rays, so that light would leak through.
+    /// Whether the ray arrives from outside. The normal cannot tell: for grazing rays, rounding may change its side, so
+    /// that light would leak through.
     is_outside: bool,
 }
 
-/// Inlined, so that callers who need the distance alone compute no more.
+/// Inlined, so that callers that need only the distance do not compute the rest.
 #[inline(always)]
 fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> {
     let [x, y, z, radius] = sphere.map(f64::from);
@@ -196,7 +196,7 @@ fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> 
     }
 }
 
-/// The distance to the ground along a ray; `None` for a miss.
+/// The distance to the ground along a ray. `None` for a miss.
 fn ground(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<f64> {
     let plane = context.ground.as_ref()?;
     let descent = surface_ray.ray.direction.dot(plane.normal);
@@ -228,8 +228,8 @@ mod tests {
         DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X)
     }
 
-    /// A ray that starts inwards on a sphere stays inside until it is let out, and a ray that leaves it does not come
-    /// back, however flat the ray is and whatever rounding says about its side.
+    /// A ray that starts inwards on a sphere stays inside until it is let out, and a ray that leaves the sphere does
+    /// not come back, however flat the ray is and whatever side rounding gives.
     #[test]
     fn no_sphere_leaks() {
         let mut random = fastrand::Rng::with_seed(21);
@@ -315,7 +315,7 @@ mod tests {
         });
     }
 
-    /// Shadow rays end at the light, and hit every surface between except those on which they start and end.
+    /// Shadow rays end at the light. Every surface in between hides it, except those on which they start and end.
     #[test]
     fn what_is_between_hides() {
         let at = |z: f64, opacity: f32| {

@@ -1,5 +1,5 @@
-//! In a furnace, where light of radiance 1 comes from everywhere, nothing that loses no light is seen; and what is seen
-//! through spheres: absorption, and opacity.
+//! In a furnace, where light of radiance 1 comes from everywhere, surfaces that lose no light are invisible. Also tests
+//! the view through spheres: absorption and opacity.
 
 use pinhole::glam::DVec3;
 use pinhole::light::{Sky, SkyLight};
@@ -8,7 +8,7 @@ use pinhole::{LinearRgb, Material, RenderSettings, Sphere, cpu};
 
 use super::{Shot, blocks, by, emissive, furnace, gray, paths, rgb, studio, sun, white};
 
-/// How far from 1 the mean of a block may be: less than what tables of energies are interpolated by.
+/// The largest deviation of a block's mean from 1, which allows for the errors of energy tables.
 const TOLERANCE: f64 = 1e-3;
 
 fn glass(ior: f32, roughness: f32) -> Material {
@@ -45,8 +45,8 @@ fn matt_surfaces_and_metals_lose_nothing() {
     }
 }
 
-/// Where light is refracted towards the wall at a flat angle it may stay inside for longer than 64 surfaces: that is
-/// what is missing of glass that is nearly smooth.
+/// Light that is refracted towards the wall at a flat angle may stay inside for more than 64 surfaces. That light is
+/// missing for glass that is nearly smooth.
 #[test]
 fn glass_loses_nothing() {
     for ior in [1.0, 1.1, 1.5, 2.5] {
@@ -107,7 +107,7 @@ fn colors_lose_what_they_say() {
     }
 }
 
-/// Between two spheres light is scattered again, and loses more.
+/// Between two spheres, light is scattered again, and loses more.
 #[test]
 fn light_between_two_spheres_loses_more() {
     let spheres = [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]].map(|c| Sphere::new(c, 0.5, gray(0.5)));
@@ -120,12 +120,12 @@ fn light_between_two_spheres_loses_more() {
     assert!(least < 0.35, "{least}");
 }
 
-/// A metal that is nearly smooth reflects what Schlick's formula says of its colour at each angle.
+/// A nearly smooth metal reflects the share that Schlick's formula gives for its colour at each angle.
 #[test]
 fn metals_are_white_where_light_grazes() {
     let metal = Material::Conductor { roughness: 0.02 };
     let sphere = Sphere::new([0.0; 3], 1.0, gray(0.3)).with_material(metal);
-    // So large that all of a pixel is seen at one angle.
+    // So large that a whole pixel is seen at one angle.
     let shot = Shot::new(&[sphere], [0.0; 3], 1.2, 1 << 14);
     let lighting = furnace(1);
     let picture = shot.picture(&lighting);
@@ -162,7 +162,7 @@ fn absorption_along_a_chord() {
         let ray = shot.ray(pixel);
         let foot = ray.origin - ray.origin.dot(ray.direction) * ray.direction;
         let half_chord = (4.0 - foot.length_squared()).max(0.0).sqrt();
-        // Once it is in the middle of its share.
+        // Each sample is in the middle of its share once.
         let mean: Vec<f64> = (0..3)
             .map(|c| (0..16).map(|s| picture.sample(pixel, s).color[c]).sum::<f64>() / 16.0)
             .collect();
@@ -177,18 +177,18 @@ fn absorption_along_a_chord() {
     }
 }
 
-/// Glass that is left through a wall that lets light pass absorbs no more.
+/// Glass that light leaves through a translucent wall absorbs no more.
 #[test]
 fn absorption_ends_where_glass_ends() {
     let sphere = Sphere::new([0.0; 3], 1.0, gray(0.5)).with_material(clear(1.0)).with_opacity(0.5);
     let far_behind = white([0.0, 0.0, -30.0], 5.0).with_material(emissive(1.0));
     let shot = Shot::from(8.0, &[sphere, far_behind], [0.0; 3], 0.01, 8);
     let found = blocks(&shot.render(&paths(256, LightSampling::Chance)), 1)[0][0];
-    // Half of the light is taken as it enters, and then on the way of 2.
+    // Half of the light is lost at the entry, and then some on the way of 2.
     assert!((found - (0.5 + 0.5 * 0.25)).abs() < 1e-3, "{found}");
 }
 
-/// Both walls of a sphere of opacity a over what is behind: a + (1 − a) a of its own, and (1 − a)² of the rest.
+/// Both walls of a sphere of opacity a over a background: a + (1 − a) a of its own colour, and (1 − a)² of the rest.
 #[test]
 fn opacity_hides_twice() {
     let opacity = 0.3_f32;
@@ -221,7 +221,7 @@ fn opacity_hides_twice() {
             }
             let mean = image.alpha().unwrap().iter().map(|a| f64::from(*a)).sum::<f64>() / 64.0;
             assert!((mean - alpha).abs() < tolerance, "{mean}, not {alpha}");
-            // Without a background, the same less what was seen of it.
+            // Without a background, the same minus the visible part of the background.
             let cut_out =
                 blocks(&shot.render(&RenderSettings { is_transparent: true, ..lighting }), 1)[0];
             let missing = found[0] - cut_out[0];
@@ -230,7 +230,7 @@ fn opacity_hides_twice() {
     }
 }
 
-/// In a studio, what lets light pass casts no shadow and hides no ambient light; no more walls are seen than asked for.
+/// In a studio, translucent spheres cast no shadow and hide no ambient light. Only as many walls as asked are visible.
 #[test]
 fn a_studio_sees_through() {
     let veils = [2.0, 4.0, 6.0]
@@ -252,12 +252,12 @@ fn a_studio_sees_through() {
     }
 }
 
-/// Colour fades with the distance from the camera, through what is clear as well, and what is behind everything not.
+/// Colour fades with the distance from the camera, also through clear spheres. The background does not fade.
 #[test]
 fn the_depth_cue() {
     let veil = Sphere::new([0.0, 0.0, 2.0], 0.5, LinearRgb::BLACK).with_opacity(0.0);
     let lamp = white([0.0; 3], 1.0).with_material(emissive(3.0));
-    // The middle of the lamp is 7 away.
+    // The middle of the lamp is 7 units away.
     let shot = Shot::from(8.0, &[veil, lamp], [0.0; 3], 0.01, 1);
     for (near, far, fade) in [(0.0, 7.0, 1.0), (0.0, 28.0, 0.25), (6.0, 8.0, 0.5), (7.5, 9.0, 0.0)]
     {

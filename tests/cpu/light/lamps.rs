@@ -1,4 +1,4 @@
-//! Lights over a plane and a sphere, ambient occlusion, and shadows on nothing, against integrals on paper.
+//! Lights over a plane and a sphere, ambient occlusion, and shadow catchers, compared with integrals on paper.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +16,7 @@ fn floor(color: LinearRgb) -> Option<Ground> {
     Some(ground(DVec3::ZERO, DVec3::new(0.0, 0.0, 2.0), color))
 }
 
-/// In a studio, and on paths.
+/// Settings of a studio and of paths.
 fn on_the_floor(
     samples: u32,
     lights: &[LightKind],
@@ -27,7 +27,7 @@ fn on_the_floor(
     [in_studio, RenderSettings { lights, ground, ..paths(samples, sampling) }]
 }
 
-/// Where the ray of a pixel meets the ground.
+/// The point where the ray of a pixel hits the ground.
 fn on_ground(shot: &Shot, pixel: [u32; 2]) -> DVec3 {
     let ray = shot.ray(pixel);
     ray.at(-ray.origin.z / ray.direction.z)
@@ -36,20 +36,20 @@ fn on_ground(shot: &Shot, pixel: [u32; 2]) -> DVec3 {
 const LAMP: DVec3 = DVec3::new(3.0, 0.0, 2.5);
 const LAMP_RADIUS: f64 = 1.0;
 
-/// A plane of colour 0.5 in the light of a sphere of radiance 2 that is wholly above it: E = π L (R/d)² cos θ, and
-/// 0.5 E/π of that is seen.
+/// A plane of colour 0.5 in the light of a sphere of radiance 2 that is wholly above it. E is π L (R/d)² cos θ, and 0.5
+/// E/π of that is visible.
 fn lit_plane(p: DVec3) -> f64 {
     let to_lamp = LAMP - p;
     let d = to_lamp.length();
     0.5 * 2.0 * (LAMP_RADIUS / d).powi(2) * to_lamp.z / d
 }
 
-/// The plane from above, and nothing else, but perhaps an emissive sphere beside the picture.
+/// The plane from above, without other visible objects. There may be an emissive sphere beside the picture.
 fn plane(spheres: &[Sphere]) -> Shot {
     Shot::new(spheres, [0.0; 3], 1.0, 16)
 }
 
-/// What blocks of 4×4 pixels should have.
+/// The expected values of blocks of 4×4 pixels.
 fn expected(shot: &Shot, of_point: impl Fn(DVec3) -> f64) -> Vec<f64> {
     let block = |b: u32| {
         let pixels = (0..16).map(|k| [b % 4 * 4 + k % 4, b / 4 * 4 + k / 4]);
@@ -75,7 +75,7 @@ fn a_sphere_lamp_over_a_plane() {
     }
 }
 
-/// The same light from a sphere of the scene, however it is found; not by chance and by search both.
+/// An emissive sphere gives the same light with each sampling method. Multiple sampling does not count it twice.
 #[test]
 fn an_emissive_sphere_over_a_plane() {
     let sphere =
@@ -96,8 +96,8 @@ fn an_emissive_sphere_over_a_plane() {
     }
 }
 
-/// A directional light of strength 1 gives a surface that faces it its own colour: sharp or soft, in a studio or on
-/// paths, found by chance or sought.
+/// A directional light of strength 1 gives a surface that faces it the surface's own colour: sharp or soft, in a studio
+/// or on paths, hit by chance or sampled.
 #[test]
 fn a_sun_over_a_plane() {
     let shot = plane(&[]);
@@ -111,7 +111,7 @@ fn a_sun_over_a_plane() {
             (LightSampling::Direct, 256),
             (LightSampling::Multiple, 256),
         ] {
-            // Chance does not meet what is so small.
+            // Chance does not hit such a small light.
             if sampling != LightSampling::Chance || angular_radius != 0.01 {
                 lightings.push(RenderSettings {
                     lights: base.lights.clone(),
@@ -120,7 +120,7 @@ fn a_sun_over_a_plane() {
                 });
             }
         }
-        // The mean of cosines over the disk is that of its middle; and all of it is above the plane.
+        // The mean of cosines over the disk is that of its middle, because all of it is above the plane.
         for lighting in lightings {
             let image = shot.render(&lighting);
             let [found, ..] = blocks(&image, 1)[0];
@@ -156,7 +156,7 @@ fn a_point_light_and_a_light_at_the_eye() {
     }
 }
 
-/// A light of the camera's frame is where the camera is.
+/// A light in the camera's frame moves with the camera.
 #[test]
 fn lights_turn_with_the_camera() {
     let shot = plane(&[]);
@@ -168,8 +168,8 @@ fn lights_turn_with_the_camera() {
     }
 }
 
-/// Each pixel of a convex matt sphere is its colour times the cosine, whether shadows are asked for or not: no point
-/// is in the shadow of its own sphere, also where light grazes.
+/// Each pixel of a convex matt sphere is its colour times the cosine, with or without shadows. No point is in the
+/// shadow of its own sphere, even where light grazes.
 #[test]
 fn a_sphere_casts_no_shadow_on_what_faces_the_light() {
     let toward = DVec3::new(1.0, 0.4, 0.1).normalize_or(DVec3::X);
@@ -184,14 +184,14 @@ fn a_sphere_casts_no_shadow_on_what_faces_the_light() {
             let Some(hit) = cpu::trace(&shot.scene, &shot.ray(pixel)) else { continue };
             let wanted = 0.5 * hit.normal.dot(toward).max(0.0);
             let found = picture.sample(pixel, 0).color[0];
-            // A pixel is 1/1900 of the radius wide, more where it is seen aslant.
+            // A pixel is 1/1900 of the radius wide, and more at a slant.
             let slant = -hit.normal.dot(shot.ray(pixel).direction);
             assert!((found - wanted).abs() < 3e-4 / slant, "{radius}: {found}, not {wanted}");
         }
     }
 }
 
-/// Under a uniform sky, a convex matt sphere has its colour times the sky's everywhere, exactly.
+/// Under a uniform sky, a convex matt sphere has exactly its colour times the sky's everywhere.
 #[test]
 fn a_matt_sphere_under_a_uniform_sky() {
     let sphere = Sphere::new([0.0; 3], 1.0, rgb([0.75, 0.5, 0.25]));
@@ -206,7 +206,7 @@ fn a_matt_sphere_under_a_uniform_sky() {
     }
 }
 
-/// A sphere lamp inside which everything is, lights as a uniform sky does.
+/// A sphere lamp around the scene lights it as a uniform sky does.
 #[test]
 fn inside_a_lamp() {
     let lamp = LightKind::Sphere { center: DVec3::ZERO, radius: 9.0, radiance: gray(0.5) };
@@ -227,8 +227,8 @@ fn occluded(samples: u32, occlusion: Occlusion) -> RenderSettings {
     by(Integrator::Studio(studio), &paths(samples, LightSampling::Chance))
 }
 
-/// The cosine-weighted share of directions around a normal in which a sphere is: by midpoints over its cone, of which
-/// what lies below the horizon counts nothing.
+/// The cosine-weighted share of directions around a normal that a sphere hides, by midpoints over the sphere's cone.
+/// Directions below the horizon count nothing.
 fn hidden(point: DVec3, normal: DVec3, center: DVec3, radius: f64) -> f64 {
     const STEPS: u32 = 400;
     let to_center = center - point;
@@ -256,11 +256,11 @@ fn the_integral_is_that_of_a_sphere_above_the_horizon() {
     assert!((found - wanted).abs() < 1e-4 * wanted, "{found}, {wanted}");
 }
 
-/// Two spheres that touch: of each, the other hides what lies in its cone above the horizon.
+/// Two spheres that touch. Each hides the other's directions in its cone above the horizon.
 #[test]
 fn ambient_light_between_two_spheres() {
     let spheres = [white([-1.0, 0.0, 0.0], 1.0), white([0.5, 0.0, 0.0], 0.5)];
-    // So large that a pixel is a point.
+    // So large that a pixel is nearly a point.
     let shot = Shot::new(&spheres, [0.0, 0.0, 0.0], 1.0, 1 << 12);
     let samples = 64;
     let lighting = occluded(samples, Occlusion { radius: None, samples: 64 });
@@ -275,7 +275,7 @@ fn ambient_light_between_two_spheres() {
         let wanted = 1.0 - hidden(ray.at(hit.t), hit.normal, center, other.radius);
         let found = (0..samples).map(|s| picture.sample(pixel, s).color[0]).sum::<f64>()
             / f64::from(samples);
-        // Of 4096 directions, as if they were independent, four standard errors; they are placed more evenly.
+        // The bound is four standard errors of 4096 independent directions. They are placed more evenly.
         let bound = 4.0 * (wanted * (1.0 - wanted) / 4096.0).sqrt();
         assert!((found - wanted).abs() <= bound + 1e-3, "{pixel:?}: {found}, not {wanted}");
         darkest = wanted.min(darkest);
@@ -283,7 +283,7 @@ fn ambient_light_between_two_spheres() {
     assert!(darkest < 0.3, "{darkest}");
 }
 
-/// What is farther away than the radius hides nothing.
+/// Spheres farther away than the radius hide nothing.
 #[test]
 fn the_radius_ends_occlusion() {
     let spheres = [white([0.0; 3], 1.0), white([0.0, 0.0, 4.0], 1.0)];
@@ -297,8 +297,8 @@ fn the_radius_ends_occlusion() {
     assert!((colors(Some(100.0)) - colors(None)).abs() < 1e-12);
 }
 
-/// A catcher under a sphere, in even light from above and everywhere: as opaque as light is missing. Nothing else of
-/// it is seen.
+/// A shadow catcher under a sphere, in even light from above and everywhere. Its opacity is the missing share of light,
+/// and nothing else of it is visible.
 #[test]
 fn shadows_on_nothing() {
     let center = DVec3::new(0.0, 3.0, 0.0);
@@ -312,7 +312,7 @@ fn shadows_on_nothing() {
         background: LinearRgb::WHITE,
         ..base
     };
-    // From the front and above: the plane y = 0 is where nothing else is seen.
+    // From the front and above, so that the plane y = 0 fills the rest of the picture.
     let pose =
         pinhole::camera::Pose::looking_at([0.0, 8.0, 20.0], [-1.5, 0.0, 0.0], [0.0, 1.0, 0.0])
             .unwrap();
@@ -333,14 +333,14 @@ fn shadows_on_nothing() {
             continue;
         }
         let p = ray.at(-ray.origin.y / ray.direction.y);
-        // In the shadow, which the light casts along (−1, −1, 0).
+        // In the shadow that the light casts along (−1, −1, 0).
         let toward = DVec3::new(1.0, 1.0, 0.0) / 2.0_f64.sqrt();
         let beside = (center - p) - (center - p).dot(toward) * toward;
         if (beside.length() - 1.0).abs() < 0.01 {
             continue;
         }
         let is_dark = beside.length() < 1.0;
-        // The light's share is its cosine.
+        // The light's share is the cosine.
         let cosine = 0.5_f64.sqrt();
         let missing = hidden(p, DVec3::Y, center, 1.0) + if is_dark { cosine } else { 0.0 };
         let wanted = missing / (1.0 + cosine);

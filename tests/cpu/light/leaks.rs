@@ -1,4 +1,4 @@
-//! No light gets where it should not, and none is lost, at any scale: rays start on surfaces, not near them.
+//! Light does not leak, and none is lost, at any scale, because rays start on surfaces, not near them.
 
 use pinhole::glam::DVec3;
 use pinhole::light::LightKind;
@@ -9,7 +9,7 @@ use super::{Shot, by, emissive, furnace, gray, ground, paths, studio, white};
 
 const SCALES: [f64; 5] = [1e-4, 1e-2, 1.0, 1e3, 1e6];
 
-/// Where scenes are moved to: coordinates that f32 offsets keep.
+/// The places to which scenes are moved. f32 offsets keep these coordinates.
 const PLACES: [[f64; 3]; 2] = [[0.0; 3], [1e6, -1e6, 1e6]];
 
 fn placed(spheres: &[Sphere], scale: f64, place: [f64; 3]) -> Vec<Sphere> {
@@ -24,8 +24,8 @@ fn placed(spheres: &[Sphere], scale: f64, place: [f64; 3]) -> Vec<Sphere> {
     spheres.iter().map(place_one).collect()
 }
 
-/// In a furnace, spheres that touch each other and what they lie on look the same at each scale, but for pixels at
-/// edges, and few whose paths met one.
+/// In a furnace, touching spheres and the floor under them look the same at each scale, except for pixels at edges, and
+/// few pixels whose paths hit an edge.
 #[test]
 fn all_scales_look_the_same() {
     for floor in [8.0, 1e6] {
@@ -44,7 +44,7 @@ fn all_scales_look_the_same() {
             Shot::new(&spheres, target, 1.5 * scale, 24).render(&lighting)
         };
         let reference = render(1.0, PLACES[0]);
-        // Beside a floor that large, f32 offsets hold the small spheres at the world's origin alone.
+        // Beside such a large floor, f32 offsets can hold the small spheres only at the world's origin.
         let places = if floor > 1e3 { &PLACES[..1] } else { &PLACES[..] };
         for scale in SCALES {
             for place in places {
@@ -57,7 +57,7 @@ fn all_scales_look_the_same() {
     }
 }
 
-/// An emissive sphere within an opaque one: black outside, exactly, however bright it is.
+/// An emissive sphere inside an opaque one is exactly black from outside, for any brightness.
 #[test]
 fn a_closed_shell_is_dark() {
     let lamp = white([0.1, 0.2, 0.0], 0.25).with_material(emissive(1e6));
@@ -87,7 +87,7 @@ fn a_closed_shell_is_dark() {
     }
 }
 
-/// The same of a studio's lamp in a shell, and of shadows.
+/// A studio's lamp in a shell lights nothing outside.
 #[test]
 fn a_lamp_in_a_shell_lights_nothing() {
     for scale in SCALES {
@@ -103,8 +103,8 @@ fn a_lamp_in_a_shell_lights_nothing() {
     }
 }
 
-/// From within a shell, where all that is seen is its inside, lit by a lamp: as bright at every scale, and on paths as
-/// integrating spheres are, the lamp's share over what is lost.
+/// Inside a shell that is lit by a lamp, the wall is equally bright at every scale. Paths give the value of integrating
+/// spheres, which is the lamp's share divided by the loss.
 #[test]
 fn inside_a_shell() {
     let albedo = 0.5;
@@ -131,7 +131,7 @@ fn inside_a_shell() {
     }
 }
 
-/// Points of a plane that carries spheres, and of the spheres, hide nothing from themselves.
+/// Points of a plane that carries spheres, and of the spheres, do not occlude themselves.
 #[test]
 fn open_surfaces_hide_nothing_of_themselves() {
     let occlusion = Some(Occlusion { radius: None, samples: 16 });

@@ -1,4 +1,4 @@
-//! Lit pictures of the CPU reference against answers known on paper.
+//! Lit pictures of the CPU reference, compared with answers on paper.
 
 mod furnace;
 mod lamps;
@@ -30,12 +30,12 @@ pub(crate) fn white(center: [f64; 3], radius: f64) -> Sphere {
     Sphere::new(center, radius, LinearRgb::WHITE)
 }
 
-/// A sphere lamp's material.
+/// The material of an emissive sphere.
 pub(crate) fn emissive(strength: f32) -> Material {
     Material::Emissive { strength }
 }
 
-/// A light at its place in the world.
+/// A light with its position in the world.
 pub(crate) fn light(kind: LightKind) -> Light {
     Light { kind, frame: LightFrame::World }
 }
@@ -44,12 +44,12 @@ pub(crate) fn sun(toward: DVec3, strength: LinearRgb, angular_radius: f64) -> Li
     LightKind::Directional { toward, strength, angular_radius }
 }
 
-/// A plane.
+/// A visible ground plane.
 pub(crate) fn ground(point: DVec3, normal: DVec3, color: LinearRgb) -> Ground {
     Ground { point, normal, color, is_shadow_catcher: false }
 }
 
-/// Lights alone, with shadows.
+/// A studio with only the given lights, and shadows.
 pub(crate) fn studio(samples: u32, lights: &[LightKind]) -> RenderSettings {
     let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
     RenderSettings {
@@ -58,7 +58,7 @@ pub(crate) fn studio(samples: u32, lights: &[LightKind]) -> RenderSettings {
     }
 }
 
-/// Paths that are followed to the end, over black, without a light.
+/// Path tracing to the end of each path, over black, without a light.
 pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> RenderSettings {
     let tracing = PathTracing { max_depth: 64, roulette_from: u32::MAX, light_sampling };
     RenderSettings {
@@ -73,13 +73,13 @@ pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> RenderSettin
     }
 }
 
-/// The same in a furnace: light of radiance 1 from everywhere, so that whatever loses none has radiance 1.
+/// Path tracing in a furnace: light of radiance 1 comes from everywhere, so surfaces that lose none have radiance 1.
 pub(crate) fn furnace(samples: u32) -> RenderSettings {
     let sky = Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true };
     RenderSettings { sky, ..paths(samples, LightSampling::Multiple) }
 }
 
-/// The same by another integrator; the sky is for paths alone.
+/// The same settings with another integrator. The sky stays only for paths.
 pub(crate) fn by(integrator: Integrator, settings: &RenderSettings) -> RenderSettings {
     let is_lit_by_sky = matches!(integrator, Integrator::Path(_));
     let sky = if is_lit_by_sky { settings.sky.clone() } else { Sky::default() };
@@ -94,12 +94,12 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Seen along −z from far away, as far to each side of the target as `reach`.
+    /// A view along −z from far away, which reaches `reach` to each side of the target.
     pub(crate) fn new(spheres: &[Sphere], target: [f64; 3], reach: f64, side: u32) -> Self {
         Self::from(8.0 * reach, spheres, target, reach, side)
     }
 
-    /// The same, seen from a distance.
+    /// The same view from a given distance.
     pub(crate) fn from(
         distance: f64,
         spheres: &[Sphere],
@@ -117,13 +117,13 @@ impl Shot {
         }
     }
 
-    /// To be rendered sample by sample.
+    /// The picture, to be rendered sample by sample.
     pub(crate) fn picture<'a>(&'a self, lighting: &'a RenderSettings) -> SampledPicture<'a> {
         SampledPicture::new(&self.scene, &View::new(self.camera.as_ref(), self.film), lighting)
             .unwrap()
     }
 
-    /// Through the centre of a pixel.
+    /// The ray through the centre of a pixel.
     pub(crate) fn ray(&self, [i, j]: [u32; 2]) -> Ray {
         let location = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
         self.camera.ray_in_world(location)
@@ -135,7 +135,7 @@ impl Shot {
     }
 }
 
-/// Sums of numbers of the pixels over each of `count`² blocks of a square picture.
+/// Sums of the pixels' numbers over each of `count`² blocks of a square picture.
 fn sums<const N: usize>(
     image: &Image,
     count: usize,
@@ -155,7 +155,7 @@ fn area(image: &Image, count: usize) -> f64 {
     (f64::from(image.width()) / count as f64).powi(2)
 }
 
-/// Means of the colour's components over each of `count`² blocks of a square picture.
+/// Means of the colour components over each of `count`² blocks of a square picture.
 pub(crate) fn blocks(image: &Image, count: usize) -> Vec<[f64; 3]> {
     let sums = sums(image, count, |pixel| image.color()[pixel].map(f64::from));
     sums.map(|sum| sum.map(|sum| sum / area(image, count))).collect()

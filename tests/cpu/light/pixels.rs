@@ -1,5 +1,5 @@
-//! How samples become pixels: means, variances, filters, lenses, and what is seen where there is nothing; and however
-//! light is looked for, as much of it is found.
+//! Samples and pixels: means, variances, filters, lenses, and pixels without a hit. All sampling methods find the same
+//! amount of light.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use super::{
 };
 use crate::support::effort::{effort, tries};
 
-/// Layers are the means of samples and what one ray says, to the last bit of f32.
+/// Layers are the means of samples, or the data of one ray, to the last bit of f32.
 #[test]
 fn layers_are_means_of_samples() {
     let lamp =
@@ -44,7 +44,7 @@ fn layers_are_means_of_samples() {
             }
             assert_eq!(image.alpha().unwrap()[index], mean(&|s| s.alpha) as f32);
             assert_eq!(image.samples().unwrap()[index], 7);
-            // The unbiased variance of one, over 7.
+            // The unbiased variance of one sample, divided by 7.
             let average = mean(&luminance);
             let wanted = mean(&|s| (luminance(s) - average).powi(2)) / 6.0;
             let found = f64::from(image.variance().unwrap()[index]);
@@ -80,7 +80,7 @@ fn another_seed_gives_other_samples() {
     );
 }
 
-/// The part of a pixel beside an edge that a sphere as large as a plane covers.
+/// The fraction of a pixel beside an edge that a sphere as large as a plane covers.
 #[test]
 fn filters_blur_edges_as_wide_as_they_are() {
     let radius = 1e4;
@@ -104,13 +104,13 @@ fn filters_blur_edges_as_wide_as_they_are() {
     }
 }
 
-/// A small sphere behind the plane of focus becomes a disk with the diameter 2·aperture·|s − f|/s in that plane; one
-/// in the plane stays as it is.
+/// A small sphere behind the plane of focus becomes a disk with the diameter 2·aperture·|s − f|/s in that plane. A
+/// sphere in the plane stays sharp.
 #[test]
 fn a_lens_blurs_what_is_out_of_focus() {
     let (aperture, focus, far) = (0.5, 4.0, 8.0);
     let pose = Pose::looking_along([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
-    // A pixel is 1/32 in the plane of focus.
+    // A pixel is 1/32 wide in the plane of focus.
     let pinhole = PinholeCamera::new(pose, focus, [0.5, 0.5]).unwrap();
     let lens = ThinLensCamera::new(pinhole, aperture, focus).unwrap();
     let render = |sphere: Sphere, through_lens: bool| {
@@ -135,10 +135,10 @@ fn a_lens_blurs_what_is_out_of_focus() {
     let radius = 0.05;
     let (cover, moment, reach) = render(white([0.0, 0.0, -far], radius), true);
     let disk = aperture * (far - focus) / far;
-    // Its own image, in the plane of focus.
+    // The sphere's own image in the plane of focus.
     let image = radius * focus / far;
     assert!((cover - std::f64::consts::PI * image * image).abs() < 0.03 * cover, "{cover}");
-    // The mean squares of two uniform disks and a pixel's square add up.
+    // The mean squares of two uniform disks and of a pixel's square add up.
     let wanted = 0.5 * disk * disk + 0.5 * image * image + 1.0 / (6.0 * 32.0 * 32.0);
     assert!((moment - wanted).abs() < 0.03 * wanted, "{moment}, not {wanted}");
     assert!((reach - disk - image).abs() < 0.04, "{reach}");
@@ -148,7 +148,7 @@ fn a_lens_blurs_what_is_out_of_focus() {
     assert!(through_lens.2 < 0.24, "{through_lens:?}");
 }
 
-/// On paths the colour of what stops the ray, in a studio that of what is first; of a catcher neither.
+/// Albedo is the colour of the surface that stops a path, or of a studio's first surface. A shadow catcher has none.
 #[test]
 fn albedo_is_that_of_the_first_surface() {
     let veil = Sphere::new([0.0; 3], 1.0, rgb([0.0, 0.5, 0.0])).with_opacity(0.0);
@@ -173,8 +173,8 @@ fn albedo_is_that_of_the_first_surface() {
     }
 }
 
-/// What is seen where nothing is: the sky, if it is to be seen, or the background, or nothing; and where the camera
-/// sees nothing, never the sky.
+/// Pixels without a hit show the sky if it is visible, or the background, or nothing. Where the camera has no ray, they
+/// never show the sky.
 #[test]
 fn where_there_is_nothing() {
     let background = rgb([0.1, 0.2, 0.3]);
@@ -213,8 +213,8 @@ fn where_there_is_nothing() {
     assert_eq!(shot.render(&base).id().unwrap()[0], NO_ID);
 }
 
-/// Lobes, metal, glass, what lets light pass, and emissive spheres, of which one lets light pass, one is partly
-/// inside another sphere, and one is where another is.
+/// Surfaces with lobes, metal, glass, translucent surfaces, and emissive spheres. One of these is translucent, one is
+/// partly inside another sphere, and one coincides with another.
 fn spheres() -> Vec<Sphere> {
     let sphere =
         |x: f64, y: f64, z: f64, r: f64, color: [f32; 3]| Sphere::new([x, y, z], r, rgb(color));
@@ -258,7 +258,7 @@ fn lighting(samples: u32, light_sampling: LightSampling, seed: u32) -> RenderSet
     }
 }
 
-/// From the front and above, so that all of the picture is ground and spheres.
+/// A view from the front and above, so that ground and spheres fill the picture.
 fn shot() -> Shot {
     let pose = Pose::looking_at([0.3, 6.0, 9.0], [0.2, 0.5, 0.4], [0.0, 1.0, 0.0]).unwrap();
     Shot {
@@ -276,7 +276,7 @@ fn luminances(image: &Image) -> Vec<f64> {
 #[test]
 fn chance_and_search_find_the_same_light() {
     let shot = shot();
-    // A seed of its own each, or what they have in common would not count.
+    // Each has its own seed, so that common errors do not cancel.
     let ways = [
         (LightSampling::Chance, 8192, 1),
         (LightSampling::Direct, 2048, 2),
@@ -294,13 +294,13 @@ fn chance_and_search_find_the_same_light() {
             let difference = light - other;
             let ways = (ways[a].0, ways[b].0);
             assert!(difference.abs() < bound, "{ways:?}, {block}: {light}, {other} ± {bound}");
-            // Or nothing would be told. Noise falls with the root of the number of samples.
+            // A larger bound would prove nothing. Noise falls with the root of the number of samples.
             assert!(bound < 0.04 * light / effort().sqrt(), "{ways:?}, {block}: {light} ± {bound}");
         }
     }
 }
 
-/// Russian roulette changes nothing but noise.
+/// Russian roulette changes only noise.
 #[test]
 fn paths_that_end_by_chance_lose_nothing() {
     let shot = shot();

@@ -1,4 +1,4 @@
-//! The rewriting of one function: its operations become calls.
+//! The rewriting of one function, which replaces its operations by calls.
 
 use std::collections::HashMap;
 
@@ -9,14 +9,14 @@ use naga::{
 
 use super::ORDERS;
 
-/// What is known of a module while its functions are rewritten.
+/// The data of a module that rewriting its functions needs.
 pub(super) struct Context<'a> {
     pub(super) types: &'a UniqueArena<naga::Type>,
-    /// The functions that operations become, by their names.
+    /// The functions that replace operations, by their names.
     pub(super) operations: &'a HashMap<String, Handle<Function>>,
-    /// Chooses among the forms of operations.
+    /// The seed that chooses among the forms of operations.
     pub(super) seed: u64,
-    /// The share of operations that become calls.
+    /// The fraction of operations that become calls.
     pub(super) share: f64,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Rewriter<'a> {
     new: Arena<Expression>,
     /// The new expression of each old one, by index.
     map: Vec<Option<Handle<Expression>>>,
-    /// Whether an old expression is emitted by a statement.
+    /// Whether a statement emits an old expression.
     is_emitted: Vec<bool>,
     /// The first and the last expression that are not yet emitted.
     pending: Option<(Handle<Expression>, Handle<Expression>)>,
@@ -35,7 +35,7 @@ pub(super) struct Rewriter<'a> {
 }
 
 impl<'a> Rewriter<'a> {
-    /// The function with calls in place of its operations.
+    /// Returns the function with calls in place of its operations.
     pub(super) fn rewrite(
         context: &'a Context<'a>,
         old: &'a Function,
@@ -55,7 +55,7 @@ impl<'a> Rewriter<'a> {
             random: fastrand::Rng::with_seed(seed),
         };
         rewriter.mark_emitted(&old.body);
-        // What no statement emits has no operands but of its kind.
+        // Expressions that no statement emits have only operands of the same kind.
         for (handle, expression) in old.expressions.iter() {
             if !rewriter.is_emitted[handle.index()] {
                 let mapped = rewriter.mapped(expression);
@@ -125,7 +125,7 @@ impl<'a> Rewriter<'a> {
         new
     }
 
-    /// The statement after the rewriting; those that emit expressions are pushed.
+    /// Rewrites a statement. Statements that emit expressions are pushed to the block.
     fn statement(&mut self, old: &Statement, block: &mut Block) -> Option<Statement> {
         let mut new = old.clone();
         match &mut new {
@@ -204,7 +204,7 @@ impl<'a> Rewriter<'a> {
         result
     }
 
-    /// The number of components of an old expression, if they are f32.
+    /// The number of components of an old expression, if they are f32. Otherwise `None`.
     fn size(&self, old: Handle<Expression>) -> Option<usize> {
         match *self.info[old].ty.inner_with(self.context.types) {
             TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => Some(1),
@@ -216,7 +216,7 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// The new expression of an operand as a vector of some size.
+    /// The new expression of an operand as a vector of the given size.
     fn operand(&mut self, old: Handle<Expression>, size: usize) -> Handle<Expression> {
         let value = self.of(old);
         let size = match size {
@@ -272,7 +272,7 @@ impl<'a> Rewriter<'a> {
         Some(self.call(&sized(name, size), arguments, block))
     }
 
-    /// A sum of which a term is a product may be fused with it.
+    /// A sum or difference with a product as a term, which may be fused with it.
     fn fused(
         &mut self,
         op: BinaryOperator,
@@ -347,7 +347,7 @@ impl<'a> Rewriter<'a> {
         Some(self.call(&name, arguments, block))
     }
 
-    /// The same expression of the new operands.
+    /// The same expression with the new operands.
     fn mapped(&self, old: &Expression) -> Expression {
         let mut new = old.clone();
         let map = |handle: &mut Handle<Expression>| *handle = self.of(*handle);
@@ -398,7 +398,7 @@ impl<'a> Rewriter<'a> {
     }
 }
 
-/// The name of an operation of a number or of a vector.
+/// The name of an operation on a number or a vector.
 fn sized(name: &str, size: usize) -> String {
     if size == 1 { name.to_owned() } else { format!("{name}_{size}v") }
 }

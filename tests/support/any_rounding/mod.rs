@@ -1,7 +1,7 @@
-//! A device that conforms to WGSL and yet rounds as it likes. Kernels are rewritten so that every operation with numbers
-//! takes some result that the accuracy table of WGSL allows, chosen by a hash of its operands: equal operands have equal
-//! results, as on every device. Products and sums are fused or not, terms of dot products are added in several orders,
-//! and subnormal results may become zero. The functions of `shaders/math/fence.wgsl` stay what they are.
+//! A device that conforms to WGSL but rounds in unusual ways. Kernels are rewritten so that every operation with
+//! numbers takes some result that the accuracy table of WGSL allows, chosen by a hash of its operands. Equal operands
+//! have equal results, as on every device. Products and sums are fused or not, terms of dot products are added in
+//! several orders, and subnormal results may become zero. The functions of `shaders/math/fence.wgsl` do not change.
 
 mod function;
 
@@ -11,7 +11,7 @@ use function::{Context, Rewriter};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use pinhole::internals::KernelRewrite;
 
-/// Which of the legal results of an operation is taken.
+/// The choice among the legal results of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rounding {
     Random,
@@ -19,7 +19,7 @@ pub(crate) enum Rounding {
     Down,
     AwayFromZero,
     TowardZero,
-    /// Each invocation takes them in one of these ways, half of them at random.
+    /// Each invocation uses one of these ways, half of them random.
     EachItsOwn,
 }
 
@@ -34,16 +34,16 @@ impl Rounding {
     ];
 }
 
-/// A device that takes other legal results than the nearest.
+/// A device that returns legal results other than the nearest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Adversary {
     pub(crate) rounding: Rounding,
     pub(crate) seed: u32,
-    /// The share of operations that round so, by their places in kernels; compilers take long for many of them.
+    /// The fraction of operations that round like this, by their places in kernels. Many of them take long to compile.
     pub(crate) share: f64,
-    /// Whether equal operands have equal results in all kernels, and not only in each.
+    /// Whether equal operands have equal results across kernels, and not only within each.
     pub(crate) is_alike: bool,
-    /// By how many ULP all results are off instead, if not by 0: that is not legal.
+    /// The error of all results in ULP instead, if it is not 0. Such results are not legal.
     pub(crate) fault: u32,
 }
 
@@ -52,12 +52,12 @@ impl Adversary {
         Self { rounding, seed, share: 1.0, is_alike: false, fault: 0 }
     }
 
-    /// What makes a device with this arithmetic.
+    /// The rewriting of kernels that gives a device this arithmetic.
     pub(crate) fn rewrite(self) -> KernelRewrite {
         KernelRewrite::new(move |name, source| self.rewritten(name, source))
     }
 
-    /// The kernel with its operations replaced. One without fences is not changed: the checker does not follow it.
+    /// The kernel with its operations replaced. Kernels without fences do not change, as the checker ignores them.
     fn rewritten(self, name: &str, source: &str) -> String {
         if !source.contains("fn fence(") {
             return source.to_owned();
@@ -67,7 +67,7 @@ impl Adversary {
         rewrite(&source, seed, self.share).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The text of the operations. Those of another seed have other results of the same operands.
+    /// The text of the operations. With another seed, the same operands have other results.
     pub(crate) fn operations(self, seed: u32) -> String {
         let Self { rounding, fault, .. } = self;
         let mode = Rounding::ALL.iter().position(|other| *other == rounding).unwrap();
@@ -85,7 +85,7 @@ impl Adversary {
     }
 }
 
-/// The module with calls in place of its operations.
+/// Rewrites a module with calls in place of its operations.
 fn rewrite(source: &str, seed: u64, share: f64) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
     let mut module =
@@ -122,12 +122,12 @@ fn rewrite(source: &str, seed: u64, share: f64) -> Result<String, String> {
     Ok(text)
 }
 
-/// A number that depends on a name and another number.
+/// A seed computed from a name and a number.
 fn seed_of(name: &str, seed: u64) -> u64 {
     name.bytes().fold(seed, |seed, byte| (seed ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// The kernel whose invocations choose how they round before all else.
+/// The kernel, whose invocations first choose how they round.
 fn begun(source: &str) -> String {
     let named = |builtin: &str| {
         let (_, rest) = source.split_once(builtin)?;
@@ -146,12 +146,12 @@ const AXES: [&str; 4] = ["x", "y", "z", "w"];
 /// The orders in which the terms of a dot product are added, by the number of components.
 const ORDERS: [&[&str]; 5] = [&[], &[], &["xy", "yx"], &["xyz", "yzx", "zxy"], &["xyzw", "wzyx"]];
 
-/// The name of a type of vector or number with f32 components.
+/// The name of an f32 type with `size` components.
 fn vector(size: usize) -> String {
     if size == 1 { "f32".to_owned() } else { format!("vec{size}f") }
 }
 
-/// A function of numbers, applied to each component.
+/// A function of numbers that is applied to each component.
 fn componentwise(name: &str, arguments: &[&str], size: usize) -> String {
     let vector = vector(size);
     let list: Vec<_> = arguments.iter().map(|argument| format!("{argument}: {vector}")).collect();
@@ -167,7 +167,7 @@ fn componentwise(name: &str, arguments: &[&str], size: usize) -> String {
     )
 }
 
-/// A dot product whose terms are added in an order, fused or not.
+/// A dot product whose terms are added in the given order, fused or not.
 fn dot(size: usize, order: &str, is_fused: bool) -> String {
     let product = |axis: char| format!("adv_mul(a.{axis}, b.{axis})");
     let mut axes = order.chars();
@@ -180,7 +180,7 @@ fn dot(size: usize, order: &str, is_fused: bool) -> String {
     format!("fn adv_dot_{order}_{how}(a: {vector}, b: {vector}) -> f32 {{ return {sum}; }}\n")
 }
 
-/// All operations of vectors, and those of numbers that are made of several.
+/// All operations on vectors, and the operations on numbers that combine several others.
 fn vectors() -> String {
     let mut source = String::new();
     source += "fn adv_sub(a: f32, b: f32) -> f32 { return adv_add(a, -b); }\n";

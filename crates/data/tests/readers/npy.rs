@@ -1,4 +1,4 @@
-//! Arrays of spheres from .npy, .npz and raw files; those that are refused are in `tests/files/refused`.
+//! Arrays of spheres from .npy, .npz and raw files. Those that are refused are in `tests/files/refused`.
 
 use pinhole::SphereArray;
 use pinhole_data::load::npy as reader;
@@ -42,7 +42,7 @@ fn both_precisions_both_byte_orders_both_layouts() {
             let spheres = read_spheres(&npy(dtype, by_columns, "(2, 4)", &data), None);
             assert_eq!(spheres.as_ref(), Ok(expected), "{dtype} {by_columns}");
         }
-        // The first three columns alone, with one radius for both spheres.
+        // Only the first three columns, with one radius for both spheres.
         let part: Vec<f32> = match by_columns {
             false => ROWS.iter().flat_map(|row| row[..3].to_vec()).collect(),
             true => by_column[..6].to_vec(),
@@ -84,7 +84,7 @@ fn long_arrays() {
     assert_eq!(read_spheres(&file, None), Ok(SphereArray::F32(spheres)));
 }
 
-/// What is refused otherwise stands in `tests/files/refused/npy.txt`.
+/// Other refused files are in `tests/files/refused/npy.txt`.
 #[test]
 fn a_header_that_is_cut_off_says_so() {
     let file = file();
@@ -196,7 +196,7 @@ fn more_columns_are_a_value_or_colors() {
     assert!(three.notes[0].contains("--radius sets it"), "{:?}", three.notes);
 }
 
-/// Two structures with positions, colours, opacities, text and what is not used.
+/// Two structures with positions, colours, opacities, text and an unused field.
 #[test]
 fn fields_have_names() {
     let loaded = reader::read(include_bytes!("../files/good/structured.npy"), None).unwrap();
@@ -248,7 +248,7 @@ fn archives_of_several_arrays() {
             ]
         );
     }
-    // One coordinate in each array; the radius follows from the spacing, or is given.
+    // One coordinate in each array. The radius follows from the spacing, or is given.
     let axis = |values: [i16; 2]| file("<i2", "(2,)", &values.map(i16::to_le_bytes).concat());
     let (x, y, z) = (axis([0, 0]), axis([0, 7]), axis([1, 1]));
     let archive = zip(&[("x.npy", &x), ("y.npy", &y), ("z.npy", &z)], false);
@@ -267,7 +267,7 @@ fn archives_of_several_arrays() {
     );
 }
 
-/// A flipped bit in the numbers is found by the archive's checksum.
+/// The archive's checksum finds a flipped bit in the numbers.
 #[test]
 fn damaged_archives() {
     for deflated in [false, true] {

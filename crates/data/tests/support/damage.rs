@@ -1,5 +1,4 @@
-//! Reads files that were damaged at random. Whatever is in a file, reading it must end soon with spheres or with one line
-//! that says what is wrong.
+//! Reads files that were damaged at random. For any file, reading must end soon, with spheres or with a one-line error.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +10,7 @@ use pinhole_data::load::{self, ColumnValues, Dataset, Format, LoadError, Options
 /// The longest time that reading a small file may take.
 pub(crate) const SLOW: Duration = Duration::from_secs(2);
 
-/// Numbers at which readers break, if anywhere.
+/// Numbers that are most likely to break readers.
 const NUMBERS: [u64; 14] = [
     0,
     1,
@@ -29,20 +28,20 @@ const NUMBERS: [u64; 14] = [
     u64::MAX,
 ];
 
-/// The same as text, and what else a number can be, with blanks between them; nothing at all, too.
+/// The same numbers as text, and words in the place of numbers, separated by blanks. One word is empty.
 const WORDS: &str = "0 -1 1e308 -1e-320 nan inf 1e999 16777216 4294967296 999999999999 18446744073709551615 \
                      99999999999999999999999  \u{e9}";
 
-/// Bytes that mean something in texts.
+/// Bytes that have a meaning in text formats.
 const TELLING: &[u8] = b"\n\t \"';#,._\xff\0";
 
-/// A damaged copy of a file. `other` is another good file, of which pieces may be taken.
+/// Returns a damaged copy of a file. `other` is another valid file, from which pieces may be taken.
 pub(crate) fn damaged(good: &[u8], other: &[u8], random: &mut Rng) -> Vec<u8> {
     let mut bytes = good.to_vec();
     for _ in 0..1 << random.usize(0..4) {
         damage(&mut bytes, other, random);
     }
-    // A file that grows from one damage to the next would only be slow.
+    // A file that grows with each damage would only be slow.
     bytes.truncate(2 * good.len() + 4096);
     bytes
 }
@@ -95,7 +94,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
     }
 }
 
-/// Replaces the number of the text at this place, or after it, by another one.
+/// Replaces the number in the text at or after this position by another one.
 fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Rng) {
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
     let Some(start) = bytes[at..].iter().position(is_part).map(|offset| at + offset) else {
@@ -107,10 +106,10 @@ fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Rng) {
     bytes.splice(start..end, random.choice(words).unwrap().bytes());
 }
 
-/// Reads a file in every way that a program can, and returns how long the longest of them took.
+/// Reads a file in every way that a program can, and returns the time of the slowest way.
 ///
 /// # Errors
-/// Says what is wrong with what was read, or with the message of an error.
+/// Returns a message about wrong content, or about a wrong error message.
 pub(crate) fn read_all(
     format: &'static Format,
     bytes: &[u8],
@@ -154,21 +153,21 @@ pub(crate) fn read_bytes(
 ) -> Result<Duration, String> {
     let named = options.clone().with_format(format);
     let longest = timed(|| check(load::from_bytes(bytes, "", &named)))?;
-    // The content may look like another format now, which then gets options that it does not know.
+    // The content may look like another format now. That format then gets options that it does not support.
     if random.u8(0..8) > 0 {
         return Ok(longest);
     }
     Ok(longest.max(timed(|| check(load::from_bytes(bytes, "", options)))?))
 }
 
-/// How long reading took.
+/// The time that reading took.
 fn timed(read: impl FnOnce() -> Result<(), String>) -> Result<Duration, String> {
     let start = Instant::now();
     read()?;
     Ok(start.elapsed())
 }
 
-/// Checks that what was read fits together, or that the error is one line.
+/// Checks that the data is consistent, or that the error is one line.
 fn check(read: Result<Dataset, LoadError>) -> Result<(), String> {
     let loaded = match read {
         Ok(loaded) => loaded,
@@ -195,7 +194,7 @@ fn check(read: Result<Dataset, LoadError>) -> Result<(), String> {
     check_message(loaded.notes)
 }
 
-/// Checks that messages are each one line, which a terminal shows as it is.
+/// Checks that each message is one line that a terminal can show unchanged.
 fn check_message(messages: impl IntoIterator<Item = String>) -> Result<(), String> {
     for message in messages {
         if message.is_empty() || message.chars().any(char::is_control) {

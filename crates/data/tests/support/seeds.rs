@@ -1,7 +1,7 @@
-//! Small good files of every format that can be read, from which the fuzzer makes bad ones.
+//! Small valid files of every format that can be read. The fuzzer makes invalid ones from them.
 //!
-//! A new format gets files in `tests/files/good`; a test fails until it has. Those of DCD, TRR and XTC need a topology, and
-//! are written by `binary_files`.
+//! A new format needs files in `tests/files/good`, and a test fails until it has some. Files of DCD, TRR and XTC need a
+//! topology, and `binary_files` writes them.
 
 use std::path::Path;
 
@@ -9,14 +9,14 @@ use pinhole_data::load::{Format, Options};
 
 use crate::binary_files::{dcd as charmm, gromacs, topology};
 
-/// A good file.
+/// A valid file.
 pub(crate) struct Seed {
     pub(crate) bytes: Vec<u8>,
-    /// What reading it needs beside the format.
+    /// Further options that reading the file needs.
     pub(crate) options: Options,
 }
 
-/// Files that must be given the names of their columns, or `radius`.
+/// Files whose options must name their columns, or give `radius`.
 const NEEDS: [(&str, &str); 5] = [
     ("general.dump", "id type xsu ysu zsu"),
     ("bare.data", "id type q x y z"),
@@ -25,7 +25,7 @@ const NEEDS: [(&str, &str); 5] = [
     ("bare.csv", "x y z"),
 ];
 
-/// The names and bytes of the good files of a format, which their extensions tell.
+/// The names and bytes of the valid files of a format, found by their extensions.
 fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/good");
     let extensions = if format.name == "raw-f32x4" { &["bin"][..] } else { format.extensions };
@@ -40,7 +40,7 @@ fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
     names.into_iter().map(read).collect()
 }
 
-/// The good files of a format; none if it is unknown here. What they need, such as a topology, is written into the folder.
+/// The valid files of a format, if it is known here. What they need, such as a topology, is written into the folder.
 pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
     let mut seeds = match format.name {
         "dcd" => dcd(folder),
@@ -83,7 +83,7 @@ fn trr(folder: &Path) -> Vec<Seed> {
 
 fn xtc(folder: &Path) -> Vec<Seed> {
     let (old, new) = (molly::Magic::Xtc1995, molly::Magic::Xtc2023);
-    // Of fewer than ten atoms the positions are not compressed.
+    // For fewer than ten atoms, the positions are not compressed.
     [(5, old), (12, old), (60, new)]
         .map(|(atoms, magic)| with_topology(gromacs::xtc(2, atoms, magic), folder, atoms))
         .into()

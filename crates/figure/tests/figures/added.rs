@@ -1,4 +1,4 @@
-//! Bonds and the edges of cells: which there are, where their spheres lie, and what these look like.
+//! Bonds and the edges of cells: which of them exist, the positions of their spheres, and their appearance.
 
 use pinhole::glam::DVec3;
 use pinhole::{LinearRgb, Scene, SphereArray};
@@ -11,7 +11,7 @@ fn read(text: &str) -> Dataset {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
 }
 
-/// Two molecules of water, whose hydrogens are close to each other, and a far one.
+/// Two water molecules with hydrogens that are close to each other.
 const WATER: &str =
     "6\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\nH 1.7 0 0\nO 2.6 0 0\nH 2.6 0.96 0\n";
 
@@ -35,7 +35,7 @@ fn oxygen_is_bonded_to_its_hydrogens_and_hydrogens_are_not() {
     let (scene, bonds) = scene(read(WATER), &bonds());
     assert_eq!(bonds, 4);
     let (atoms, sticks) = scene.spheres().split_at(6);
-    // Balls have 0.25 of the van der Waals radii of Alvarez.
+    // Atoms have 0.25 of Alvarez' van der Waals radii.
     assert!((atoms[0][3] - 0.375).abs() < 1e-6 && (atoms[1][3] - 0.3).abs() < 1e-6);
     assert!(!sticks.is_empty());
     let red = scene.color(0);
@@ -43,12 +43,12 @@ fn oxygen_is_bonded_to_its_hydrogens_and_hydrogens_are_not() {
         let near = |atom: &&[f32; 4]| center(atom).distance(center(stick));
         let nearest = atoms.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
         let atom = atoms.iter().position(|atom| atom == nearest).unwrap() as u32;
-        // Each half has the colour of its atom.
+        // Each half of a bond has the colour of its atom.
         assert_eq!(scene.color(index), scene.color(atom), "{stick:?}");
         assert_eq!(scene.color(index) == red, atom == 0 || atom == 4);
         assert!((stick[3] - 0.45 * 0.3).abs() < 1e-6);
     }
-    // Every bond is a string without gaps: steps are at most 0.4 of the radius, across the middle as well.
+    // Every bond is a row of spheres without gaps. Steps are at most 0.4 of the radius, also across the middle.
     let [from, to] = [center(&atoms[0]), center(&atoms[1])];
     let on_bond = |sphere: &&[f32; 4]| (center(sphere).y).abs() < 1e-6 && sphere[0] < 1.0;
     let mut along: Vec<f64> = sticks.iter().filter(on_bond).map(|s| s[0].into()).collect();
@@ -64,14 +64,14 @@ fn oxygen_is_bonded_to_its_hydrogens_and_hydrogens_are_not() {
 #[test]
 fn the_user_chooses_lengths_and_radii() {
     let of = |length: BondLength| Additions { bonds: Some(Bonds::new(length)), ..bonds() };
-    // Any pair below the length, also the two hydrogens that are 0.74 apart.
+    // Any pair closer than the length is bonded, also the two hydrogens that are 0.74 apart.
     assert_eq!(scene(read(WATER), &of(BondLength::Below(1.0))).1, 5);
     assert_eq!(scene(read(WATER), &of(BondLength::Covalent(0.9))).1, 0);
-    // O and H of different molecules, 1.7 apart, at 1.8 times 0.97.
+    // An O and an H of different molecules, 1.7 apart, are closer than 1.8 times 0.97.
     assert_eq!(scene(read(WATER), &of(BondLength::Covalent(1.8))).1, 6);
     let (kept, _) = scene(read(WATER), &Additions { keeps_radii: true, ..bonds() });
     assert!((kept.spheres()[0][3] - 1.5).abs() < 1e-6);
-    // Sticks within the balls are not drawn.
+    // Sticks inside the atoms' spheres are not drawn.
     assert_eq!(kept.added(), 0);
     for bad in [BondLength::Below(f64::NAN), BondLength::Covalent(0.0), BondLength::Below(-1.0)] {
         let made = Mapping::default().scene_with(read(WATER), LinearRgb::WHITE, &of(bad));
@@ -91,7 +91,7 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]);
     let (plain, plain_mapped) = mapping.scene(loaded.clone(), LinearRgb::WHITE).unwrap();
     let (scene, mapped, added) = mapping.scene_with(loaded, LinearRgb::WHITE, &additions).unwrap();
-    // The range, the legend and the look of the atoms are those without additions.
+    // The range, the legend and the appearance of the atoms are the same as without additions.
     assert_eq!(mapped.key(), plain_mapped.key());
     assert_eq!(mapped.notes(), plain_mapped.notes());
     for id in 0..6 {
@@ -119,7 +119,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
     let [a, b, c] = [[4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [0.0, 1.0, 2.0]].map(DVec3::from);
     let radius = (a + b + c).length() / 600.0;
     let at = |sphere: &[f32; 4]| scene.origin() + center(sphere);
-    // Every sphere lies on an edge: two of its fractions are 0 or 1, and the third is between them.
+    // Every sphere lies on an edge. Two of its fractions are 0 or 1, and the third is between them.
     let inverse = pinhole::glam::DMat3::from_cols(a, b, c).inverse();
     let mut on_edge = [0; 12];
     for sphere in &scene.spheres()[1..] {
@@ -141,7 +141,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
     let expected = [[of_a; 4], [of_b; 4], [of_c; 4]].concat();
     assert_eq!(on_edge.to_vec(), expected);
     assert_eq!(scene.added(), expected.iter().sum::<usize>() + 8);
-    // The mean radius, by which a style is chosen, is that of the data.
+    // The mean radius, which a style uses, is that of the data.
     assert!((scene.subject().mean_radius().unwrap() - 1.77).abs() < 1e-6);
     let bounds = scene.bounds().unwrap();
     assert!(bounds.max().cmpge(origin + a + b + c).all());
@@ -189,7 +189,7 @@ fn scene_files_select_and_add() {
         panic!("additions make spheres")
     };
     assert_eq!(spheres.len(), 3 + applied.added.len());
-    // A radius that the file gives is not made smaller.
+    // A radius given by the file is not reduced.
     assert!((spheres[0].radius - 0.7).abs() < 1e-12 && (spheres[1].radius - 0.3).abs() < 1e-12);
     assert!((spheres[spheres.len() - 1].radius - 0.05).abs() < 1e-12);
 }

@@ -1,4 +1,4 @@
-//! Legends, scale bars and labels, as pictures have them.
+//! Legends, scale bars and labels in pictures.
 
 use pinhole::camera::{FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::glam::DVec3;
@@ -15,7 +15,7 @@ use pinhole_figure::write::png as png_file;
 
 use crate::pictures::{plain, read_png};
 
-/// A key of categories.
+/// A colour key of categories.
 fn categories(names: &[&str]) -> ColorKey {
     let labels = Labels {
         names: names.iter().map(|name| (*name).to_owned()).collect(),
@@ -26,7 +26,7 @@ fn categories(names: &[&str]) -> ColorKey {
     ColorBy::column("kind").apply(&spheres, &columns, &[]).unwrap().key
 }
 
-/// A key of a scale.
+/// A colour key of a scale.
 fn scale(values: &[f64], is_log: bool) -> ColorKey {
     let values = ColumnValues::Numbers(values.to_vec());
     let columns = [Column { name: "value".to_owned(), values }];
@@ -40,7 +40,7 @@ fn flat([width, height]: [u32; 2], level: f32) -> Image {
     plain([width, height], vec![[level; 3]; (width * height) as usize])
 }
 
-/// Neither exposure nor a tone curve changes annotations, whatever they do to the picture.
+/// Neither exposure nor a tone curve changes the colours of annotations.
 #[test]
 fn exposure_and_tone_leave_annotations_alone() {
     let key = categories(&["A", "B", "C"]);
@@ -101,7 +101,7 @@ fn a_panel_lies_where_the_picture_is_mixed() {
     assert_eq!(drawn(Panel::Auto, light.clone()), drawn(Panel::Never, light));
 }
 
-/// Whatever is drawn, at whatever size: no panic, and what lies far from the annotation does not change.
+/// Annotations of any kind and size cause no panic, and do not change the picture far from them.
 #[test]
 fn annotations_fit_pictures_of_any_size() {
     let names: Vec<String> = (0..500).map(|i| format!("name {i}")).collect();
@@ -132,7 +132,7 @@ fn annotations_fit_pictures_of_any_size() {
     }
 }
 
-/// Two labels of one corner lie below each other.
+/// Two labels in one corner are stacked.
 #[test]
 fn what_shares_a_corner_is_stacked() {
     let size = [300_u32, 200_u32];

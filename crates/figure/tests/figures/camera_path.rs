@@ -1,4 +1,4 @@
-//! Paths of cameras: what they pass through, what they refuse, and how scene files give them.
+//! Camera paths: the points that they pass through, the keys that they refuse, and their form in scene files.
 
 use pinhole::camera::{
     CameraKey, CameraMotion, CameraPath, CameraPathError, KeyPlace, PathClock, PlaceOnPath,
@@ -25,7 +25,7 @@ fn motion(keys: &[CameraKey]) -> CameraMotion {
     path(keys).unwrap().motion(DVec3::Y).unwrap()
 }
 
-/// Eye, target and up.
+/// The eye, target and `up` direction at a time.
 fn points(motion: &CameraMotion, time: f64) -> [DVec3; 3] {
     match motion.at(time).place {
         PlaceOnPath::Point { eye, look_at, up } => [eye, look_at, up],
@@ -112,7 +112,7 @@ fn views_turn_as_often_as_they_say() {
     }
 }
 
-/// Whatever direction is up, a view of a key is that of `--view`, and named axes are those of the world.
+/// For any `up` direction, a view of a key is that of `--view`, and named axes are those of the world.
 #[test]
 fn views_are_those_of_viewpoints() {
     for up in [DVec3::Y, DVec3::Z, DVec3::new(1.0, 2.0, -0.5).normalize_or_zero()] {
@@ -192,7 +192,7 @@ fn files_and_scenes_give_the_same_path() {
     assert_eq!(SceneFile::parse("").unwrap().camera_path(), None);
 }
 
-/// Those of scene files are in `tests/files/refused/scene_files.txt`.
+/// Errors of scene files are in `tests/files/refused/scene_files.txt`.
 #[test]
 fn errors_of_files_have_a_place() {
     let error = parse_camera_path("[[keys]]\nframe = 0\nview = 'z'\n[camera]\n").unwrap_err();

@@ -1,4 +1,4 @@
-//! Colours, radii, opacities and strengths of light from columns, and expressions over columns that select.
+//! Colours, radii, opacities and strengths of light from columns, and selections by expressions over columns.
 
 use pinhole::scene::Colors;
 use pinhole::{LinearRgb, Material, Scene, SphereArray, SurfaceProperties};
@@ -30,12 +30,12 @@ fn labels(name: &str, texts: &[&str]) -> Column {
     Column { name: name.to_owned(), values: ColumnValues::Labels(labels) }
 }
 
-/// A mapping whose colours are the levels of grey.
+/// A mapping whose colours are levels of grey.
 fn gray(column: &str) -> ColorBy {
     ColorBy { map: Some("gray".parse().unwrap()), ..ColorBy::column(column) }
 }
 
-/// The levels of the colours of `values`.
+/// The grey levels that a mapping gives `values`, and its notes.
 fn levels(by: &ColorBy, values: &[f64]) -> (Vec<u8>, Vec<String>) {
     let columns = [numbers(&by.column, values)];
     let coloring = by.apply(&spheres(values.len()), &columns, &[]).unwrap();
@@ -50,7 +50,7 @@ fn category_names(key: &ColorKey) -> Vec<(&str, usize)> {
     }
 }
 
-/// The colours of spheres with these texts.
+/// The colours that a mapping gives spheres with these texts.
 fn colors_of(by: &ColorBy, texts: &[&str]) -> Vec<[u8; 3]> {
     let coloring = by.apply(&spheres(texts.len()), &[labels("t", texts)], &[]).unwrap();
     (0..texts.len()).map(|index| coloring.color(index).unwrap().to_srgb8()).collect()
@@ -98,7 +98,7 @@ fn frames_together_have_one_range_if_any_is_on_a_scale() {
             other => panic!("{other:?}"),
         }
     }
-    // Categories alone stay categories, also where a frame has other numbers.
+    // Categories stay categories, even if a frame has numbers.
     let mut by = ColorBy::column("t");
     let mut joined = JoinedKeys::default();
     joined.add(&key(&by, &[10.0, 9.0]));
@@ -328,7 +328,7 @@ fn radii_must_be_positive() {
     assert!(mapping.apply(&mut spheres(2), &columns, &[false, true]).is_ok());
 }
 
-/// Six spheres at x = 0 to 5, with text and numbers.
+/// Six spheres at x = 0 to 5, with texts and numbers.
 fn loaded() -> Dataset {
     let spheres = (0..6).map(|i| [f64::from(i), -1.0, 0.5 * f64::from(i), 1.0]).collect();
     let mut loaded = Dataset::new(SphereArray::F64(spheres));
@@ -399,13 +399,13 @@ fn what_is_kept_stays_together() {
     assert_eq!(spheres.iter().map(|s| s[0]).collect::<Vec<_>>(), [2.0, 3.0, 4.0]);
     assert_eq!(loaded.colors, Some((2..5).map(level).collect()));
     assert_eq!(loaded.opacities, Some(vec![0.2, 0.3, 0.4]));
-    // Texts that nobody has are gone, and the rest is numbered anew.
+    // Unused texts are gone, and the rest is numbered again.
     let species = loaded.labels("species").unwrap();
     assert_eq!(
         (&species.names[..], &species.indices[..]),
         (&["O", "Fe", "H"].map(String::from)[..], &[0, 1, 2][..])
     );
-    // The index is that of the file.
+    // The index is the one in the file.
     assert_eq!(loaded.column("index"), Some(&ColumnValues::Numbers(vec![2.0, 3.0, 4.0])));
     for column in &loaded.columns {
         let count = match &column.values {

@@ -1,4 +1,4 @@
-//! Light as an image: where its texels are, how they are sampled, and files of it.
+//! Environment maps: the places of their texels, their sampling, and their files.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::io::Cursor;
@@ -22,7 +22,7 @@ fn directions_have_their_texels() {
     let texels = (0..32).map(|i| [i as f32, 0.0, 0.0]).collect();
     let map = Environment::new(8, 4, texels).unwrap();
     let at = |d: [f64; 3], rotation| map.radiance(DVec3::from(d), rotation)[0];
-    // Left and right of the middle, above and below it.
+    // Left and right of the middle, and above and below it.
     assert_eq!(at([-0.1, 0.1, -1.0], AS_IT_IS), 11.0);
     assert_eq!(at([0.1, 0.1, -1.0], AS_IT_IS), 12.0);
     assert_eq!(at([0.1, -0.1, -1.0], AS_IT_IS), 20.0);
@@ -31,7 +31,7 @@ fn directions_have_their_texels() {
     assert_eq!(at([0.1, 0.1, 1.0], AS_IT_IS), 15.0);
     assert_eq!(at([-0.1, 0.1, 1.0], AS_IT_IS), 8.0);
     assert_eq!(at([-1.0, 0.1, 0.1], AS_IT_IS), 9.0);
-    // Poles are in the middle, whatever signs zeros have.
+    // Poles are in the middle, for any signs of zeros.
     for (y, row) in [(1.0, 0.0), (-1.0, 3.0)] {
         for x in [0.0, -0.0] {
             for z in [0.0, -0.0] {
@@ -41,19 +41,19 @@ fn directions_have_their_texels() {
     }
     // Behind, neither left nor right.
     assert_eq!(at([0.0, 0.1, 1.0], AS_IT_IS), at([-0.0, 0.1, 1.0], AS_IT_IS));
-    // A quarter from +z to +x brings what was in front, −z, to the left.
+    // A quarter turn from +z to +x brings the front, −z, to the left.
     let rotation = Environment::rotation(FRAC_PI_2);
     assert_eq!(at([-1.0, 0.1, -0.1], rotation), 12.0);
     assert_eq!(at([1.0, 0.1, 0.1], rotation), 8.0);
 }
 
-/// Of a texel, without the formula of the library.
+/// The solid angle of a texel, without the formula of the library.
 fn solid_angle(map: &Environment, row: u32) -> f64 {
     let edge = |row: u32| (PI * f64::from(row) / f64::from(map.height())).cos();
     TAU / f64::from(map.width()) * (edge(row) - edge(row + 1))
 }
 
-/// A direction within a texel; parts in [0, 1].
+/// A direction within a texel, at fractions of its sides.
 fn within(map: &Environment, [column, row]: [u32; 2], [along, down]: [f64; 2]) -> DVec3 {
     direction(
         (f64::from(column) + along) / f64::from(map.width()),
@@ -84,7 +84,7 @@ fn densities_add_up_to_one_and_follow_the_light() {
             let density = map.density(within(&map, texel, [0.3, 0.6]), AS_IT_IS);
             sum += density * solid_angle(&map, texel[1]);
             assert_eq!(density > 0.0, luminance(texel) > 0.0, "{size:?}, {texel:?}");
-            // One share of 2²⁴ for each, and rounding by as much, of columns and of rows.
+            // One share of 2²⁴ for each, and rounding by as much, for columns and rows.
             let probability = density * solid_angle(&map, texel[1]);
             let shares = f64::from(2 * (size[0] + size[1])) / f64::from(1 << 24);
             let expected = power(texel) / total;
@@ -122,8 +122,8 @@ fn sampled_directions_have_the_density_that_comes_with_them() {
     }
 }
 
-/// Of random samples, each texel has as many as its density says, and each quarter of a texel's solid angle, which
-/// are of equal longitude and of equal height, as many as the others: χ² within five standard deviations.
+/// Each texel gets as many random samples as its density says, within five standard deviations of χ². So does each
+/// quarter of a texel's solid angle, where quarters have equal longitude and equal height.
 #[test]
 fn samples_follow_the_density() {
     const COUNT: usize = 1 << 20;
@@ -178,7 +178,7 @@ fn a_single_bright_texel_has_every_sample() {
     }
 }
 
-/// As in a picture of the sun: it has nearly all of the light, and the sky is still sampled.
+/// A map like a picture of the sun, which has nearly all of the light. The sky is still sampled.
 #[test]
 fn no_light_is_too_faint() {
     let mut texels = vec![[1e-9; 3]; 4096 * 256];
@@ -204,8 +204,8 @@ fn a_black_map_has_nothing_to_sample() {
     assert!(random_map(1, [4, 2]).has_light());
 }
 
-/// The whole light by samples: the mean of luminance over density is the integral, without any variance but
-/// that of shares. Each of 2¹¹ texels may have two of 2²⁴ too many; half of the bound is left to chance.
+/// The mean of luminance over density is the integral of the light, without any variance but that of shares. Each of
+/// 2¹¹ texels may have two of 2²⁴ too many. Half of the bound is left to chance.
 #[test]
 fn samples_integrate_the_light_without_variance() {
     let map = random_map(4, [64, 32]);
@@ -225,7 +225,7 @@ fn samples_integrate_the_light_without_variance() {
     assert!((mean / expected - 1.0).abs() < 2_f64.powi(-11), "{mean}, {expected}");
 }
 
-/// What arrives from the whole map, by the texels' own sizes.
+/// The total light of a map, by the texels' own solid angles.
 fn power(map: &Environment) -> [f64; 3] {
     let mut total = [0.0; 3];
     for (texel, [_, row]) in map.texels().iter().zip(places(map)) {
@@ -303,14 +303,14 @@ fn message(bytes: &[u8]) -> String {
     read(bytes).unwrap_err().to_string()
 }
 
-/// A file without run-length encoding.
+/// A Radiance file without run-length encoding.
 fn flat_hdr(header: &str, pixels: &[[u8; 4]]) -> Vec<u8> {
     [header.as_bytes(), pixels.as_flattened()].concat()
 }
 
 const HEADER: &str = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2.0\n\n-Y 1 +X 2\n";
 
-/// Each component is its byte over 256, times 2 to the power of the last byte less 128.
+/// Each component is its byte divided by 256, times 2 to the power of the last byte less 128.
 #[test]
 fn radiance_of_known_bytes() {
     for header in
@@ -495,10 +495,10 @@ fn large_maps_are_refused_before_they_are_read() {
             "the image has 4294967295×1 texels, more than the limit of {MAX_TEXELS}; use a smaller image"
         )
     );
-    // A size that a file may have, but for which this file is too short.
+    // A size that is valid, but too large for this file.
     let bytes = flat_hdr(&HEADER.replace("+X 2", "+X 10000000"), &[[9; 4]; 2]);
     assert_eq!(read(&bytes).unwrap_err().kind, LoadErrorKind::CutOff);
-    // The data window of an OpenEXR file, of which maxima are the last two.
+    // The data window of an OpenEXR file. Its maxima are the last two numbers.
     let mut bytes = exr(4, 4, Compression::Uncompressed);
     let name = b"dataWindow\0box2i\0\x10\0\0\0";
     let at = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len();
@@ -506,7 +506,7 @@ fn large_maps_are_refused_before_they_are_read() {
     assert!(message(&bytes).starts_with("the image has 268435456×4 texels, more than"));
 }
 
-/// Reads a file; whatever is in it, the file is read or refused without a panic.
+/// Reads a file with any content. It must be read or refused without a panic.
 fn survives(bytes: &[u8]) -> Result<Environment, LoadError> {
     let result = read(bytes);
     if let Err(error) = &result {
@@ -559,7 +559,7 @@ fn noise_does_not_panic() {
         let _ = survives(&[HEADER.replace("+X 2", "+X 20").as_bytes(), &noise].concat());
         let _ = survives(&[&[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0][..], &noise].concat());
     }
-    // Markers of runs of no pixels, which multiply what follows.
+    // Markers of empty runs, which multiply the length of the next run.
     let markers = [&[[7; 4]; 1][..], &[[1, 1, 1, 0]; 30]].concat();
     assert!(survives(&flat_hdr(HEADER, &markers)).is_err());
 }

@@ -1,4 +1,4 @@
-//! Pictures in files, read back by other code; outlines are as a plain second implementation draws them, to the bit.
+//! Pictures in files, read by other code. Outlines equal those of a simple second implementation, to the bit.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -16,7 +16,7 @@ use pinhole_figure::write::{exr as exr_file, npy, png as png_file};
 
 use crate::support::View;
 
-/// Three spheres with all layers, over black, as a transparent picture wants it.
+/// Three spheres with all layers, over black, as for a transparent picture.
 fn picture() -> Image {
     let mut view = View::three_spheres();
     view.film = pinhole::Film::new(61, 47).unwrap();
@@ -24,19 +24,19 @@ fn picture() -> Image {
     view.reference()
 }
 
-/// A row of colours and nothing else.
+/// A picture of one row of colours, without data layers.
 fn row(colors: &[[f32; 3]]) -> Image {
     plain([colors.len() as u32, 1], colors.to_vec())
 }
 
-/// Colours and nothing else.
+/// A picture with colours only. Its data layers are zero.
 pub(crate) fn plain(size: [u32; 2], colors: Vec<[f32; 3]>) -> Image {
     let count = colors.len();
     let (zeros, vectors) = (vec![0.0; count], vec![[0.0; 3]; count]);
     Image::from_layers(size, colors, zeros, vectors, vec![0; count]).unwrap()
 }
 
-/// The certificate in a file, and the samples.
+/// The metadata of a PNG file, and the samples.
 pub(crate) fn read_png(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
     let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
     assert!(reader.info().srgb.is_some(), "it says that it is sRGB");
@@ -45,7 +45,7 @@ pub(crate) fn read_png(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
     (reader.info().clone(), samples)
 }
 
-/// Colour type and depth in words, and the samples.
+/// Colour type and bit depth in words, and the samples.
 fn decoded(file: &[u8]) -> (String, Vec<u8>) {
     let (info, samples) = read_png(file);
     (format!("{:?} {:?}", info.color_type, info.bit_depth), samples)
@@ -123,7 +123,7 @@ fn exposure_comes_before_the_tone_curve_and_both_before_srgb() {
     }
 }
 
-/// A file's channels by name, and its attributes.
+/// The channels of an EXR file by name, and its attributes.
 struct Exr {
     channels: Vec<(String, FlatSamples)>,
     software: Option<String>,
@@ -232,7 +232,7 @@ fn an_exr_holds_every_number_of_every_layer() {
     assert_eq!(exr.adapter.as_deref(), Some("A GPU? (Å)"));
 }
 
-/// Ids beyond what f32 holds, and light beyond what half does.
+/// Ids beyond the range of f32, and light beyond the range of half.
 #[test]
 fn an_exr_rounds_nothing() {
     let ids = vec![0, 16_777_217, 4_294_967_294, NO_ID];
@@ -271,7 +271,7 @@ fn an_exr_holds_what_is_asked_for() {
     assert!(written(&nothing, LayerSet::COLOR, Encoding::default(), None).is_err());
 }
 
-/// Takes so many bytes and no more.
+/// A sink that takes a limited number of bytes.
 struct Full(Cursor<Vec<u8>>, usize);
 
 impl std::io::Write for Full {
@@ -294,7 +294,7 @@ impl std::io::Seek for Full {
     }
 }
 
-/// Wherever it fails, with a buffer in between or without.
+/// A failure at any byte is an error, with or without a buffer in between.
 #[test]
 fn a_sink_that_fails_is_an_error() {
     let image = picture();
@@ -345,7 +345,7 @@ fn every_layer_is_an_array() {
 
 const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
 
-/// A picture of spheres seen from far away, in colours that tell nothing.
+/// A picture of spheres seen from far away, in random colours.
 fn pictured(size: [usize; 2], rng: &mut Rng) -> Image {
     let count = size[0] * size[1];
     let far = 20.0 + 2000.0 * rng.f32() * rng.f32();
@@ -396,8 +396,8 @@ fn strength(image: &Image, [a, b]: [usize; 2], outline: &Outline) -> f32 {
     if jump > least { ((jump - least) / (0.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// The share of each pixel that lines cover: the middles of edges between pixels, by their places in halves of a pixel,
-/// are smoothed eight times, and joined by lines.
+/// The fraction of each pixel that lines cover. The middles of edges between pixels, in units of half a pixel, are
+/// smoothed eight times and joined by lines.
 fn shares(image: &Image, outline: &Outline) -> Vec<f32> {
     let [width, height] = [image.width() as usize, image.height() as usize];
     let mut points = BTreeMap::new();
@@ -414,7 +414,7 @@ fn shares(image: &Image, outline: &Outline) -> Vec<f32> {
             }
         }
     }
-    // The two corners of an edge, and what else meets it there.
+    // The two corners of an edge, each with the other edges that meet there.
     let places: Vec<[usize; 2]> = points.keys().copied().collect();
     let ends = |[x, y]: [usize; 2]| -> Vec<(Vec2, Vec<[usize; 2]>)> {
         let corners = match x % 2 {

@@ -1,5 +1,4 @@
-//! Scene files: what they can contain, and what is read of those that are written. Those that are refused are in
-//! `tests/files/refused`.
+//! Scene files: their content, and reading written files again. Files that are refused are in `tests/files/refused`.
 
 use std::path::Path;
 
@@ -26,7 +25,7 @@ pub(crate) fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// The settings of the file for primary rays.
+/// The settings of a file that uses primary rays.
 fn settings(file: &SceneFile) -> RenderSettings {
     let scene = file.scene(&[]).unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
@@ -129,7 +128,7 @@ fn a_message_is_short_and_harmless() {
         let refused = |name: &str| SceneFile::parse(&text.replace("NAME", name)).unwrap_err();
         let length = |name: &str| refused(name).to_string().len();
         let (short, long) = (length("x"), length(&"x".repeat(100_000)));
-        // The keys that are valid are listed in both.
+        // The list of valid keys is in both messages.
         assert!(long < short + 50, "{long} bytes, and {short} for a short name");
     }
 }
@@ -166,7 +165,7 @@ fn noise_never_panics() {
     }
 }
 
-/// The settings that are read from a scene file with these settings, and its text.
+/// Writes settings to a scene file and reads them. Returns what was read, and the text.
 fn round_trip(settings: &RenderSettings, scene: &Scene) -> (RenderSettings, String) {
     let image = match &settings.sky.light {
         SkyLight::Image { environment, .. } => Some(environment.as_ref().clone()),
@@ -195,9 +194,9 @@ fn random_light_is_read_as_it_was_written() {
     for seed in 0..200 {
         let view = random_light::view(seed);
         let (read, text) = round_trip(&view.settings, &view.scene);
-        // Transparency is a key of the output; the caller sets it.
+        // Transparency is a key of the output. The caller sets it.
         let mut wanted = RenderSettings { is_transparent: false, ..view.settings.clone() };
-        // Not every angle is one in degrees; the nearest is read.
+        // Not every angle has an exact value in degrees. The nearest is read.
         for (light, read) in wanted.lights.iter_mut().zip(&read.lights) {
             if matches!(light.kind, LightKind::Head { .. }) {
                 // A light at the eye has no frame.
@@ -255,7 +254,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
     assert_eq!(round_trip(&dark, &scene).0, dark, "no light is not the default light");
 }
 
-/// What is read from the file that is written of what this text says; it must be the same.
+/// Reads a text, writes it and reads it again, which must give the same. Returns the file.
 #[track_caller]
 fn round_trip_file(text: &str) -> SceneFile {
     let file = parse(text);
@@ -315,7 +314,7 @@ fn everything_else_is_read_as_it_was_written() {
     assert_eq!(again.data().unwrap().surface, gold);
 }
 
-/// The background of a picture keeps its bytes, and what covers it in part is mixed with it after the curve.
+/// The background of a picture keeps its bytes. Spheres that cover it in part are mixed with it after the curve.
 #[test]
 fn a_background_is_left_alone_by_every_curve() {
     let grey = LinearRgb::from_srgb8([0x80; 3]);
@@ -339,7 +338,7 @@ fn a_background_is_left_alone_by_every_curve() {
     }
 }
 
-/// Of a scene of one sphere, two units ahead.
+/// The camera of a table, in a scene of one sphere two units ahead.
 fn camera(table: &str) -> Result<Box<dyn Camera>, String> {
     let text = format!("{table}\n[[spheres]]\ncenter=[0,0,-2]\nradius=1\n");
     let file = SceneFile::parse(&text).map_err(|error| error.message)?;
@@ -366,7 +365,7 @@ fn every_camera_has_an_example() {
         assert_eq!(view.camera.kind(), kind);
         let image = view.reference();
         let ids: std::collections::BTreeSet<u32> = image.id().unwrap().iter().copied().collect();
-        // All spheres, and the background.
+        // Every sphere and the background are visible.
         assert_eq!(ids.len(), view.scene.spheres().len() + 1, "{kind:?}: {ids:?}");
     }
 }

@@ -45,7 +45,7 @@ fn without_light_nothing_is_lit() {
     assert_eq!(parse("background = 'red'\nshading = 'flat'\n").integrator(), None);
 }
 
-/// The tables that concern light do not prevent a picture without light.
+/// Tables about light do not prevent a picture without light.
 #[test]
 fn primary_rays_use_only_their_own_settings() {
     let text = "integrator = 'primary'\nshading = 'flat'\nbackground = 'red'\n";
@@ -128,7 +128,7 @@ fn materials_by_name_and_opacity_over_them() {
     assert_eq!(sphere("kind = 'lambert'\nopacity = 0.25", "opacity = 0.75\n").opacity, 0.75);
 }
 
-/// Four atoms O, H, C1, O in two chains, one of which is water.
+/// Four atoms O, H, C1, O in two chains. One chain is water.
 fn molecule() -> Dataset {
     let mut loaded = Dataset::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
     loaded.colors = Some(vec![LinearRgb::WHITE; 4]);
@@ -254,7 +254,7 @@ fn a_depth_cue_reaches_over_the_scene() {
     assert!((cue.near - (10.0 - root)).abs() < 1e-12, "{}", cue.near);
     assert!((cue.far - (10.0 + root)).abs() < 1e-12, "{}", cue.far);
     assert_eq!(cue.color, LinearRgb::from_srgb8([255, 0, 0]));
-    // Whichever of the keys is given, `far` is greater than `near`.
+    // `far` exceeds `near`, whichever key is given.
     for keys in ["near = 100", "far = 1", "far = 1e-16"] {
         let text = text.replace("depth_cue]", &format!("depth_cue]\n{keys}"));
         let cue = studio(&text).depth_cue;
@@ -356,7 +356,7 @@ fn a_ground_touches_the_lowest_sphere() {
     assert_eq!(lighting("[ground]\n").ground.unwrap().point.y, -0.5);
 }
 
-/// What is refused stands in `tests/files/refused/scene_files_light.txt`.
+/// Refused files are in `tests/files/refused/scene_files_light.txt`.
 #[test]
 fn what_emits_may_be_bright() {
     // Emitters may be brighter than white, and so may the colours of a picture without light.

@@ -37,7 +37,7 @@ fn glass(out: DVec3, ior: f32, roughness: f32, is_leaving: bool) -> Bsdf {
     Bsdf { out, kind: Kind::Dielectric(Dielectric { eta, rough }) }
 }
 
-/// The mean over evenly distributed directions and choices.
+/// The mean over evenly distributed directions and random choices.
 fn mean(bsdf: &Bsdf, of: impl Fn(&BsdfSample) -> f64) -> f64 {
     const COUNT: u32 = 1 << 18;
     let of_sample = |i: u32| {
@@ -84,14 +84,14 @@ fn white_surfaces_lose_nothing_at_any_angle() {
     }
 }
 
-/// Samples follow the density, and weights are responses divided by densities: means over samples equal integrals.
+/// Samples follow the density, and weights are responses divided by densities, so means over samples equal integrals.
 #[test]
 fn samples_follow_densities() {
     for out in views() {
         for roughness in &ROUGHNESSES[1..] {
             let color = DVec3::new(0.9, 0.5, 0.1);
             for bsdf in [lambert(out, *roughness, 0.4), conductor(out, *roughness, color)] {
-                // Two functions of direction; the first is not symmetric.
+                // Two functions of direction. The first is not symmetric.
                 for test in [|w: DVec3| 1.0 + w.x - 0.5 * w.y, |w: DVec3| w.z * w.z] {
                     let found = mean(&bsdf, |s| test(s.direction));
                     let wanted = integral(|w| test(w) * bsdf.response(w).unwrap().density);

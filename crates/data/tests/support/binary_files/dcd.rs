@@ -6,14 +6,14 @@ pub(crate) enum Order {
     Big,
 }
 
-/// How a file is written.
+/// The layout of a file.
 #[derive(Clone, Copy)]
 pub(crate) struct Layout {
     pub(crate) order: Order,
     pub(crate) marker_bytes: usize,
     pub(crate) cell: Option<[f64; 6]>,
     pub(crate) has_fourth: bool,
-    /// Only the first and the last of four atoms move.
+    /// Whether only the first and the last of four atoms move.
     pub(crate) has_fixed: bool,
 }
 

@@ -1,6 +1,6 @@
 //! Writes GSD files of both versions.
 
-/// The numbers of a chunk, with the type's number in the format.
+/// The numbers of a chunk, in one of the format's types.
 pub(crate) enum Data {
     U8(Vec<u8>),
     U32(Vec<u32>),
@@ -32,7 +32,7 @@ pub(crate) fn chunk(frame: u64, name: &'static str, columns: u32, data: Data) ->
     Chunk { frame, name, columns, data }
 }
 
-/// Writes a file of this version.
+/// Writes a file of the given version.
 pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
     let mut names: Vec<&str> = Vec::new();
     for chunk in chunks {
@@ -47,7 +47,7 @@ pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
     }
     list.resize(list.len().next_multiple_of(64), 0);
     let index_at = 256 + list.len() as u64;
-    // One entry more: the end is one that is empty.
+    // The index has one entry more than needed. An empty entry marks the end.
     let entries = chunks.len() as u64 + 1;
     let (mut index, mut data) = (Vec::new(), Vec::new());
     for Chunk { frame, name, columns, data: numbers } in chunks {
@@ -74,7 +74,7 @@ pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
     [head, list, index, data].concat()
 }
 
-/// Three frames: the second moves, and the third has one particle less.
+/// Chunks of three frames. The second moves, and the third has one particle less.
 pub(crate) fn chunks() -> Vec<Chunk> {
     let positions = |frame: u16, count: u16| {
         Data::F32((0..3 * count).map(|index| f32::from(100 * frame + index)).collect())
