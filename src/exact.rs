@@ -96,3 +96,35 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
         deserializer.deserialize_map(Map(PhantomData))
     }
 }
+
+/// An angle that is in radians here and in degrees in a file.
+pub mod degrees {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    /// Writes an angle in degrees from which the same radians are read.
+    ///
+    /// # Errors
+    /// If the serializer fails.
+    pub fn serialize<S: Serializer>(radians: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+        let is_same = |found: f64| (found as f32).to_bits() == radians.to_bits();
+        serializer.serialize_f64(of(f64::from(*radians), is_same))
+    }
+
+    /// Reads an angle in degrees.
+    ///
+    /// # Errors
+    /// If it is not a number.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
+        f64::deserialize(deserializer).map(|degrees| degrees.to_radians() as f32)
+    }
+
+    /// An angle in degrees from which `is_same` finds the same radians: a round number if one does.
+    pub fn of(radians: f64, is_same: impl Fn(f64) -> bool) -> f64 {
+        let exact = radians.to_degrees();
+        let round = [1e2, 1e6, 1e9].map(|digits| (exact * digits).round() / digits);
+        let near = [exact, exact.next_up(), exact.next_down()];
+        let further = [exact.next_up().next_up(), exact.next_down().next_down()];
+        let all = round.into_iter().chain(near).chain(further);
+        all.into_iter().find(|degrees| is_same(degrees.to_radians())).unwrap_or(exact)
+    }
+}

@@ -1,29 +1,51 @@
 //! Colours in linear light, and their conversion from and to sRGB.
 
+use std::fmt;
 use std::sync::LazyLock;
+
+use serde::de::{Error, SeqAccess, Unexpected, Visitor};
+
+use crate::exact;
 
 /// A colour in linear light with the Rec. 709 primaries. The value 1 is display white.
 ///
 /// Components are finite and not negative, and may exceed 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "run-file",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f32; 3]", into = "[f32; 3]")
-)]
 pub struct LinearRgb([f32; 3]);
 
-impl TryFrom<[f32; 3]> for LinearRgb {
-    type Error = ColorError;
-
-    fn try_from(rgb: [f32; 3]) -> Result<Self, ColorError> {
-        Self::new(rgb)
+impl serde::Serialize for LinearRgb {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
     }
 }
 
-impl From<LinearRgb> for [f32; 3] {
-    fn from(color: LinearRgb) -> Self {
-        color.to_array()
+impl<'de> serde::Deserialize<'de> for LinearRgb {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Triple;
+
+        impl<'de> Visitor<'de> for Triple {
+            type Value = LinearRgb;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
+            }
+
+            /// Of CSS colours, only `#rrggbb` is read here.
+            fn visit_str<E: Error>(self, text: &str) -> Result<LinearRgb, E> {
+                let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+                let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+                let number =
+                    number.ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))?;
+                let [_, rgb @ ..] = number.to_be_bytes();
+                Ok(LinearRgb::from_srgb8(rgb))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LinearRgb, A::Error> {
+                LinearRgb::new(exact::elements(seq, &self)?).map_err(A::Error::custom)
+            }
+        }
+
+        deserializer.deserialize_any(Triple)
     }
 }
 

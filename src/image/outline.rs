@@ -13,8 +13,8 @@ use crate::parallel;
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
 
 /// Lines at edges of the data layers, where the depth jumps or the normal changes between spheres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Outline {
     /// Width of the outline in pixels: 0.5 to 64.
     pub width: f32,
@@ -23,6 +23,7 @@ pub struct Outline {
     /// The smallest jump in depth that makes an outline, as a fraction of the depth. At least 0.
     pub depth: f32,
     /// The smallest angle between normals that makes an outline, in radians: 0 to π.
+    #[serde(with = "crate::exact::degrees")]
     pub angle: f32,
 }
 

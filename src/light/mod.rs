@@ -18,8 +18,7 @@ pub mod environment;
 pub use emitters::Emitters;
 
 /// A light, placed in the world or relative to the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     /// The kind of the light and its parameters.
     pub kind: LightKind,
@@ -28,8 +27,7 @@ pub struct Light {
 }
 
 /// The kind of a light and its parameters. Colours are linear.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum LightKind {
     /// A light at the eye without shadows. Each surface is lit along the ray that sees it.
     Head {
@@ -131,8 +129,7 @@ impl Light {
 }
 
 /// An infinite matt plane. It is visible, and reflects light, only on the side of its normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ground {
     /// A point of the plane, in world space.
     pub point: DVec3,
@@ -146,8 +143,7 @@ pub struct Ground {
 }
 
 /// The sky, which surrounds the scene infinitely far away. Up is +y.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sky {
     /// The radiance of the sky.
     pub light: SkyLight,
@@ -156,8 +152,7 @@ pub struct Sky {
 }
 
 /// The radiance of a sky.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum SkyLight {
     /// The same radiance in all directions. Black means no light.
     Constant(LinearRgb),
@@ -171,7 +166,7 @@ pub enum SkyLight {
         nadir: LinearRgb,
     },
     /// An image of all directions. Run files store its numbers as arrays.
-    #[cfg_attr(feature = "run-file", serde(skip))]
+    #[serde(skip)]
     Image {
         /// The image.
         environment: Arc<Environment>,

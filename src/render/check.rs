@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Integrator, PathTracing, RenderSettings, Sampling, Studio};
+use super::{
+    DepthCue, Integrator, Occlusion, Outline, PathTracing, RenderSettings, Sampling, Studio,
+};
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{LightKind, Sky, SkyLight};
@@ -201,28 +203,51 @@ impl Studio {
     /// # Errors
     /// Returns an error if a number is out of range. The error names the first one.
     pub fn check(&self) -> Result<(), RangeError> {
+        let most = self.max_surfaces.into();
+        RangeError::unless_within("max_surfaces", most, [1.0, 64.0], "from 1 to 64")?;
+        self.occlusion.iter().try_for_each(Occlusion::check)?;
+        self.depth_cue.iter().try_for_each(DepthCue::check)?;
+        self.outline.iter().try_for_each(Outline::check)
+    }
+}
+
+impl Occlusion {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
-        within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;
-        if let Some(occlusion) = &self.occlusion {
-            within("samples", occlusion.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
-            if let Some(radius) = occlusion.radius {
-                within("radius", radius, LENGTH, LENGTH_WORDS)?;
-            }
-        }
-        if let Some(cue) = &self.depth_cue {
-            within("near", cue.near, [0.0, MAX_LENGTH], "0 or more, and less than 2^56")?;
-            within("far", cue.far, [cue.near.max(MIN_LENGTH), MAX_LENGTH], "more than `near`")?;
-            if cue.far <= cue.near {
-                let range = "more than `near`";
-                return Err(RangeError { parameter: "far", value: cue.far, range });
-            }
-        }
-        if let Some(outline) = &self.outline {
-            within("width", outline.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
-            within("depth", outline.depth.into(), [0.0, 1e6], "0 or more")?;
-            within("angle", outline.angle.into(), [0.0, PI + 1e-6], "from 0 to 180 degrees")?;
-        }
-        Ok(())
+        within("samples", self.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
+        self.radius.map_or(Ok(()), |r| within("radius", r, LENGTH, LENGTH_WORDS).map(drop))
+    }
+}
+
+impl DepthCue {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("near", self.near, [0.0, MAX_LENGTH], "0 or more, and less than 2^56")?;
+        within("far", self.far, [self.near.max(MIN_LENGTH), MAX_LENGTH], "more than `near`")?;
+        let range = "more than `near`";
+        let far = RangeError { parameter: "far", value: self.far, range };
+        if self.far > self.near { Ok(()) } else { Err(far) }
+    }
+}
+
+impl Outline {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("width", self.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
+        within("depth", self.depth.into(), [0.0, 1e6], "0 or more")?;
+        within("angle", self.angle.into(), [0.0, PI + 1e-6], "from 0 to 180 degrees").map(drop)
     }
 }
 

@@ -5,8 +5,7 @@ use crate::image::outline::Outline;
 use crate::light::codes;
 
 /// The algorithm that turns rays into colours.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Integrator {
     /// Colours the surface that the ray through a pixel's centre hits first. Uses no lights.
     Primary(Shading),
@@ -83,8 +82,8 @@ impl Default for PrimarySettings {
 }
 
 /// Settings of the path integrator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct PathTracing {
     /// The largest number of surfaces that a path hits, including those that it passes through: 1 to 64.
     pub max_depth: u32,
@@ -128,15 +127,15 @@ pub enum LightSampling {
 
 /// Settings of the studio integrator: lights, shadows, ambient light, and aids for seeing shape. Surfaces that are not
 /// emissive are shaded as Lambert surfaces, with the glossy lobe of their material if it has one.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Studio {
     /// Ambient light, which arrives from all directions.
     pub ambient: LinearRgb,
     /// Ambient occlusion, which reduces ambient light. `None` for no reduction.
     pub occlusion: Option<Occlusion>,
     /// Whether lights cast shadows. Spheres that are not opaque cast no shadows.
-    pub has_shadows: bool,
+    pub shadows: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,
     /// Fading of colours with distance.
@@ -151,7 +150,7 @@ impl Default for Studio {
         Self {
             ambient: LinearRgb::gray(0.25),
             occlusion: None,
-            has_shadows: true,
+            shadows: true,
             max_surfaces: 16,
             depth_cue: None,
             outline: None,
@@ -161,8 +160,8 @@ impl Default for Studio {
 
 /// Ambient occlusion, which reduces ambient light to the share of cosine-weighted directions in which no opaque sphere
 /// is near.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Occlusion {
     /// The largest distance, in scene units, at which a sphere occludes. `None` for any distance.
     pub radius: Option<f64>,
@@ -178,8 +177,7 @@ impl Default for Occlusion {
 }
 
 /// Depth cueing: colours fade linearly with the distance along the ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DepthCue {
     /// Distance at which fading begins, in scene units.
     pub near: f64,

@@ -34,8 +34,7 @@ pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
 
 /// All settings of a picture apart from the scene and the view.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RenderSettings {
     /// The algorithm that turns rays into colours.
     pub integrator: Integrator,
@@ -58,8 +57,8 @@ pub struct RenderSettings {
 }
 
 /// The number of samples, their positions, and the random seed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Sampling {
     /// The number of samples for each pixel: 1 to 2²⁴.
     pub samples: u32,
@@ -125,7 +124,7 @@ impl RenderSettings {
             Shading::Flat => (LinearRgb::WHITE, LinearRgb::BLACK),
             Shading::Headlight => (LinearRgb::BLACK, LinearRgb::WHITE),
         };
-        let studio = Studio { ambient, has_shadows: false, ..Studio::default() };
+        let studio = Studio { ambient, shadows: false, ..Studio::default() };
         let light = Light { kind: LightKind::Head { strength: head }, frame: LightFrame::World };
         Self {
             integrator: Integrator::Studio(studio),

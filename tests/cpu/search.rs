@@ -75,7 +75,7 @@ fn studio(random: &mut Rng, size: f64) -> RenderSettings {
     let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
     let studio = Studio {
         occlusion: random.bool().then_some(occlusion),
-        has_shadows: random.bool(),
+        shadows: random.bool(),
         max_surfaces: random.u32(1..6),
         depth_cue: random.bool().then_some(cue),
         ..Studio::default()
@@ -174,7 +174,7 @@ fn many_equal_spheres_hide_light_by_their_own_opacity() {
         let view = View::new(&camera, Film::new(40, 30).unwrap());
         let mut settings = RenderSettings {
             integrator: Integrator::Studio(Studio {
-                has_shadows: true,
+                shadows: true,
                 occlusion: Some(Occlusion { radius: None, samples: 4 }),
                 ..Studio::default()
             }),

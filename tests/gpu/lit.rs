@@ -404,7 +404,7 @@ fn inputs() -> Vec<Input> {
         given("studio", "ambient_light_a_thousandth_brighter", |view| {
             in_studio(view).ambient = LinearRgb::new([0.25025; 3]).unwrap();
         }),
-        given("studio", "no_shadows", |view| in_studio(view).has_shadows = false),
+        given("studio", "no_shadows", |view| in_studio(view).shadows = false),
         given("studio", "a_surface_less", |view| in_studio(view).max_surfaces -= 1),
         given("studio", "fog_a_thousandth_nearer", |view| {
             in_studio(view).depth_cue.as_mut().unwrap().near *= 0.999;

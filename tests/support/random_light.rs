@@ -301,7 +301,7 @@ impl Random {
         let studio = Studio {
             ambient: if self.chance(0.2) { LinearRgb::BLACK } else { self.color(1.0) },
             occlusion: self.chance(0.5).then_some(occlusion),
-            has_shadows: self.chance(0.8),
+            shadows: self.chance(0.8),
             max_surfaces: self.0.u32(1..8),
             depth_cue: self.chance(0.4).then_some(cue),
             outline: None,

@@ -20,6 +20,7 @@ use pinhole_data::load::{self, Column, Dataset};
 use pinhole_data::select::{KeptSpheres, Selection};
 use pinhole_figure::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole_figure::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
+use pinhole_figure::settings::{Layer, Sources};
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {
@@ -190,12 +191,16 @@ impl Source {
 
     /// The scene file that stands for a data file: its style.
     pub(crate) fn scene_of_data(&self) -> Result<SceneFile> {
-        let file = SceneFile::parse_in_style("", Some(self.style));
+        let file = SceneFile::read(&Sources { style: Some(self.style), ..Sources::default() });
         file.with_context(|| self.path.display().to_string())
     }
 
     pub(crate) fn parsed(&self, text: &str) -> Result<SceneFile> {
-        let file = SceneFile::parse_in_style(text, self.light.style());
+        let style = self
+            .light
+            .style()
+            .map(|style| Layer { flag: "--style", text: format!("style = \"{}\"", style.name()) });
+        let file = SceneFile::read(&Sources { file: text, flags: style.as_slice(), style: None });
         file.with_context(|| self.path.display().to_string())
     }
 

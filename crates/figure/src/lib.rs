@@ -14,5 +14,6 @@ pub mod annotate;
 pub mod color_by;
 pub mod read;
 pub mod scene_file;
+pub mod settings;
 pub mod style;
 pub mod write;

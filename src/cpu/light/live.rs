@@ -306,7 +306,7 @@ impl SeenSurface<'_> {
             let response = bsdf.response(into).map_or(DVec3::ZERO, |response| response.value);
             let color = weight * PI * strength * response * into.z.max(0.0);
             let is_head = matches!(light, LightKind::Head { .. });
-            let is_cast = into.z > 0.0 && !is_head && studio.has_shadows;
+            let is_cast = into.z > 0.0 && !is_head && studio.shadows;
             let to = if is_cast { &mut found.lamps } else { &mut found.steady };
             to.color += color;
             weights.push(if is_cast { luminance(color) } else { 0.0 });
@@ -328,7 +328,7 @@ impl SeenSurface<'_> {
         let whole = ambient + lights.iter().sum::<f64>();
         let share = |light: f64| if whole > 0.0 { light / whole } else { 0.0 };
         let without = |alpha: f64| Shade { color: behind * -alpha, alpha };
-        let cast = if studio.has_shadows { lights } else { Vec::new() };
+        let cast = if studio.shadows { lights } else { Vec::new() };
         let lamps = without(share(cast.iter().sum()));
         let ambient = without(if studio.occlusion.is_some() { share(ambient) } else { 0.0 });
         found.steady.color += lamps.color + ambient.color;

@@ -128,7 +128,7 @@ impl SeenSurface<'_> {
     }
 
     fn has_shadow(&self, arrival: &Arrival) -> bool {
-        self.studio.has_shadows && self.is_hidden(arrival.direction, arrival.distance)
+        self.studio.shadows && self.is_hidden(arrival.direction, arrival.distance)
     }
 
     pub(super) fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {

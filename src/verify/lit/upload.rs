@@ -62,10 +62,7 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
         | flags(settings.sky.is_visible, flag::SKY_SEEN)
         | flags(settings.ground.is_some(), flag::GROUND)
         | flags(settings.ground.is_some_and(|ground| ground.is_shadow_catcher), flag::CATCHER)
-        | flags(
-            settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
-            flag::SHADOWS,
-        );
+        | flags(settings.studio_parameters().is_some_and(|studio| studio.shadows), flag::SHADOWS);
     let is_ground = settings.ground.as_ref().is_none_or(|ground| {
         let point = (ground.point - scene.origin()).to_array();
         let normal = unit(ground.normal).unwrap_or_default().to_array();

@@ -60,7 +60,7 @@ fn one_pass(headless: &'static Headless) {
         view.settings.sampling.samples = 6;
         let mut sharp = view.settings.clone();
         if let Integrator::Studio(studio) = &mut sharp.integrator {
-            studio.has_shadows = false;
+            studio.shadows = false;
         }
         let mut caught = view.settings.clone();
         if let Integrator::Studio(studio) = &mut caught.integrator {

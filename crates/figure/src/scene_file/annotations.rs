@@ -6,10 +6,11 @@ use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
+use super::span::{Keys, Lines, Number, SceneFileError, Span};
 use crate::annotate::{
     AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
 };
+use pinhole::LinearRgb;
 use pinhole::internals::exact::{self, Table};
 
 #[derive(Default, Deserialize)]
@@ -38,7 +39,7 @@ pub(super) struct LabelTable {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct TextTable {
     scale: Option<Number>,
-    color: Option<ColorValue>,
+    color: Option<LinearRgb>,
     panel: Option<Panel>,
 }
 
@@ -101,7 +102,7 @@ pub(super) fn read_annotations(
             })
             .collect(),
         text_scale: text_scale.map(|scale| scale as f32),
-        color: text.color.map(|color| color.0.to_srgb8()),
+        color: text.color.map(LinearRgb::to_srgb8),
         panel: text.panel,
     })
 }

@@ -8,7 +8,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{ColorValue, Keys, Lines, Number, SceneFileError, Span};
+use super::span::{Keys, Lines, Number, SceneFileError, Span};
 use crate::color_by::Mapping;
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::material::SurfaceProperties;
@@ -72,7 +72,7 @@ pub struct Element {
 pub(super) struct ElementTable {
     pub(super) material: Option<Spanned<String>>,
     pub(super) opacity: Option<Number>,
-    pub(super) color: Option<ColorValue>,
+    pub(super) color: Option<LinearRgb>,
     pub(super) radius: Option<Number>,
 }
 

@@ -8,21 +8,17 @@ use toml::Spanned;
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::camera_path::CameraPathTable;
 use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive, read_additions};
-use super::lighting::{
-    GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
-    SunTable,
-};
+use super::lighting::{GroundTable, IntegratorKind, LightTable, SkyTable, SunTable};
 use super::mapping::{ByColumn, ColorTable, ColumnTable, read_mapping};
 use super::materials::{MaterialTable, Materials};
-use super::span::{
-    ColorValue, Lines, Number, SceneFileError, WithSpan, explain, range_of, unknown,
-};
+use super::span::{Lines, Number, SceneFileError, WithSpan, default_color, range_of, unknown};
 use pinhole::camera::CameraParameters;
 use pinhole::camera::film::{Film, YAxis};
+use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::{Bits, Encoding, EncodingError};
 use pinhole::image::tone::ToneCurve;
 use pinhole::internals::exact::{self, Table};
-use pinhole::render::Shading;
+use pinhole::render::{PathTracing, Sampling, Shading, Studio};
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene::sphere::Sphere;
 use pinhole_data::load::FORMATS;
@@ -31,7 +27,6 @@ use pinhole_data::load::FORMATS;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
-    pub(super) style: Option<Spanned<String>>,
     #[serde(default = "default_film")]
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
@@ -39,12 +34,18 @@ pub(super) struct Document {
     pub(super) camera_path: Option<Table<CameraPathTable>>,
     #[serde(default)]
     pub(super) output: Table<OutputTable>,
-    pub(super) background: Option<ColorValue>,
-    pub(super) shading: Option<Spanned<Shading>>,
-    pub(super) integrator: Option<IntegratorKind>,
-    pub(super) studio: Option<Spanned<Table<StudioTable>>>,
-    pub(super) path: Option<Spanned<Table<PathTable>>>,
-    pub(super) sampling: Option<Spanned<Table<SamplingTable>>>,
+    pub(super) background: Option<LinearRgb>,
+    #[serde(default)]
+    pub(super) shading: Shading,
+    /// Which is read beforehand.
+    #[serde(rename = "integrator")]
+    _integrator: Option<IntegratorKind>,
+    #[serde(default)]
+    pub(super) studio: Table<Studio>,
+    #[serde(default)]
+    pub(super) path: Table<PathTracing>,
+    #[serde(default)]
+    pub(super) sampling: Table<Sampling>,
     pub(super) lights: Option<Vec<Spanned<Table<LightTable>>>>,
     pub(super) sky: Option<Spanned<Table<SkyTable>>>,
     pub(super) sun: Option<Spanned<Table<SunTable>>>,
@@ -60,7 +61,7 @@ pub(super) struct Document {
     pub(super) columns: Option<Spanned<Vec<String>>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
-    pub(super) color: Option<Spanned<ColorValue>>,
+    pub(super) color: Option<Spanned<LinearRgb>>,
     pub(super) material: Option<Spanned<String>>,
     pub(super) opacity: Option<Number>,
     #[serde(default)]
@@ -83,13 +84,6 @@ pub(super) struct Document {
 }
 
 impl Document {
-    pub(super) fn parse(text: &str, lines: &Lines<'_>) -> Result<Self, SceneFileError> {
-        toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start);
-            lines.span(start).error(explain(error.message()))
-        })
-    }
-
     /// Takes the keys that concern data; `None` if there are none.
     pub(super) fn read_data(
         &mut self,
@@ -120,9 +114,17 @@ impl Document {
             ];
             let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
-                Some((key, start)) => Err(lines.span(start).error(format!(
-                    "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
-                ))),
+                Some((key, start)) => {
+                    let span = lines.span(start);
+                    Err(span.error(match span.flag {
+                        Some(flag) => format!(
+                            "{flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}"
+                        ),
+                        None => format!(
+                            "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
+                        ),
+                    }))
+                }
                 None => Ok(None),
             };
         };
@@ -137,7 +139,7 @@ impl Document {
             Ok(Element {
                 name,
                 radius: positive("radius", radius, lines)?,
-                color: color.map(|color| color.0),
+                color,
                 surface: materials.over(surface, material, opacity, lines)?,
             })
         });
@@ -154,7 +156,7 @@ impl Document {
                 radius: positive("radius", self.radius.take(), lines)?,
                 radius_scale: positive("radius_scale", self.radius_scale.take(), lines)?
                     .unwrap_or(1.0),
-                color: self.color.take().map(|color| color.into_inner().0),
+                color: self.color.take().map(Spanned::into_inner),
                 surface,
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.take().map(Spanned::into_inner).unwrap_or_default(),
@@ -228,8 +230,8 @@ pub(super) struct SphereTable {
     #[serde(deserialize_with = "exact::array")]
     center: [f64; 3],
     radius: f64,
-    #[serde(default)]
-    color: ColorValue,
+    #[serde(default = "default_color")]
+    color: LinearRgb,
     material: Option<Spanned<String>>,
     opacity: Option<Number>,
 }
@@ -242,7 +244,7 @@ impl SphereTable {
     ) -> Result<WithSpan<Sphere>, SceneFileError> {
         let span = lines.span(table.span().start);
         let Self { center, radius, color, material, opacity } = table.into_inner().0;
-        let mut sphere = Sphere::new(center, radius, color.0);
+        let mut sphere = Sphere::new(center, radius, color);
         sphere.surface = materials.over(SurfaceProperties::default(), material, opacity, lines)?;
         Ok(WithSpan { value: sphere, span })
     }

@@ -8,8 +8,9 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
-use super::span::{ColorValue, Lines, Number, SceneFileError};
+use super::span::{Lines, Number, SceneFileError};
 use crate::color_by::{ColorBy, EmissionBy, Limit, Limits, MISSING, MapName, Mapping, RadiusBy};
+use pinhole::LinearRgb;
 
 /// A table that may also be written as a text, the name of its column.
 pub(super) struct ByColumn<T>(T);
@@ -48,7 +49,7 @@ pub(super) struct ColorTable {
     range: Option<Spanned<Vec<LimitValue>>>,
     #[serde(default)]
     log: bool,
-    missing: Option<ColorValue>,
+    missing: Option<LinearRgb>,
 }
 
 #[derive(Default, Deserialize)]
@@ -145,7 +146,7 @@ fn color_by(table: ColorTable, lines: &Lines<'_>) -> Result<ColorBy, SceneFileEr
         is_reversed: table.reverse,
         limits: limits.transpose()?.unwrap_or_default(),
         is_log: table.log,
-        missing: table.missing.map_or(MISSING, |color| color.0.to_srgb8()),
+        missing: table.missing.map_or(MISSING, LinearRgb::to_srgb8),
         categories: None,
     })
 }

@@ -11,7 +11,7 @@ mod document;
 mod lighting;
 mod mapping;
 mod materials;
-mod span;
+pub(crate) mod span;
 mod write;
 
 pub use camera_path::parse_camera_path;
@@ -21,13 +21,12 @@ pub use lighting::IntegratorKind;
 pub use span::{DEFAULT_COLOR, SceneFileError};
 pub use write::{Contents, write};
 
-use toml::Spanned;
-
 use crate::annotate::AnnotationPlan;
+use crate::settings::layers::{Joined, Sources};
 use crate::style::{Style, fit};
 use annotations::read_annotations;
 use document::{Document, FilmTable, SphereTable};
-use lighting::{LightingTables, SceneLighting};
+use lighting::{AskedIntegrator, LightingTables, SceneLighting};
 use materials::Materials;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
@@ -39,7 +38,7 @@ use pinhole::render::{Integrator, RenderSettings, SettingsError, Shading};
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::{Colors, Scene, SceneError};
-use span::{Lines, Span, WithSpan, scaled, unknown};
+use span::{Span, WithSpan, scaled};
 
 /// The contents of a scene file.
 #[derive(Debug)]
@@ -60,6 +59,9 @@ pub struct SceneFile {
     camera: WithSpan<CameraParameters>,
     camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
+    asked: AskedIntegrator,
+    flags: Vec<(String, &'static str)>,
+    kept: Vec<String>,
 }
 
 impl SceneFile {
@@ -68,60 +70,62 @@ impl SceneFile {
     /// # Errors
     /// Returns the first error in the text, with its line and column.
     pub fn parse(text: &str) -> Result<Self, SceneFileError> {
-        Self::parse_in_style(text, None)
+        Self::read(&Sources { file: text, ..Sources::default() })
     }
 
-    /// Parses the text of a scene file like [`SceneFile::parse`], with this style in place of the one that the file
-    /// names. An empty text and a style are what data without a scene file is rendered with.
+    /// Reads the text of a scene file, the flags that take precedence over it, and its style.
     ///
     /// # Errors
-    /// Returns the first error in the text, with its line and column.
-    pub fn parse_in_style(text: &str, style: Option<Style>) -> Result<Self, SceneFileError> {
-        let lines = Lines::of(text);
-        let mut document = Document::parse(text, &lines)?;
-        let named = document.style.as_ref().map(|name| style_of(name, &lines)).transpose()?;
-        let style = style.or(named);
-        let text_of_style = style.map_or("", Style::text);
-        let mut of_style = Document::parse(text_of_style, &Lines::of(text_of_style))?;
-        let lighting_of_style = lighting_tables(&mut of_style);
-        let mut lighting = lighting_tables(&mut document);
-        let materials = Materials::new(std::mem::take(&mut document.materials), &lines)?;
-        let has_lighting = document.material.is_some()
+    /// Returns the first error, with its line and column, or with its flag.
+    pub fn read(sources: &Sources<'_>) -> Result<Self, SceneFileError> {
+        let mut layers = Joined::read(sources)?;
+        let depth_cue = layers.take("studio.depth_cue")?;
+        let denoise = layers.take("sampling.denoise")?.unwrap_or(false);
+        let mut document: Document = layers.document()?;
+        let lines = &layers.lines;
+        let materials = Materials::new(std::mem::take(&mut document.materials), lines)?;
+        let has_materials = document.material.is_some()
             || document.opacity.is_some()
             || document.opacity_by.is_some()
             || document.emission_by.is_some();
-        let data = document.read_data(&materials, &lines)?;
+        let data = document.read_data(&materials, lines)?;
         let spheres = document.spheres.into_iter();
         let spheres: Vec<_> = spheres
-            .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
+            .map(|sphere| SphereTable::sphere(sphere, &materials, lines))
             .collect::<Result<_, _>>()?;
-        lighting.has_materials = has_lighting || has_surface(&spheres, data.as_ref());
-        let lighting = lighting.read(lighting_of_style, &lines)?;
+        let has_materials = has_materials || has_surface(&spheres, data.as_ref());
+        let lighting = LightingTables {
+            studio: document.studio.0,
+            depth_cue,
+            path: document.path.0,
+            sampling: document.sampling.0,
+            denoise,
+            lights: document.lights,
+            sky: document.sky,
+            sun: document.sun,
+            ground: document.ground,
+        };
         Ok(Self {
-            film: FilmTable::film(document.film, &lines)?,
-            style,
-            background: document
-                .background
-                .or(of_style.background)
-                .map_or(LinearRgb::WHITE, |color| color.0),
-            shading: document
-                .shading
-                .or(of_style.shading)
-                .map(Spanned::into_inner)
-                .unwrap_or_default(),
-            encoding: document.output.0.encoding(&lines)?,
+            film: FilmTable::film(document.film, lines)?,
+            style: layers.style,
+            background: document.background.unwrap_or(LinearRgb::WHITE),
+            shading: document.shading,
+            encoding: document.output.0.encoding(lines)?,
             annotations: read_annotations(
                 document.legend,
                 document.scale_bar,
                 document.labels,
                 document.text,
-                &lines,
+                lines,
             )?,
-            lighting,
+            asked: AskedIntegrator::read(&layers, has_materials)?,
+            lighting: lighting.read(&layers)?,
             data,
             camera: lines.spanned(document.camera),
-            camera_path: document.camera_path.map(|table| table.0.path(&lines)).transpose()?,
+            camera_path: document.camera_path.map(|table| table.0.path(lines)).transpose()?,
             spheres,
+            flags: layers.flags(),
+            kept: layers.kept,
         })
     }
 
@@ -237,28 +241,6 @@ impl SceneFile {
     }
 }
 
-fn lighting_tables(document: &mut Document) -> LightingTables {
-    LightingTables {
-        shading: document.shading.as_ref().map(|shading| shading.span().start),
-        integrator: document.integrator,
-        studio: document.studio.take(),
-        path: document.path.take(),
-        sampling: document.sampling.take(),
-        lights: document.lights.take(),
-        sky: document.sky.take(),
-        sun: document.sun.take(),
-        ground: document.ground.take(),
-        has_materials: false,
-    }
-}
-
-fn style_of(name: &Spanned<String>, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
-    Style::of_name(name.get_ref()).ok_or_else(|| {
-        let names: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
-        lines.span(name.span().start).error(unknown("style", name.get_ref(), &names))
-    })
-}
-
 /// Whether the surface of any sphere is not matt and opaque.
 fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> bool {
     let matt = pinhole::scene::material::SurfaceProperties::default();
@@ -274,7 +256,25 @@ impl SceneFile {
     /// that needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
     #[must_use]
     pub fn integrator(&self) -> Option<IntegratorKind> {
-        self.lighting.integrator
+        self.asked.by_scene
+    }
+
+    /// Returns the integrator of the picture: the one that a flag names, or that the scene asks for, or that flags need.
+    #[must_use]
+    pub fn kind(&self) -> IntegratorKind {
+        self.asked.kind()
+    }
+
+    /// Returns the flag that gives a key, such as `film.width`.
+    #[must_use]
+    pub fn flag_of(&self, key: &str) -> Option<&'static str> {
+        self.flags.iter().find(|(other, _)| other == key).map(|(_, flag)| *flag)
+    }
+
+    /// Returns the keys that a style which a flag names does not decide, because the file gives other values.
+    #[must_use]
+    pub fn kept_from_style(&self) -> &[String] {
+        &self.kept
     }
 
     /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
@@ -300,10 +300,13 @@ impl SceneFile {
     ) -> Result<RenderSettings, SceneFileError> {
         let (says, defaults) = (&self.lighting, RenderSettings::studio());
         let background = self.background;
+        let has_smooth_edges = self.asked.check_flags(kind)?;
         let integrator = match kind {
             IntegratorKind::Primary => {
                 let integrator = Integrator::Primary(self.shading);
-                return Ok(RenderSettings { integrator, background, ..RenderSettings::default() });
+                let settings =
+                    RenderSettings { integrator, background, ..RenderSettings::default() };
+                return Ok(if has_smooth_edges { self.smooth(&settings) } else { settings });
             }
             IntegratorKind::Studio => {
                 Integrator::Studio(says.studio.studio(scene, camera, background)?)
@@ -325,13 +328,24 @@ impl SceneFile {
             ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
             background,
             is_transparent: false,
-            is_denoised: says.is_denoised,
+            is_denoised: says.denoise,
         };
         self.check_colors()?;
         if let Some(style) = self.style {
             fit(&mut settings, style, says.given, scene, &View::new(camera, self.film));
         }
         settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
+    }
+
+    /// A picture without light, with the samples and the lines that flags ask for.
+    fn smooth(&self, settings: &RenderSettings) -> RenderSettings {
+        let mut smooth = settings.with_smooth_edges();
+        smooth.sampling = self.lighting.sampling;
+        smooth.is_denoised = self.lighting.denoise;
+        if let Integrator::Studio(studio) = &mut smooth.integrator {
+            studio.outline = self.lighting.studio.outline();
+        }
+        smooth
     }
 
     /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.

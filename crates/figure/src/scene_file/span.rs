@@ -4,7 +4,6 @@
 use std::fmt;
 use std::ops::Range;
 
-use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, de};
 use toml::Spanned;
 
@@ -14,11 +13,10 @@ use pinhole::internals::exact;
 use pinhole::internals::text::{one_line, shortened};
 use pinhole::range::RangeError;
 use pinhole::render::{BRIGHTEST, SettingsError};
-use pinhole_data::css;
 
-/// An error in a scene file, with its position.
+/// An error in the text of a scene file or of a flag, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}, column {column}: {message}")]
+#[error("{}{message}", self.place())]
 pub struct SceneFileError {
     /// Number of the line, from 1.
     pub line: usize,
@@ -26,6 +24,19 @@ pub struct SceneFileError {
     pub column: usize,
     /// What is wrong, and what to do about it.
     pub message: String,
+    /// The flag that is wrong, if it is not the file.
+    pub flag: Option<&'static str>,
+}
+
+impl SceneFileError {
+    fn place(&self) -> String {
+        match self.flag {
+            // A value out of range stands behind its flag.
+            Some(flag) if self.message.starts_with(flag) => String::new(),
+            Some(flag) => format!("{flag}: "),
+            None => format!("line {}, column {}: ", self.line, self.column),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -34,38 +45,75 @@ pub(super) struct WithSpan<T> {
     pub(super) span: Span,
 }
 
+/// A position in one of the layers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
+pub(crate) struct Span {
     line: usize,
     column: usize,
+    pub(crate) flag: Option<&'static str>,
 }
 
 impl Span {
     /// The start of the file, for errors without a more precise position.
-    pub(super) const START: Self = Self { line: 1, column: 1 };
+    pub(crate) const START: Self = Self { line: 1, column: 1, flag: None };
 
-    pub(super) fn error(self, message: impl fmt::Display) -> SceneFileError {
-        SceneFileError { line: self.line, column: self.column, message: message.to_string() }
+    pub(crate) fn error(self, message: impl fmt::Display) -> SceneFileError {
+        let Self { line, column, flag } = self;
+        SceneFileError { line, column, message: message.to_string(), flag }
+    }
+
+    /// An error about a number at this position.
+    pub(crate) fn refused(self, error: &RangeError) -> SceneFileError {
+        match self.flag {
+            Some(flag) => {
+                self.error(format!("{flag} {}: it must be {}", error.value(), error.range))
+            }
+            None => self.error(error),
+        }
     }
 }
 
-/// A text with the offsets of its lines.
-pub(super) struct Lines<'a> {
+/// The texts of all layers, one behind the other, with the offsets of their lines.
+#[derive(Default)]
+pub(crate) struct Lines<'a> {
+    texts: Vec<Text<'a>>,
+}
+
+struct Text<'a> {
     text: &'a str,
+    start: usize,
     starts: Vec<usize>,
+    flag: Option<&'static str>,
 }
 
 impl<'a> Lines<'a> {
+    /// The lines of one text.
     pub(super) fn of(text: &'a str) -> Self {
-        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
-        Self { text, starts: std::iter::once(0).chain(ends).collect() }
+        let mut lines = Self::default();
+        lines.add(text, None);
+        lines
     }
 
-    pub(super) fn span(&self, byte: usize) -> Span {
+    /// Adds a text, and returns the offset of its first byte.
+    pub(crate) fn add(&mut self, text: &'a str, flag: Option<&'static str>) -> usize {
+        let start = self.texts.last().map_or(0, |last| last.start + last.text.len() + 1);
+        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
+        let starts = std::iter::once(0).chain(ends).collect();
+        self.texts.push(Text { text, start, starts, flag });
+        start
+    }
+
+    pub(crate) fn span(&self, byte: usize) -> Span {
+        let texts = self.texts.partition_point(|text| text.start <= byte);
+        let Some(Text { text, start, starts, flag }) = self.texts.get(texts.saturating_sub(1))
+        else {
+            return Span::START;
+        };
+        let byte = byte - start;
         // At least one line starts at or before any byte.
-        let line = self.starts.partition_point(|start| *start <= byte);
-        let before = self.text.get(self.starts[line - 1]..byte).unwrap_or_default();
-        Span { line, column: before.chars().count() + 1 }
+        let line = starts.partition_point(|start| *start <= byte);
+        let before = text.get(starts[line - 1]..byte).unwrap_or_default();
+        Span { line, column: before.chars().count() + 1, flag: *flag }
     }
 
     pub(super) fn spanned<T>(&self, value: Spanned<T>) -> WithSpan<T> {
@@ -107,17 +155,11 @@ impl Keys<'_> {
         match self.number(error.parameter) {
             Some(number) => {
                 let span = self.lines.span(number.span().start);
-                span.error(RangeError { value: *number.get_ref(), ..error.clone() })
+                span.refused(&RangeError { value: *number.get_ref(), ..error.clone() })
             }
             None => self.table.error(error),
         }
     }
-}
-
-/// Converts a whole number, so that it can be one of the numbers of [`Keys`].
-pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
-    let number = number.as_ref()?;
-    Some(Spanned::new(number.span(), f64::from(*number.get_ref())))
 }
 
 /// The name of a kind in scene files, each of which is one word.
@@ -148,42 +190,11 @@ pub(super) fn range_of<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
     value.as_ref().map(Spanned::span)
 }
 
-/// A colour, written as a CSS colour or as a linear triple.
-#[derive(Clone, Copy)]
-pub(super) struct ColorValue(pub(super) LinearRgb);
-
 /// Colour of spheres without a colour, in 8-bit sRGB: a light grey.
 pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
 
-impl Default for ColorValue {
-    fn default() -> Self {
-        Self(LinearRgb::from_srgb8(DEFAULT_COLOR))
-    }
-}
-
-impl<'de> Deserialize<'de> for ColorValue {
-    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ColorVisitor;
-
-        impl<'de> Visitor<'de> for ColorVisitor {
-            type Value = ColorValue;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
-            }
-
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<ColorValue, E> {
-                css::color(text).map(ColorValue).map_err(E::custom)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ColorValue, A::Error> {
-                let rgb = exact::elements(seq, &self)?;
-                LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
-            }
-        }
-
-        deserializer.deserialize_any(ColorVisitor)
-    }
+pub(super) fn default_color() -> LinearRgb {
+    LinearRgb::from_srgb8(DEFAULT_COLOR)
 }
 
 #[derive(Clone, Copy)]
@@ -204,7 +215,7 @@ pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb,
 }
 
 /// Rewrites a message of serde or toml. A message about an unknown key or name also gets a suggestion.
-pub(super) fn explain(message: &str) -> String {
+pub(crate) fn explain(message: &str) -> String {
     let (what, rest) = match message.split_once(" `") {
         Some(("unknown field", rest)) => ("key", rest),
         Some(("unknown variant", rest)) => ("name", rest),
@@ -228,7 +239,7 @@ pub(super) fn explain(message: &str) -> String {
 }
 
 /// Returns the message for a name that is not one of the known names.
-pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+pub(crate) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     let unknown = &shortened(name);
     let nearest = known.iter().copied().max_by(|a, b| {
         strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))

@@ -12,6 +12,7 @@ use pinhole::camera::CameraParameters;
 use pinhole::camera::film::Film;
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
+use pinhole::internals::exact::degrees;
 use pinhole::light::{Ground, Light, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, RenderSettings, Sampling, Studio};
 use pinhole::scene::material::{Material, SurfaceProperties};
@@ -155,9 +156,9 @@ fn sampling(sampling: &Sampling, denoise: bool) -> String {
 }
 
 fn studio(studio: &Studio) -> String {
-    let Studio { ambient, has_shadows, max_surfaces, .. } = studio;
+    let Studio { ambient, shadows, max_surfaces, .. } = studio;
     let mut text = format!(
-        "\n[studio]\nambient = {}\nshadows = {has_shadows}\nmax_surfaces = {max_surfaces}",
+        "\n[studio]\nambient = {}\nshadows = {shadows}\nmax_surfaces = {max_surfaces}",
         color(*ambient)
     );
     if let Some(occlusion) = &studio.occlusion {
@@ -168,7 +169,7 @@ fn studio(studio: &Studio) -> String {
     }
     if let Some(outline) = &studio.outline {
         let (width, depth) = (outline.width, outline.depth);
-        let degrees = degrees_of(outline.angle.into(), |found| {
+        let degrees = degrees::of(outline.angle.into(), |found| {
             (found as f32).to_bits() == outline.angle.to_bits()
         });
         let _ = write!(
@@ -197,7 +198,7 @@ fn light(light: &Light) -> String {
             "kind = \"directional\", at = \"{at}\", toward = {}, color = {}, angular_radius = {:?}",
             vector(toward),
             color(strength),
-            degrees_of(angular_radius, |found| found.to_bits() == angular_radius.to_bits())
+            degrees::of(angular_radius, |found| found.to_bits() == angular_radius.to_bits())
         ),
         LightKind::Point { position, intensity } => format!(
             "kind = \"point\", at = \"{at}\", position = {}, color = {}",
@@ -222,7 +223,7 @@ fn sky(sky: &Sky, image: Option<&str>) -> String {
         SkyLight::Image { strength, rotation, .. } => format!(
             "kind = \"image\"\nimage = {}\nstrength = {strength:?}\nrotation = {:?}",
             string(image.unwrap_or_default()),
-            degrees_of(*rotation, |found| found.to_bits() == rotation.to_bits())
+            degrees::of(*rotation, |found| found.to_bits() == rotation.to_bits())
         ),
     };
     format!("\n[sky]\n{light}\nvisible = {}", sky.is_visible)
@@ -243,16 +244,6 @@ fn color(color: LinearRgb) -> String {
         return format!("\"#{r:02x}{g:02x}{b:02x}\"");
     }
     format!("{:?}", color.to_array())
-}
-
-/// An angle in degrees from which `is_same` finds the same radians: a round number if one does.
-fn degrees_of(radians: f64, is_same: impl Fn(f64) -> bool) -> f64 {
-    let exact = radians.to_degrees();
-    let round = [1e2, 1e6, 1e9].map(|digits| (exact * digits).round() / digits);
-    let near = [exact, exact.next_up(), exact.next_down()];
-    let further = [exact.next_up().next_up(), exact.next_down().next_down()];
-    let all = round.into_iter().chain(near).chain(further);
-    all.into_iter().find(|degrees| is_same(degrees.to_radians())).unwrap_or(exact)
 }
 
 fn string(text: &str) -> String {

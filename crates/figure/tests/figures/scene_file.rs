@@ -16,6 +16,7 @@ use pinhole_figure::annotate::AnnotationPlan;
 use pinhole_figure::scene_file::{
     Contents, Data, IntegratorKind, SceneFile, SceneFileError, write,
 };
+use pinhole_figure::settings::Sources;
 use pinhole_figure::style::Style;
 
 use crate::cases::compare;
@@ -227,7 +228,7 @@ fn every_style_is_read_as_it_was_written() {
     let sphere = |x: f64| Sphere::new([x, 0.5, -x], 1.0, LinearRgb::from_srgb8([90; 3]));
     let scene = Scene::new(&[sphere(0.0), sphere(1.5), sphere(-4.0)]).unwrap();
     for style in Style::ALL {
-        let file = SceneFile::parse_in_style("", Some(*style)).unwrap();
+        let file = SceneFile::read(&Sources { style: Some(*style), ..Sources::default() }).unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
         let kind = file.integrator().unwrap();
         let settings = file.settings(kind, &scene, camera.as_ref(), None).unwrap();
@@ -244,7 +245,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
         depth_cue: Some(DepthCue { near: 0.1, far: 1e5, color: LinearRgb::new([0.7; 3]).unwrap() }),
         outline: Some(Outline { angle: 0.1 + 0.2, ..Outline::thin() }),
         max_surfaces: 3,
-        has_shadows: false,
+        shadows: false,
     };
     let settings =
         RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };

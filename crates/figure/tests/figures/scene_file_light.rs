@@ -234,7 +234,7 @@ fn a_studio_in_every_detail() {
          [studio.outline]\nwidth = 3\ncolor = 'white'\ndepth = 0.5\nangle = 90\n",
     );
     assert_eq!(found.ambient.to_array(), [0.0, 0.5, 1.0]);
-    assert!(!found.has_shadows);
+    assert!(!found.shadows);
     assert_eq!(found.max_surfaces, 3);
     let occlusion = found.occlusion.unwrap();
     assert_eq!((occlusion.radius, occlusion.samples), (Some(2.5), 7));

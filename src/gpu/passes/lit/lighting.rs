@@ -39,7 +39,7 @@ pub(crate) struct LightingData {
     /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
     is_sharp: bool,
     /// Whether lights cast shadows in a studio.
-    pub(super) has_shadows: bool,
+    pub(super) shadows: bool,
     /// The image of the sky that illuminates paths.
     pub(super) sky: Option<Arc<Environment>>,
     /// For each light, whether shadow rays are traced towards it.
@@ -95,7 +95,7 @@ impl LightingData {
             },
             is_opaque: scene.appearance.is_opaque(),
             is_sharp: is_sharp(settings, scene, &lights),
-            has_shadows: settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
+            shadows: settings.studio_parameters().is_some_and(|studio| studio.shadows),
             sky: match (&settings.sky.light, &settings.integrator) {
                 (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
                     Some(Arc::clone(environment))
@@ -110,7 +110,7 @@ impl LightingData {
 impl LightingData {
     /// Whether pictures with this light are the same as with another light, of the same scene.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        let counts = |of: &Self| (of.mode, of.max_surfaces, of.is_opaque, of.has_shadows);
+        let counts = |of: &Self| (of.mode, of.max_surfaces, of.is_opaque, of.shadows);
         counts(self) == counts(other)
             && self.has_same_images(other)
             && self.casts_shadow == other.casts_shadow
@@ -120,8 +120,7 @@ impl LightingData {
 
     /// Whether shadows or ambient occlusion may differ from those of another light, apart from the positions of lamps.
     pub(crate) fn rays_differ(&self, other: &Self) -> bool {
-        let hidden =
-            |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.has_shadows);
+        let hidden = |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.shadows);
         let radius = |of: &Self| of.parameters.occlusion_radius.to_bits();
         hidden(self) != hidden(other)
             || radius(self) != radius(other)
@@ -174,7 +173,7 @@ impl LightingData {
             let of_light = u32::from(self.parameters.source_count > 0) * self.max_surfaces;
             return 1 + self.max_surfaces + of_light;
         }
-        let shadows = self.casts_shadow.iter().filter(|casts| **casts && self.has_shadows).count();
+        let shadows = self.casts_shadow.iter().filter(|casts| **casts && self.shadows).count();
         1 + shadows as u32 + self.parameters.occlusion_samples
     }
 
@@ -224,10 +223,10 @@ impl SourceList {
 
 /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
 fn is_sharp(settings: &RenderSettings, scene: &SceneSummary, lights: &[LightKind]) -> bool {
-    let has_shadows = settings.studio_parameters().is_some_and(|studio| studio.has_shadows);
+    let shadows = settings.studio_parameters().is_some_and(|studio| studio.shadows);
     let is_sharp = |light: &LightKind| match light {
         LightKind::Head { .. } => true,
-        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 && !has_shadows,
+        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 && !shadows,
         LightKind::Point { .. } | LightKind::Sphere { .. } => false,
     };
     lights.iter().all(is_sharp) && scene.appearance.surfaces().iter().all(is_matt)
@@ -281,7 +280,7 @@ fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingPar
         }
         Integrator::Studio(studio) => {
             parameters.ambient = studio.ambient.to_array();
-            parameters.flags |= flag(studio.has_shadows, flags::SHADOWS);
+            parameters.flags |= flag(studio.shadows, flags::SHADOWS);
             if let Some(occlusion) = &studio.occlusion {
                 parameters.occlusion_samples = occlusion.samples;
                 parameters.occlusion_radius =

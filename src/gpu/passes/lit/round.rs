@@ -364,7 +364,7 @@ impl<'a> Steps<'a> {
             for light in (0..lights).step_by(BITS) {
                 let count = (lights - light).min(BITS as u32);
                 let casts =
-                    |light: &u32| lighting.has_shadows && lighting.casts_shadow[*light as usize];
+                    |light: &u32| lighting.shadows && lighting.casts_shadow[*light as usize];
                 let casting: Vec<u32> = (light..light + count).filter(casts).collect();
                 for &light in &casting {
                     let dispatch = DispatchParameters { light, ..dispatch };

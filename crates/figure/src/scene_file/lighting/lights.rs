@@ -5,8 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::scene_file::span::{
-    ColorValue, Keys, Lines, Number, SceneFileError, Span, Vector, name_of, range_of,
-    refuse_foreign, scaled,
+    Keys, Lines, Number, SceneFileError, Span, Vector, name_of, range_of, refuse_foreign, scaled,
 };
 use pinhole::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use pinhole::image::color::LinearRgb;
@@ -33,7 +32,7 @@ pub(crate) struct LightTable {
     angular_diameter: Option<Number>,
     position: Option<Spanned<Vector>>,
     radius: Option<Number>,
-    color: Option<ColorValue>,
+    color: Option<LinearRgb>,
     strength: Option<Number>,
     intensity: Option<Number>,
     radiance: Option<Number>,
@@ -46,7 +45,7 @@ pub(crate) struct SunTable {
     direction: Option<Spanned<Vector>>,
     angular_radius: Option<Number>,
     angular_diameter: Option<Number>,
-    color: Option<ColorValue>,
+    color: Option<LinearRgb>,
     strength: Option<Number>,
 }
 
@@ -115,7 +114,7 @@ fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> 
 }
 
 fn times(
-    color: Option<ColorValue>,
+    color: Option<LinearRgb>,
     keys: &Keys<'_>,
     key: &'static str,
 ) -> Result<LinearRgb, SceneFileError> {
@@ -124,7 +123,7 @@ fn times(
         _ => (STRONGEST, "from 0 to 1e6"),
     };
     let by = keys.within(key, [0.0, most], range)?.unwrap_or(1.0);
-    scaled(color.map_or(LinearRgb::WHITE, |color| color.0), by, "the light")
+    scaled(color.unwrap_or(LinearRgb::WHITE), by, "the light")
         .map_err(|error| keys.table.error(error))
 }
 

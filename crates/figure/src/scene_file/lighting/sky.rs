@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::scene_file::span::{
-    ColorValue, Keys, Lines, Number, SceneFileError, Vector, WithSpan, name_of, range_of,
+    Keys, Lines, Number, SceneFileError, Vector, WithSpan, default_color, name_of, range_of,
     refuse_foreign, scaled,
 };
 use pinhole::geometry::math::{MAX_LENGTH, unit};
@@ -29,10 +29,10 @@ enum Kind {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SkyTable {
     kind: Kind,
-    color: Option<Spanned<ColorValue>>,
-    zenith: Option<Spanned<ColorValue>>,
-    horizon: Option<Spanned<ColorValue>>,
-    nadir: Option<Spanned<ColorValue>>,
+    color: Option<Spanned<LinearRgb>>,
+    zenith: Option<Spanned<LinearRgb>>,
+    horizon: Option<Spanned<LinearRgb>>,
+    nadir: Option<Spanned<LinearRgb>>,
     image: Option<Spanned<String>>,
     rotation: Option<Number>,
     strength: Option<Number>,
@@ -75,8 +75,8 @@ impl SkyPlan {
         let numbers = vec![("rotation", table.rotation), ("strength", table.strength)];
         let keys = Keys { lines, numbers, table: span };
         let strength = keys.within("strength", [0.0, 1e6], "from 0 to 1e6")?.unwrap_or(1.0);
-        let color = |value: Option<Spanned<ColorValue>>, default: f32| {
-            let color = value.map_or(LinearRgb::gray(default), |color| color.into_inner().0);
+        let color = |value: Option<Spanned<LinearRgb>>, default: f32| {
+            let color = value.map_or(LinearRgb::gray(default), Spanned::into_inner);
             scaled(color, strength, "the sky").map_err(|error| span.error(error))
         };
         // The defaults of the gradient are those of the sky without a scene file.
@@ -131,8 +131,8 @@ pub(crate) struct GroundTable {
     height: Option<Number>,
     point: Option<Spanned<Vector>>,
     normal: Option<Spanned<Vector>>,
-    #[serde(default)]
-    color: ColorValue,
+    #[serde(default = "default_color")]
+    color: LinearRgb,
     #[serde(default)]
     shadow_catcher: bool,
 }
@@ -183,7 +183,7 @@ impl GroundPlan {
         let value = Self {
             point: point.or(height.map(|height| DVec3::new(0.0, height, 0.0))),
             normal: normal.map_or(DVec3::Y, |normal| DVec3::from(normal.get_ref().0)),
-            color: color.0,
+            color,
             is_shadow_catcher: shadow_catcher,
         };
         Ok(WithSpan { value, span })

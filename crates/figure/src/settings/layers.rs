@@ -1,0 +1,351 @@
+//! Joins the layers of settings: a style, a scene file, and flags. Each layer is TOML text. A value of a later layer takes
+//! the place of the same key in an earlier one, and keeps the position at which it was said, for errors.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use pinhole::range::RangeError;
+use pinhole_data::css;
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
+
+use crate::scene_file::span::{Lines, SceneFileError, Span, explain, unknown};
+use crate::style::Style;
+
+/// Settings that a flag gives, or another place that is not a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layer {
+    /// The flag, such as `--outline`, for errors.
+    pub flag: &'static str,
+    /// The settings: keys and tables of a scene file.
+    pub text: String,
+}
+
+/// The texts from which settings are read, in the order of their precedence.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sources<'a> {
+    /// The text of a scene file.
+    pub file: &'a str,
+    /// Flags, each of which takes precedence over the file and over flags before it.
+    pub flags: &'a [Layer],
+    /// The style if neither the file nor a flag names one.
+    pub style: Option<Style>,
+}
+
+/// All layers, joined.
+pub(crate) struct Joined<'a> {
+    pub(crate) lines: Lines<'a>,
+    pub(crate) style: Option<Style>,
+    /// The keys that a style which a flag names does not decide, because the file gives other values.
+    pub(crate) kept: Vec<String>,
+    pub(crate) in_file: Keys,
+    pub(crate) in_flags: Keys,
+    pub(crate) in_style: Keys,
+    /// All keys.
+    keys: Keys,
+    table: DeTable<'a>,
+}
+
+/// The keys of a layer, such as `studio.outline` and `studio.outline.width`. Tables in lists are left out.
+#[derive(Debug, Default)]
+pub(crate) struct Keys(BTreeMap<String, Key>);
+
+#[derive(Clone, Debug, PartialEq)]
+struct Key {
+    start: usize,
+    value: Scalar,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Scalar {
+    Text(String),
+    Number(f64),
+    Boolean(bool),
+    Other,
+}
+
+/// Keys whose value in a later layer takes the place of the whole value in an earlier one, because the parts of two such
+/// values exclude each other.
+const WHOLE: [&str; 7] =
+    ["bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
+
+/// Keys of colours, which may be written as CSS colours.
+const COLORS: [&str; 7] =
+    ["ambient", "background", "color", "horizon", "missing", "nadir", "zenith"];
+
+/// Keys about light sources. A file or a flag that has one of them gets none of the style's.
+const LIGHT: [&str; 3] = ["lights", "sky", "sun"];
+
+/// The outline that a flag widens where neither the style nor the file has one: [`Outline::thin`](pinhole::render::Outline::thin).
+const THIN: &str = "studio.outline = { color = \"#343a46\", depth = 0.01, angle = 180 }";
+
+impl<'a> Joined<'a> {
+    /// Parses and joins all layers.
+    pub(crate) fn read(sources: &Sources<'a>) -> Result<Self, SceneFileError> {
+        let mut lines = Lines::default();
+        let file = parse(sources.file, None, &mut lines)?;
+        let mut flags = DeTable::new();
+        for layer in sources.flags {
+            join(&mut flags, parse(&layer.text, Some(layer.flag), &mut lines)?);
+        }
+        let (in_file, in_flags) = (Keys::of(&file), Keys::of(&flags));
+        let named = |keys: &Keys| keys.get("style").map(|name| style_of(name, &lines)).transpose();
+        let (by_flag, by_file) = (named(&in_flags)?, named(&in_file)?);
+        let style = by_flag.or(by_file).or(sources.style);
+        let mut table = parse(style.map_or("", Style::text), None, &mut lines)?;
+        let in_style = Keys::of(&table);
+        let kept = by_flag.map_or(Vec::new(), |_| in_style.differences(&in_file));
+        if in_flags.has("studio.outline")
+            && ![&in_file, &in_style].iter().any(|keys| keys.has("studio.outline"))
+        {
+            join(&mut table, parse(THIN, None, &mut lines)?);
+        }
+        let mut own = file;
+        replace_whole(&mut own, &flags);
+        join(&mut own, flags);
+        if LIGHT.iter().any(|key| own.contains_key(*key)) {
+            LIGHT.iter().for_each(|key| drop(table.remove(*key)));
+        }
+        replace_whole(&mut table, &own);
+        join(&mut table, own);
+        table.remove("style");
+        let keys = Keys::of(&table);
+        Ok(Self { lines, style, kept, in_file, in_flags, in_style, keys, table })
+    }
+
+    /// Whether the file or a flag gives a key.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.in_file.has(key) || self.in_flags.has(key)
+    }
+
+    /// The flags, by the keys that they give.
+    pub(crate) fn flags(&self) -> Vec<(String, &'static str)> {
+        let keys = self.in_flags.0.iter();
+        let flag =
+            |(path, key): (&String, &Key)| Some((path.clone(), self.lines.span(key.start).flag?));
+        keys.filter_map(flag).collect()
+    }
+
+    /// The position of a key, or of the innermost table around it.
+    pub(crate) fn span(&self, key: &str) -> Span {
+        match (self.keys.get(key), key.rsplit_once('.')) {
+            (Some(key), _) => self.lines.span(key.start),
+            (None, Some((table, _))) => self.span(table),
+            (None, None) => Span::START,
+        }
+    }
+
+    /// An error about a number in a table, at its position and with the number as it was written.
+    pub(crate) fn refused(&self, table: &str, error: &RangeError) -> SceneFileError {
+        let path = format!("{table}.{}", error.parameter);
+        let value = match self.keys.get(&path).map(|key| &key.value) {
+            Some(Scalar::Number(value)) => *value,
+            _ => error.value,
+        };
+        self.span(&path).refused(&RangeError { value, ..error.clone() })
+    }
+
+    /// Takes a value out of the table that serde reads.
+    pub(crate) fn take<T: DeserializeOwned>(
+        &mut self,
+        key: &str,
+    ) -> Result<Option<T>, SceneFileError> {
+        let Some(value) = take(&mut self.table, key) else { return Ok(None) };
+        T::deserialize(ValueDeserializer::from(value)).map(Some).map_err(|e| self.explained(&e))
+    }
+
+    /// Reads the table.
+    pub(crate) fn document<T: DeserializeOwned>(&mut self) -> Result<T, SceneFileError> {
+        let table = Spanned::new(0..0, std::mem::take(&mut self.table));
+        T::deserialize(toml::Deserializer::from(table)).map_err(|error| self.explained(&error))
+    }
+
+    fn explained(&self, error: &toml::de::Error) -> SceneFileError {
+        let start = error.span().map_or(0, |span| span.start);
+        self.lines.span(start).error(explain(error.message()))
+    }
+}
+
+impl Keys {
+    fn of(table: &DeTable<'_>) -> Self {
+        let mut keys = Self::default();
+        keys.add(table, "");
+        keys
+    }
+
+    fn add(&mut self, table: &DeTable<'_>, path: &str) {
+        for (name, value) in table {
+            let path = format!("{path}{}", name.get_ref());
+            let scalar = match value.get_ref() {
+                DeValue::String(text) => Scalar::Text(text.to_string()),
+                DeValue::Integer(number) => {
+                    number.as_str().parse().map_or(Scalar::Other, Scalar::Number)
+                }
+                DeValue::Float(number) => {
+                    number.as_str().parse().map_or(Scalar::Other, Scalar::Number)
+                }
+                DeValue::Boolean(is) => Scalar::Boolean(*is),
+                DeValue::Table(inner) => {
+                    self.add(inner, &format!("{path}."));
+                    Scalar::Other
+                }
+                _ => Scalar::Other,
+            };
+            self.0.insert(path, Key { start: value.span().start, value: scalar });
+        }
+    }
+
+    fn get(&self, key: &str) -> Option<&Key> {
+        self.0.get(key)
+    }
+
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.0.contains_key(key)
+    }
+
+    /// The position of a key in bytes.
+    pub(crate) fn start(&self, key: &str) -> Option<usize> {
+        self.get(key).map(|key| key.start)
+    }
+
+    /// The text of a key, and its position.
+    pub(crate) fn text(&self, key: &str) -> Option<(&str, usize)> {
+        match self.get(key)? {
+            Key { start, value: Scalar::Text(text) } => Some((text, *start)),
+            _ => None,
+        }
+    }
+
+    /// Whether a key is `false`.
+    pub(crate) fn is_off(&self, key: &str) -> bool {
+        self.get(key).is_some_and(|key| key.value == Scalar::Boolean(false))
+    }
+
+    /// The keys to which `other` gives other values.
+    fn differences(&self, other: &Self) -> Vec<String> {
+        let is_table =
+            |path: &String| self.0.keys().any(|key| key.starts_with(&format!("{path}.")));
+        let differs = |(path, key): &(&String, &Key)| {
+            let is_other = |other: &Key| other.value == Scalar::Other || other.value != key.value;
+            !is_table(path) && other.get(path).is_some_and(is_other)
+        };
+        self.0.iter().filter(differs).map(|(path, _)| path.clone()).collect()
+    }
+}
+
+fn parse<'a>(
+    text: &'a str,
+    flag: Option<&'static str>,
+    lines: &mut Lines<'a>,
+) -> Result<DeTable<'a>, SceneFileError> {
+    let start = lines.add(text, flag);
+    let table = DeTable::parse(text).map_err(|error| {
+        let at = start + error.span().map_or(0, |span| span.start);
+        lines.span(at).error(explain(error.message()))
+    })?;
+    prepared_table(table.into_inner(), start, lines)
+}
+
+fn style_of(name: &Key, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
+    let text = match &name.value {
+        Scalar::Text(text) => text,
+        _ => "",
+    };
+    Style::of_name(text).ok_or_else(|| {
+        let names: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
+        lines.span(name.start).error(unknown("style", text, &names))
+    })
+}
+
+/// Removes the values from `below` that keys of `above` replace as a whole.
+fn replace_whole(below: &mut DeTable<'_>, above: &DeTable<'_>) {
+    for key in WHOLE.iter().filter(|key| above.contains_key(**key)) {
+        below.remove(*key);
+    }
+    // Another column has a map, a range and a title of its own.
+    let names_column = match above.get("color_by").map(Spanned::get_ref) {
+        Some(DeValue::Table(table)) => table.contains_key("column"),
+        by => by.is_some(),
+    };
+    if names_column {
+        below.remove("color_by");
+        if let Some(DeValue::Table(legend)) = below.get_mut("legend").map(Spanned::get_mut) {
+            legend.remove("title");
+        }
+    }
+}
+
+/// Puts the values of `above` into `below`. Tables are joined key by key, and labels are appended.
+fn join<'a>(below: &mut DeTable<'a>, above: DeTable<'a>) {
+    for (key, value) in above {
+        let (span, name) = (value.span(), key.get_ref().as_ref());
+        match (below.get_mut(name).map(Spanned::get_mut), value.into_inner()) {
+            (Some(DeValue::Table(below)), DeValue::Table(above)) => join(below, above),
+            (Some(DeValue::Array(below)), DeValue::Array(above)) if name == "labels" => {
+                above.into_iter().for_each(|label| below.push(label));
+            }
+            // The name of a column stands for a table with this column.
+            (Some(column @ DeValue::String(_)), DeValue::Table(above)) if name == "color_by" => {
+                let name = Spanned::new(key.span(), "column".into());
+                let mut table = DeTable::new();
+                table.insert(name, Spanned::new(key.span(), column.clone()));
+                join(&mut table, above);
+                *column = DeValue::Table(table);
+            }
+            (_, value) => drop(below.insert(key.clone(), Spanned::new(span, value))),
+        }
+    }
+}
+
+fn take<'a>(table: &mut DeTable<'a>, key: &str) -> Option<Spanned<DeValue<'a>>> {
+    match key.split_once('.') {
+        None => table.remove(key),
+        Some((first, rest)) => match table.get_mut(first)?.get_mut() {
+            DeValue::Table(inner) => take(inner, rest),
+            _ => None,
+        },
+    }
+}
+
+/// Moves the positions of a layer to where its text begins among all, and writes CSS colours as `#rrggbb`.
+fn prepared_table<'a>(
+    table: DeTable<'a>,
+    start: usize,
+    lines: &Lines<'_>,
+) -> Result<DeTable<'a>, SceneFileError> {
+    let entry = |(key, value): (Spanned<DeString<'a>>, Spanned<DeValue<'a>>)| {
+        let is_color = COLORS.contains(&key.get_ref().as_ref());
+        let value = prepared(value, is_color, start, lines)?;
+        Ok((Spanned::new(moved(&key.span(), start), key.into_inner()), value))
+    };
+    table.into_iter().map(entry).collect()
+}
+
+fn prepared<'a>(
+    value: Spanned<DeValue<'a>>,
+    is_color: bool,
+    start: usize,
+    lines: &Lines<'_>,
+) -> Result<Spanned<DeValue<'a>>, SceneFileError> {
+    let span = moved(&value.span(), start);
+    let value = match value.into_inner() {
+        DeValue::String(text) if is_color => {
+            let color = css::color(&text).map_err(|error| lines.span(span.start).error(error))?;
+            let [r, g, b] = color.to_srgb8();
+            DeValue::String(format!("#{r:02x}{g:02x}{b:02x}").into())
+        }
+        DeValue::Array(array) => {
+            let items = array.into_iter().map(|value| prepared(value, false, start, lines));
+            // Only a list that a header makes, such as `[[lights]]`, may be extended by one.
+            DeValue::Array(items.collect::<Result<_, _>>()?)
+        }
+        DeValue::Table(table) => DeValue::Table(prepared_table(table, start, lines)?),
+        value => value,
+    };
+    Ok(Spanned::new(span, value))
+}
+
+fn moved(span: &Range<usize>, by: usize) -> Range<usize> {
+    span.start + by..span.end + by
+}
