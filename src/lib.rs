@@ -174,10 +174,8 @@ mod pages {
     #[doc = include_str!("../README.md")]
     struct Readme;
     #[cfg(feature = "gpu")]
-    #[doc = include_str!("../docs/verify.md")]
+    #[doc = include_str!("../docs/how-to/verify.md")]
     struct Verify;
-    #[doc = include_str!("../docs/conformance.md")]
-    struct Conformance;
-    #[doc = include_str!("../docs/color.md")]
+    #[doc = include_str!("../docs/how-to/color-and-legends.md")]
     struct Color;
 }

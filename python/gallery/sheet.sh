@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Joins the pictures of the gallery into docs/gallery.png. Needs the program ffmpeg.
+# Joins the pictures of the gallery into docs/pictures/gallery.png. Needs the program ffmpeg.
 # python/gallery/run.py pictures && python/gallery/sheet.sh pictures
 set -euo pipefail
 docs=$(cd "$(dirname "$0")/../../docs" && pwd)
@@ -18,5 +18,5 @@ for name in galaxy lattice drum depth_of_field helix labels stereo verify turnta
 done
 palette="split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=sierra2_4a"
 ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$cells${stack}xstack=inputs=10:layout=${places#|},$palette" \
-    -frames:v 1 "$docs/gallery.png"
-ls -l "$docs/gallery.png"
+    -frames:v 1 "$docs/pictures/gallery.png"
+ls -l "$docs/pictures/gallery.png"

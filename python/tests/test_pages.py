@@ -1,4 +1,4 @@
-"""Runs the examples of docs/python.md whose libraries are installed."""
+"""Runs the examples of docs/how-to/from-ovito-and-fresnel.md whose libraries are installed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "from-ovito-and-fresnel.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 DUMP = """ITEM: TIMESTEP

@@ -92,7 +92,7 @@ fn lit_surface(made: CameraRay, vertex: Vertex, shown: vec3f, seed: u32, number:
         let out = -made.ray.direction;
         let seen = Seen(vertex, material, start, excluded, out, albedo, weight, caught, light_at(vertex));
         lit = lit_by_lamps(seen, lit.shades, seed, number);
-        // A branch must not depend on this uniform alone; see docs/drivers.md.
+        // A branch must not depend on this uniform alone; see docs/explain/drivers.md.
         if ((number >> 31u) + lighting.occlusion_samples > 0u) {
             lit.shares.y = open_share(seen, seed, number);
             let open = vec4f(albedo * lighting.ambient, 0.0);

@@ -32,6 +32,7 @@ fn ground_distance(ray: Ray, behind: f32) -> f32 {
     let height = dot(ray.origin - lighting.ground_point, lighting.ground_normal);
     let is_toward = toward < 0.0 && lighting_has(LIGHTING_GROUND);
     let t = height / select(1.0, -toward, is_toward);
-    // With parallel rays, the other condition depends on uniforms alone, so it must be the second; see docs/drivers.md.
+    // With parallel rays, the other condition depends on uniforms alone, so it must be the second; see
+    // docs/explain/drivers.md.
     return select(NO_HIT, t, t > -behind && is_toward);
 }

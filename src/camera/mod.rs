@@ -1,7 +1,7 @@
 //! Cameras, each of which gives the ray that belongs to a relative location in the picture.
 //!
 //! Each camera is one Rust file here, one WGSL part `shaders/camera/NAME.wgsl`, and one row of `camera_table`.
-//! `docs/extending.md` explains how to add one.
+//! `docs/dev/how-to-add/camera.md` explains how to add one.
 
 use glam::{DVec2, DVec3};
 

@@ -9,7 +9,7 @@ pub use wgpu;
 
 /// The version of wgpu whose types this module takes and returns, which is re-exported as [`wgpu`]. A program that
 /// depends on another major version has other types of the same names, which the compiler refuses.
-/// `docs/embedding.md` says what to do then.
+/// `docs/how-to/embed.md` says what to do then.
 pub const WGPU_VERSION: &str = "30.0";
 
 pub mod adapter;

@@ -1,4 +1,5 @@
-"""Measures the constants of the cost model of docs/scale.md on one core, and compares what it predicts with other jobs.
+"""Measures the constants of the cost model of docs/dev/notebook-2026-11.md on one core, and compares its predictions with
+other jobs.
 
 PINHOLE_PROGRAM names the program. Nothing else should run on the machine.
 """

@@ -45,8 +45,8 @@ mkdir one
 # shellcheck disable=SC2086
 "$program" render a.xyz $flags -o one/m.apng -q
 
-# What the recipes of docs/scale.md call `pinhole`.
-page=$OLDPWD/../../docs/scale.md
+# What the recipes of docs/how-to/clusters.md call `pinhole`.
+page=$OLDPWD/../../docs/how-to/clusters.md
 mkdir bin
 ln -s "$program" bin/pinhole
 
@@ -71,7 +71,7 @@ if command -v slurmctld slurmd sbatch munged >/dev/null && [ "$(id -u)" = 0 ]; t
     echo "== Slurm of two nodes: random kills, and a node set down =="
     split killed
     mkdir killed-out
-    # submit JOB UNITS AT_ONCE MERGE_FLAGS: the recipe of docs/scale.md, with other numbers.
+    # submit JOB UNITS AT_ONCE MERGE_FLAGS: the recipe of docs/how-to/clusters.md, with other numbers.
     submit() {
         rm -f JOB
         ln -s "$1" JOB
@@ -140,7 +140,7 @@ else
     skip "Dask: $python has no package dask or pinhole; pip install 'dask[distributed]' and the wheel"
 fi
 
-# The other recipes of docs/scale.md, for the number of units that this job has.
+# The other recipes of docs/how-to/clusters.md, for the number of units that this job has.
 # shellcheck disable=SC2086
 "$program" job split a.xyz ${flags/--frames :/--frames :5} --tiles 2x2 -o recipe -q
 # shellcheck disable=SC2086

@@ -8,14 +8,18 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The Markdown files at the top, and those in the folders that have some.
+/// Markdown files: those in some folders, and all below `docs`.
 fn pages() -> Vec<PathBuf> {
     let folders =
         ["", "cli", "docs", "examples/hosts", "python", "python/gallery", "shaders", "viewer"];
-    let entries = folders.iter().flat_map(|folder| fs::read_dir(root().join(folder)).unwrap());
-    let paths = entries.map(|entry| entry.unwrap().path());
-    let mut pages: Vec<PathBuf> =
-        paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect();
+    let mut folders = folders.map(|folder| root().join(folder)).to_vec();
+    let mut pages = Vec::new();
+    while let Some(folder) = folders.pop() {
+        let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let (below, files): (Vec<_>, Vec<_>) = paths.partition(|path| path.is_dir());
+        folders.extend(below.into_iter().filter(|path| path.starts_with(root().join("docs"))));
+        pages.extend(files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "md")));
+    }
     pages.sort();
     pages
 }
@@ -51,17 +55,23 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The fault of a link of a page.
+/// The file that a link of a page names.
+fn target(page: &Path, link: &str) -> PathBuf {
+    let (file, _) = link.split_once('#').unwrap_or((link, ""));
+    if file.is_empty() { page.to_owned() } else { page.parent().unwrap().join(file) }
+}
+
+/// What is wrong with a link of a page.
 fn fault(page: &Path, link: &str) -> Option<&'static str> {
     if link.contains("://") || link.starts_with("mailto:") {
         return None;
     }
-    let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+    let (_, anchor) = link.split_once('#').unwrap_or((link, ""));
     // A package page puts the repository's address before a link.
-    if file.starts_with('/') {
+    if link.starts_with('/') {
         return Some("is not relative");
     }
-    let target = if file.is_empty() { page.to_owned() } else { page.parent().unwrap().join(file) };
+    let target = target(page, link);
     if !target.exists() {
         return Some("leads nowhere");
     }
@@ -83,8 +93,7 @@ fn links_lead_somewhere() {
     assert!(count > 60, "{count}");
 }
 
-/// Files of Rust and WGSL that a page names in backticks exist, by their path from the top, or in one of the folders
-/// that a page may leave out.
+/// Files of Rust and WGSL that a page names in backticks are there: by their path from the top, from `src` or `shaders`.
 #[test]
 fn named_files_exist() {
     let mut count = 0;
@@ -100,7 +109,7 @@ fn named_files_exist() {
                 {
                     continue;
                 }
-                let folders = ["", "src", "shaders", "cli", "cli/src"];
+                let folders = ["", "src", "shaders"];
                 let is_there = folders.iter().any(|folder| root().join(folder).join(name).exists());
                 assert!(is_there, "{}: {name} is not there", page.display());
                 count += 1;
@@ -115,22 +124,32 @@ fn broken_links_are_found() {
     let page = root().join("README.md");
     assert_eq!(links("[a](b.md) `[c](d)`\n```\n[e](f)\n```\n[g](#h)"), ["b.md", "#h"]);
     for (link, expected) in [
-        ("docs/verify.md", None),
+        ("docs/how-to/verify.md", None),
         ("#two-commands", None),
         ("https://example.com/no#such", None),
-        ("/docs/verify.md", Some("is not relative")),
+        ("/docs/how-to/verify.md", Some("is not relative")),
         ("docs/none.md", Some("leads nowhere")),
-        ("docs/verify.md#none", Some("names no heading")),
+        ("docs/how-to/verify.md#none", Some("names no heading")),
     ] {
         assert_eq!(fault(&page, link), expected, "{link}");
     }
 }
 
+/// The README, the pages that it links to, the pages that these link to, and so on, are all pages below `docs`.
 #[test]
 fn the_readme_leads_to_every_page() {
-    let readme = fs::read_to_string(root().join("README.md")).unwrap();
-    for page in pages().iter().filter(|page| page.parent() == Some(&root().join("docs"))) {
-        let name = page.file_name().unwrap().to_str().unwrap();
-        assert!(readme.contains(&format!("](docs/{name})")), "README.md does not link to {name}");
+    let (mut found, mut next) = (BTreeSet::new(), vec![root().join("README.md")]);
+    while let Some(page) = next.pop().map(|page| page.canonicalize()) {
+        // Addresses are not files.
+        let Ok(page) = page else { continue };
+        if page.extension().is_some_and(|e| e == "md") && found.insert(page.clone()) {
+            let text = fs::read_to_string(&page).unwrap();
+            next.extend(links(&text).iter().map(|link| target(&page, link)));
+        }
+    }
+    let docs = root().join("docs");
+    for page in pages().iter().filter(|page| page.starts_with(&docs)) {
+        let is_found = found.contains(&page.canonicalize().unwrap());
+        assert!(is_found, "no link leads from README.md to {}", page.display());
     }
 }

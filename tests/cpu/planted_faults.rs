@@ -267,7 +267,7 @@ fn least_found(spoil: impl Fn(&mut Recording, f32)) -> i32 {
     (4..24).take_while(is_found).last().unwrap_or(0)
 }
 
-/// These sizes must match the table in docs/verify.md.
+/// These sizes must match the table in docs/explain/how-verify-decides.md.
 #[test]
 fn errors_are_found_from_the_documented_size_on() {
     let (scene, recording) = legal_recording();

@@ -34,7 +34,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 /// The reason if the driver does not compute exactly like plain f32. Such drivers are legal
-/// although they differ, see docs/drivers.md.
+/// although they differ, see docs/explain/drivers.md.
 fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
     let info = headless.adapter_info();
     let is_plain = PLAIN.iter().any(|version| info.driver_info.starts_with(version));

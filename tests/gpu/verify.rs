@@ -1,6 +1,6 @@
 //! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
-/// The example of docs/verify.md for tests of other renderers.
+/// The example of docs/how-to/verify.md for tests of other renderers.
 #[path = "../../examples/legal.rs"]
 #[allow(dead_code, reason = "an example has a main function")]
 mod example;

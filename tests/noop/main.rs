@@ -121,10 +121,11 @@ fn the_documented_version_of_wgpu_is_that_of_the_manifest() {
     }
     let release = env!("CARGO_PKG_VERSION");
     let row = format!("| {release} | {WGPU_VERSION} |");
-    assert!(file("docs/embedding.md").contains(&row), "docs/embedding.md lacks the row `{row}`");
+    let page = "docs/how-to/embed.md";
+    assert!(file(page).contains(&row), "{page} lacks the row `{row}`");
     let major = WGPU_VERSION.split('.').next().unwrap();
     let said = format!("wgpu {major}");
-    for page in ["docs/embedding.md", "CHANGELOG.md"] {
+    for page in [page, "CHANGELOG.md"] {
         assert!(file(page).contains(&said), "{page} does not say `{said}`");
     }
 }

@@ -6,7 +6,7 @@
 PINHOLE is the program, DATA a folder with 4hhb.pdb, 4hhb.cif (from the Protein Data Bank), water.xyz (a trajectory),
 cell.xyz (extended XYZ with a cell) and polymer.lammpstrj, and OUT a folder for pictures, which also gets two million
 grains. This Python has ovito and numpy (`pip install ovito numpy`). A time is that of a whole process, from its start
-to the written picture; the least of N turns is printed. docs/beside-ovito.md has the table.
+to the written picture; the least of N turns is printed. docs/how-to/from-ovito-and-fresnel.md has the table.
 """
 
 import argparse

@@ -1,5 +1,5 @@
 //! Pictures that many machines render: `split` divides them into units, `part` renders units, `status` lists those that
-//! are missing, and `merge` puts the parts together. Schedulers hand units to machines: `docs/scale.md` has recipes.
+//! are missing, and `merge` joins the parts. Schedulers hand units to machines: `docs/how-to/clusters.md` has recipes.
 //!
 //! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
 //! all and knows its job by the digest of `job.json`. Nothing else coordinates them.

@@ -50,7 +50,7 @@ const REMOVED: &[(&str, &str)] = &[
     ("--samples-per-part", "divide pictures by `pinhole job split --tiles CxR`"),
     ("job join", "`pinhole job merge` puts all parts together in one pass"),
     ("job status --json", "`pinhole job status JOB --missing` lists units, one a line"),
-    ("job submit", "submit an array of `pinhole job part` yourself; docs/scale.md has the scripts"),
+    ("job submit", "submit an array of `pinhole job part`: docs/how-to/clusters.md has scripts"),
     ("--accel binary-tree", "use --accel tree"),
     ("--profile=", "use `--profile`, which prints the table"),
     ("bench --calibrate", "`--accel auto` follows a rule that needs no measured prices"),

@@ -207,7 +207,7 @@ echo 17
 /// A folder with a job, the scripts of the page, and `sbatch`.
 fn with_scripts() -> Folder {
     let folder = folder();
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/scale.md");
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/how-to/clusters.md");
     let page = fs::read_to_string(page).unwrap().replace("\r\n", "\n");
     for name in ["part.sh", "submit.sh"] {
         let (_, script) = page.split_once(&format!("```bash\n# {name}: ")).unwrap();

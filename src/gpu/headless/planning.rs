@@ -1,5 +1,5 @@
 //! Planning renders on a device, for every integrator. Drivers that are known to compute wrong results get another
-//! structure. `docs/drivers.md` contains the evidence.
+//! structure. `docs/explain/drivers.md` contains the evidence.
 
 use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::camera::View;

@@ -122,7 +122,7 @@ impl Headless {
     /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a
     /// new structure of the same kind is built on the host and copied to the device. The views of frames that show
     /// the scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view).
-    /// `docs/performance.md` lists the cost of both.
+    /// `docs/dev/notebook-2026-11.md` lists the cost of both.
     ///
     /// # Errors
     /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.

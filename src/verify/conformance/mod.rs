@@ -82,7 +82,7 @@
 //! The quadratic formula of textbooks does not meet these conditions: its b² − 4ac subtracts numbers of the size L²,
 //! which loses ε L² from r², so that a small sphere far away is moved by L/r times as much.
 //!
-//! In practice, so many roundings never all add up, and honest renderers need k below 6 (`docs/conformance.md`).
+//! In practice, so many roundings never all add up, and honest renderers need k below 6 (`docs/explain/how-verify-decides.md`).
 //!
 //! ```
 //! use pinhole::camera::{PinholeCamera, Pose};
