@@ -19,6 +19,7 @@ pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::{DEFAULT_COLOR, SceneFileError};
+pub(crate) use write::string;
 pub use write::{Contents, write};
 
 use crate::annotate::AnnotationPlan;

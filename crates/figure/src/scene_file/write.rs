@@ -246,7 +246,8 @@ fn color(color: LinearRgb) -> String {
     format!("{:?}", color.to_array())
 }
 
-fn string(text: &str) -> String {
+/// A text in quotes, as TOML writes it.
+pub(crate) fn string(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
         match c {

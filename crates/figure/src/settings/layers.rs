@@ -85,11 +85,13 @@ impl<'a> Joined<'a> {
     pub(crate) fn read(sources: &Sources<'a>) -> Result<Self, SceneFileError> {
         let mut lines = Lines::default();
         let file = parse(sources.file, None, &mut lines)?;
-        let mut flags = DeTable::new();
+        let (mut flags, mut sets) = (DeTable::new(), DeTable::new());
         for layer in sources.flags {
-            join(&mut flags, parse(&layer.text, Some(layer.flag), &mut lines)?);
+            let into = if layer.flag == "--set" { &mut sets } else { &mut flags };
+            join(into, parse(&layer.text, Some(layer.flag), &mut lines)?);
         }
-        let (in_file, in_flags) = (Keys::of(&file), Keys::of(&flags));
+        let (in_file, mut in_flags) = (Keys::of(&file), Keys::of(&flags));
+        in_flags.add(&sets, "");
         let named = |keys: &Keys| keys.get("style").map(|name| style_of(name, &lines)).transpose();
         let (by_flag, by_file) = (named(&in_flags)?, named(&in_file)?);
         let style = by_flag.or(by_file).or(sources.style);
@@ -109,6 +111,7 @@ impl<'a> Joined<'a> {
         }
         replace_whole(&mut table, &own);
         join(&mut table, own);
+        join(&mut table, sets);
         table.remove("style");
         let keys = Keys::of(&table);
         Ok(Self { lines, style, kept, in_file, in_flags, in_style, keys, table })
