@@ -61,7 +61,7 @@ mod tests {
 
     use super::*;
 
-    /// What a recording or given rays contain is not asked for beside them; and no flag is forgotten.
+    /// Arguments that a recording or given rays contain must be excluded beside them. The test finds forgotten flags.
     #[test]
     fn recordings_and_rays_exclude_all_arguments_that_they_contain() {
         let arguments = Arguments::command();

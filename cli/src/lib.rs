@@ -1,7 +1,7 @@
-//! The program `pinhole`. It parses the arguments, checks them and turns them into types of the library, and runs the
+//! The program `pinhole`. It parses the arguments, checks them, turns them into types of the library, and runs the
 //! job. Only this crate uses clap, prints, and accesses the file system.
 //!
-//! It is a library for one other program, the viewer, which turns flags into pictures by the same code: see [`viewing`].
+//! It is a library for the viewer, which turns flags into pictures by the same code: see [`viewing`].
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -33,7 +33,7 @@ mod terminal;
 #[allow(clippy::missing_errors_doc, clippy::must_use_candidate, reason = "for the viewer alone")]
 pub mod viewing;
 
-/// Runs the program with the arguments of the process. This must be the first thing that the process does.
+/// Runs the program with the arguments of the process. This must be the first action of the process.
 ///
 /// Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed, 4 a check
 /// could not decide, 5 the device was lost or did not answer, 130 stopped.
@@ -46,7 +46,7 @@ pub fn main() -> ExitCode {
     run()
 }
 
-/// Leaves the loss of a device to the one line that says so: wgpu panics, and the library catches that.
+/// Silences the panic with which wgpu reports a lost device. The library catches it, and the program prints one line.
 #[cfg(feature = "gpu")]
 fn quieten_lost_devices() {
     let usual = std::panic::take_hook();

@@ -1,4 +1,4 @@
-"""Checks arrays, and turns them into the few types that the compiled half reads. Strides and order may be any."""
+"""Checks arrays, and converts them to the few types that the compiled half reads. Strides and order may be any."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = npt.NDArray[Any]
 
 
 def numbers(name: str, given: Any) -> Array:
-    """An array of real numbers, without a copy where that is possible."""
+    """Returns an array of real numbers, without a copy if possible."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(f"{name} is a masked array; leave out what is masked, or fill it with .filled(...)")
     if not isinstance(given, np.ndarray):
@@ -33,9 +33,9 @@ def numbers(name: str, given: Any) -> Array:
 
 
 def _on_host(name: str, given: Any) -> Any:
-    """An array of another library in host memory, where it may be already; a copy of one on a device, with a note."""
+    """Copies another library's array from a device to the host, with a note. Arrays on the host stay as they are."""
     if hasattr(given, "__cuda_array_interface__") or getattr(given, "is_cuda", False):
-        # Of CuPy, PyTorch and Numba.
+        # Names of these methods in CuPy, PyTorch and Numba.
         for method in ("get", "cpu", "copy_to_host"):
             if hasattr(given, method):
                 warnings.warn(f"{name} is copied from a CUDA device to host memory", Note, stacklevel=5)
@@ -49,10 +49,10 @@ def _on_host(name: str, given: Any) -> Any:
 
 
 def floats(array: Array, dtype: Any = None) -> Array:
-    """The array in float32 if it has this type or fewer bits, or else in float64."""
+    """Converts an array to float32 if it has this type or fewer bits, and otherwise to float64."""
     if dtype is None:
         dtype = np.float32 if array.dtype.kind == "f" and array.dtype.itemsize <= 4 else np.float64
-    # Other byte orders are changed too.
+    # This also changes other byte orders.
     return array.astype(np.dtype(dtype), copy=False)
 
 
@@ -73,7 +73,7 @@ def positions(name: str, given: Any) -> Array:
 
 
 def radii(given: Any, like: Array) -> float | Array | None:
-    """One radius, or an array of shape (n,) with the type of the centres; None if there is none."""
+    """Returns one radius, or an array of shape (n,) with the type of the centres; None if there is none."""
     if given is None:
         return None
     array = numbers("radius", given)
@@ -104,7 +104,7 @@ def per_sphere(name: str, array: Array, count: int) -> Array:
 
 
 def is_colors(given: Any) -> bool:
-    """Whether a colour argument is an array with a row for each sphere."""
+    """Whether a colour argument is an array with one row for each sphere."""
     return np.ndim(given) == 2
 
 
@@ -129,7 +129,7 @@ def colors(given: Any, count: int) -> Array:
 
 
 def named_colors(given: Any, count: int) -> Array | None:
-    """Colours by names of CSS, one for each sphere: uint8 of shape (n, 3); None if not all texts name colours."""
+    """Colours from CSS names, one for each sphere: uint8 of shape (n, 3); None if some text is not a colour."""
     array = np.asarray(given)
     if array.dtype.kind != "U" or array.shape != (count,):
         return None
@@ -139,7 +139,7 @@ def named_colors(given: Any, count: int) -> Array | None:
 
 
 def materials(given: Any, count: int) -> tuple[list[Any], Array]:
-    """The different materials of a list of one for each sphere, which may be names or tables, and the index of each."""
+    """The different materials of a list, which may be names or tables, and the index of each sphere's material."""
     if len(given) != count:
         raise InputError(f"material has {len(given)} values for {count} spheres")
     different: dict[str, int] = {}
@@ -157,12 +157,12 @@ def materials(given: Any, count: int) -> tuple[list[Any], Array]:
 
 
 def is_list(given: Any) -> bool:
-    """Whether an argument has values for spheres one by one."""
+    """Whether an argument has a value for each sphere."""
     return isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str)
 
 
 def column(name: str, given: Any, count: int) -> tuple[list[str], Array] | Array:
-    """A column: numbers in float64, or different texts and the index of each sphere's text."""
+    """Returns a column: numbers in float64, or the different texts and the index of each sphere's text."""
     array = np.asarray(given)
     if array.dtype.kind in "US" or (array.dtype.kind == "O" and all(isinstance(of, str) for of in array.ravel())):
         texts = per_sphere(name, array.astype(str), count)

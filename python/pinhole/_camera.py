@@ -1,4 +1,4 @@
-"""Cameras: where they stand, or how they frame the spheres."""
+"""Cameras, with a position, or with a view that frames the spheres."""
 
 from __future__ import annotations
 
@@ -79,11 +79,11 @@ class Camera:
         return cls(kind, view=view, turn=turn, up=up, zoom=zoom, margin=margin, fov=fov, **keys)
 
     def _is_placed(self) -> bool:
-        """Whether the keys say where the camera looks."""
+        """Whether the keys give the position or the direction of the camera."""
         return "eye" in self.keys or "direction" in self.keys or self.kind in ("panorama", "fisheye")
 
     def _table(self, data: Any) -> dict[str, Any]:
-        """The table ``camera`` of a scene file, for spheres that it frames."""
+        """Returns the table ``camera`` of a scene file for a camera that frames spheres."""
         keys: dict[str, Any] = dict(self.keys)
         if self.view is not None or not self._is_placed():
             direction, up = data.view_axes(self.view, self.turn, self.up)
@@ -101,7 +101,7 @@ class Camera:
 
 
 def as_camera(given: Any) -> Camera | Mapping[str, Any]:
-    """A camera of what the argument ``camera`` may be: a camera, a view, the table of a scene file, or nothing."""
+    """Makes a camera from the argument ``camera``: a camera, a view, the table of a scene file, or None."""
     if given is None:
         return Camera()
     if isinstance(given, (Camera, Mapping)):

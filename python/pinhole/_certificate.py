@@ -1,4 +1,4 @@
-"""Certificates: whether a device rendered as it should."""
+"""Certificates show whether a device rendered correctly."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ._image import write
 from ._pinhole import Judged
 
 
-#: The outcomes in words.
+#: The words for the outcomes.
 _NAMES = {"proved": "legal", "undecided": "UNDECIDED", "violated": "NOT LEGAL"}
 
 
 class Certificate:
-    """Whether the picture of a device is one that a conforming device may have made, pixel by pixel."""
+    """The result of checking pixel by pixel whether a conforming device may have made a picture."""
 
     __slots__ = ("_judged",)
 
@@ -57,7 +57,7 @@ class Certificate:
         return self._judged.violations()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a page for people, .html, that needs no other files."""
+        """Writes an .html page that needs no other files."""
         path = os.fspath(path)
         if os.path.splitext(path)[1].lower() not in (".html", ".htm"):
             raise InputError(f"{path}: a certificate is written as .html; change the extension")

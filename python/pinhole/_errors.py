@@ -1,4 +1,4 @@
-"""Exceptions and warnings. Each exception is a ``pinhole.Error`` and a built-in one of the same meaning."""
+"""Exceptions and warnings. Each exception is a ``pinhole.Error`` and also a built-in one with the same meaning."""
 
 
 class Error(Exception):
@@ -26,7 +26,7 @@ class InternalError(Error, RuntimeError):
 
 
 class Note(UserWarning):
-    """Something that the user should know and that is not an error."""
+    """A warning about something that is not an error."""
 
 
 for _class in (Error, InputError, FileError, DeviceError, InternalError, Note, PackageError):

@@ -16,14 +16,14 @@ from ._spheres import Spheres, warn
 
 
 class Trajectory(Sequence[Spheres]):
-    """The frames of a file, of which each is read when it is asked for. A slice is another trajectory, and reads nothing.
+    """The frames of a file. A frame is read when it is indexed. A slice is another trajectory, and reads nothing.
 
     ``render`` renders the first frame, and ``movie`` all of them.
     """
 
     __slots__ = ("_file", "_frames", "_settings", "camera")
 
-    #: The camera of pictures for which ``render`` or ``movie`` is given none.
+    #: The default camera of ``render`` and ``movie``.
     camera: Camera | None
 
     def __init__(self, file: FileData, frames: range, settings: dict[str, Any]) -> None:
@@ -56,7 +56,7 @@ class Trajectory(Sequence[Spheres]):
         return Spheres._of(data, self._settings, self.camera)
 
     def with_(self, **settings: Any) -> Trajectory:
-        """The same frames with other settings about data, such as ``color_by``."""
+        """Returns the same frames with other settings about data, such as ``color_by``."""
         checked = {**self._settings, **_settings.data_settings(settings)}
         made = Trajectory(self._file, self._frames, checked)
         made.camera = self.camera
@@ -67,10 +67,10 @@ class Trajectory(Sequence[Spheres]):
         return self[0].render(size, **settings)
 
     def movie(self, path: str | os.PathLike[str], *, fps: float = 25.0, **settings: Any) -> None:
-        """Renders all frames into a movie, as ``pinhole.movie`` does, with one camera that frames all of them, and in which
-        equal values have equal colours.
+        """Renders all frames into a movie, as ``pinhole.movie`` does. One camera frames all frames, and equal values
+        have equal colours in each.
 
-        All frames are read twice, because where spheres will be, and which values they will have, must be known before.
+        All frames are read twice, because the positions and values of all spheres must be known before.
         """
         camera = settings.pop("camera", None) or self.camera
         keys = FrameKeys()
@@ -106,18 +106,18 @@ def read(
 ) -> Any:
     """Reads a file of spheres: PDB, mmCIF, XYZ, LAMMPS, GSD, GROMACS, DCD, PLY, VTK, LAS, CSV, NumPy and more.
 
-    Returns ``Spheres``, or a ``Trajectory`` if the file has several frames and ``frame`` names none.
+    Returns ``Spheres``, or a ``Trajectory`` if the file has several frames and ``frame`` is None.
 
     Parameters
     ----------
     topology
-        The file that says what the spheres of a trajectory are, for formats that have positions alone.
+        The file that describes the spheres of a trajectory, for formats that have positions alone.
     frame
         The frame of a trajectory, counted from 0.
     radius
         The radius of all spheres, for files without radii.
     format
-        The name of the format, if neither the file's extension nor its content shows it.
+        The name of the format; by default, the file's extension or content shows it.
     columns
         The names of the columns of a table without a header.
     settings

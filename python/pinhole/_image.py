@@ -14,15 +14,15 @@ from ._pinhole import Picture
 
 Array = npt.NDArray[Any]
 
-#: The layers besides colour, with what to write to have them.
+#: The layers besides colour, as ``render(layers=...)`` names them.
 LAYERS = ("alpha", "depth", "normal", "position", "albedo", "id", "samples", "variance")
 
 
 class Image:
     """A picture with its layers as NumPy arrays of shape (height, width) or (height, width, 3); row 0 is the top.
 
-    ``np.asarray(image)`` and ``image.rgb8`` are the picture in uint8 sRGB, as a PNG has it. ``image.color`` is linear light
-    in float32. The other layers are there if ``render(layers=...)`` asked for them.
+    ``np.asarray(image)`` and ``image.rgb8`` are the picture in uint8 sRGB, as in a PNG. ``image.color`` is linear light
+    in float32. The other layers exist if ``render(layers=...)`` asked for them.
     """
 
     __slots__ = ("_picture", "_arrays")
@@ -60,7 +60,7 @@ class Image:
 
     @property
     def notes(self) -> list[str]:
-        """What the user should know about the picture."""
+        """Notes for the user about the picture."""
         return self._picture.notes
 
     @property
@@ -90,7 +90,7 @@ class Image:
 
     @property
     def position(self) -> Array:
-        """Where rays hit, in scene units: float32, (height, width, 3); zero where nothing is hit."""
+        """The points that rays hit, in scene units: float32, (height, width, 3); zero where nothing is hit."""
         return self._layer("position")
 
     @property
@@ -114,7 +114,7 @@ class Image:
         return self._layer("variance")
 
     def save(self, path: str | os.PathLike[str], layer: str | None = None) -> None:
-        """Writes a file: .png, .exr with all layers that were asked for, or .npy of one ``layer`` (default: color)."""
+        """Writes a file: .png, .exr with all requested layers, or .npy with one ``layer`` (default: color)."""
         path = os.fspath(path)
         extension = os.path.splitext(path)[1].lower()
         if layer is not None and extension != ".npy":
@@ -146,7 +146,7 @@ class Image:
 
 
 def write(path: str, data: bytes) -> None:
-    """Writes a file that has its name only when it is complete."""
+    """Writes a file, which gets its name only when it is complete."""
     folder = os.path.dirname(path) or "."
     try:
         handle, temporary = tempfile.mkstemp(prefix=".pinhole-", dir=folder)

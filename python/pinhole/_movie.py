@@ -1,4 +1,4 @@
-"""Movies: pictures one after the other go to ffmpeg, or into numbered files."""
+"""Movies: ffmpeg encodes pictures one after the other, or they become numbered files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._image import Image, write
 from ._pinhole import png_of
 from ._sheet import Array, pixels
 
-#: What ffmpeg is told for each kind of file.
+#: The arguments of ffmpeg for each kind of file.
 CODECS = {
     ".mp4": ["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
     ".mov": ["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"],
@@ -25,9 +25,9 @@ CODECS = {
 
 
 def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps: float = 25.0) -> None:
-    """Writes pictures as a movie (.mp4, .mov, .mkv, .webm, .apng or .gif, which need the program ffmpeg), or as numbered
-    PNG files, such as ``f%04d.png``. Pictures are ``Image`` or arrays as of ``sheet``, and may be made one by one: only one
-    is in memory.
+    """Writes pictures as a movie (.mp4, .mov, .mkv, .webm, .apng or .gif, which need the program ffmpeg), or as
+    numbered PNG files, such as ``f%04d.png``. Pictures are ``Image`` objects, or arrays as for ``sheet``. An iterator
+    may make them one by one, so that only one is in memory.
     """
     path = os.fspath(path)
     if isinstance(images, Image):
@@ -60,7 +60,7 @@ def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps:
             if process is None:
                 size = (frame.shape[1], frame.shape[0])
                 raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-"]
-                # These formats need even sides.
+                # Formats with this pixel format need even sides.
                 even = ["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2"] if "yuv420p" in codec else []
                 command = [ffmpeg, "-y", "-loglevel", "error", *raw, *even, *codec, temporary]
                 process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)

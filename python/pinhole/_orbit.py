@@ -1,4 +1,4 @@
-"""How a camera moves when the pointer does. The rules are those of the program's window."""
+"""Moves a camera with the pointer, by the same rules as the program's window."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from ._camera import Camera
 
 Array = npt.NDArray[Any]
 
-#: A full turn for each so many heights of the picture that the pointer moves.
+#: The number of full turns when the pointer moves by one height of the picture.
 TURNS_PER_HEIGHT = 0.5
 
-#: How much nearer a step of the wheel, in CSS pixels, brings the camera, as a power of e.
+#: The change of the distance by one step of the wheel, in CSS pixels, as a power of e.
 ZOOM_PER_POINT = 0.003
 
-#: The vertical field of view of cameras that name none, in degrees.
+#: The vertical field of view of cameras without ``fov``, in degrees.
 USUAL_FOV = 30.0
 
 
 class Orbit:
-    """A camera that has a place, and the point around which it turns."""
+    """A camera with a position, and the point around which it turns."""
 
     __slots__ = ("kind", "rest", "eye", "direction", "up", "pivot", "least", "depth")
 
@@ -49,17 +49,17 @@ class Orbit:
 
     @property
     def is_inside(self) -> bool:
-        """Whether the camera sees in all directions, so that it turns about itself."""
+        """Whether the camera sees in all directions, so that it turns about its own position."""
         return self.kind in ("panorama", "fisheye")
 
     @property
     def camera(self) -> Camera:
-        """The camera as it is now."""
+        """The camera in its current position."""
         place = {"eye": self.eye.tolist(), "direction": self.direction.tolist()}
         return Camera(self.kind, up=self.up.tolist(), **place, **self.rest)
 
     def turn(self, x: float, y: float) -> None:
-        """Turns the scene under the pointer, which moved to the right and down by parts of the picture's height."""
+        """Turns the scene under the pointer, which moved to the right and down by fractions of the picture's height."""
         angle = TURNS_PER_HEIGHT * 2 * math.pi
         right = np.cross(self.direction, self.up)
         turn = rotation(self.up, -x * angle) @ rotation(right, -y * angle)
@@ -70,7 +70,7 @@ class Orbit:
         self._set(self.direction, rotation(self.direction, angle) @ self.up)
 
     def pan(self, x: float, y: float) -> None:
-        """Moves the camera such that what is at the depth of the pivot follows the pointer."""
+        """Moves the camera so that points at the depth of the pivot follow the pointer."""
         if "half_extent" in self.rest:
             height = 2 * float(self.rest["half_extent"][1])
             if self.kind != "orthographic":
@@ -83,7 +83,7 @@ class Orbit:
         self.eye, self.pivot = self.eye + by, self.pivot + by
 
     def zoom(self, points: float) -> None:
-        """Comes nearer by steps of the wheel in CSS pixels."""
+        """Moves nearer by steps of the wheel in CSS pixels."""
         factor = math.exp(min(max(-ZOOM_PER_POINT * points, -1.0), 1.0))
         if self.kind == "orthographic" and "half_extent" in self.rest:
             self.rest = {**self.rest, "half_extent": [factor * float(side) for side in self.rest["half_extent"]]}
@@ -106,7 +106,7 @@ class Orbit:
 
 
 def rotation(axis: Array, angle: float) -> Array:
-    """The matrix that turns by an angle about an axis, counter-clockwise seen from its end."""
+    """The matrix of a turn by an angle about an axis, counter-clockwise as seen from the end of the axis."""
     x, y, z = axis / np.linalg.norm(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     turn: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)

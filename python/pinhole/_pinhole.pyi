@@ -1,4 +1,4 @@
-"""The compiled half of pinhole, which is not for use by itself."""
+"""The compiled half of pinhole. Use the package ``pinhole`` instead."""
 
 from collections.abc import Callable
 from typing import Any, final

@@ -1,4 +1,4 @@
-"""A line that shows the progress of renders that take long, in terminals and notebooks."""
+"""A line with the progress of long renders, in terminals and notebooks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Callable
 
-#: Renders that take less time than this, in seconds, show nothing.
+#: The time in seconds after which progress is shown.
 SHOWN_AFTER = 1.0
 
 
@@ -29,14 +29,14 @@ class Line:
             self.shown = text
 
     def close(self) -> None:
-        """Takes the line away."""
+        """Removes the line."""
         if self.shown:
             sys.stderr.write("\r" + " " * len(self.shown) + "\r")
             sys.stderr.flush()
 
 
 def chosen(progress: bool | Callable[[float], object] | None) -> tuple[Callable[[float], object] | None, Line | None]:
-    """What is called with the progress, and the line to close afterwards."""
+    """Returns the function to call with the progress, and the line to close afterwards."""
     if callable(progress):
         return (progress, None)
     if progress is None:

@@ -1,5 +1,5 @@
-"""Renders the newest of the pictures that are asked for, on a thread: quick ones while a camera moves, and then one that
-gets better by and by.
+"""Renders the newest requested picture on a thread. While the camera moves, pictures are quick, and then one is refined
+with more and more samples.
 """
 
 from __future__ import annotations
@@ -25,43 +25,43 @@ if TYPE_CHECKING:
 #: Seconds without a movement after which the picture is refined.
 STILL_AFTER = 0.25
 
-#: Seconds that a quick picture may take. Slower ones get fewer pixels.
+#: The time in seconds that a quick picture may take. Slower pictures get fewer pixels.
 QUICK = 0.06
 
-#: The smallest and the largest part of the whole sides that quick pictures have, and that of the first one.
+#: The sides of quick pictures as fractions of the whole: the smallest, the largest, and those of the first picture.
 PARTS = (0.125, 1.0, 0.5)
 
-#: How many times as many samples each picture has as the one before it, while pictures are refined.
+#: The factor by which samples grow from one refined picture to the next.
 GROWTH = 4
 
 #: The most pixels of a side and of a whole picture on a screen.
 LARGEST = (8192, 16_000_000)
 
-#: Settings that pictures by primary rays have as well.
+#: Settings that quick pictures, by primary rays, also use.
 OF_QUICK = ("film", "output", "transparent", "exposure", "tone", "background")
 
 
-#: Seconds within which a picture that is not wanted stops.
+#: The time in seconds within which a picture stops that is no longer wanted.
 STOPS_WITHIN = 5.0
 
 
 class Superseded(Exception):
-    """A newer picture is wanted."""
+    """The exception in a render when a newer picture is wanted."""
 
 
 class Stage(NamedTuple):
-    """A picture, and what it is."""
+    """A picture, with its camera and its quality."""
 
     image: Image
     camera: Camera
     is_quick: bool
-    #: Whether nothing better follows: the picture has all samples.
+    #: Whether this is the last stage, with all samples.
     is_final: bool
     samples: int
 
 
 class Refiner:
-    """Renders spheres with the settings of ``Spheres.render``. ``show`` is called on the thread with every picture, and
+    """Renders spheres with the settings of ``Spheres.render``. The thread calls ``show`` with every picture, and
     ``fail`` with an error.
     """
 
@@ -84,19 +84,19 @@ class Refiner:
         self.part = PARTS[2]
         self.stage: Stage | None = None
         self.error: Error | None = None
-        # What is wanted: the newest camera, whether it moves, and since when.
+        # The current request: the newest camera, whether it moves, since when, and the number of the request.
         self._camera, self._moves, self._since, self._serial = camera, False, 0.0, 0
         #: The number of the newest request that was answered.
         self._done = 0
-        #: The number of the request that the newest picture is for, and its samples, which are 0 for a quick one.
+        #: The request of the newest picture, and the picture's samples, which are 0 if it is quick.
         self._reached = (-1, 0)
         self._picks: list[tuple[Camera, float, float, Callable[[int | None], object]]] = []
         self._thread: threading.Thread | None = None
         self._changed = threading.Condition()
 
     def _probe(self, camera: Camera) -> tuple[int, list[float]]:
-        """The number of samples of a pixel, and the background, from a picture of what is behind the camera, far away. It
-        also checks the settings and brings the spheres to the device.
+        """Returns the number of samples of a pixel, and the background, from a picture that shows no spheres. It also
+        checks the settings and copies the spheres to the device.
         """
         bounds = self.spheres.bounds
         low, high = bounds if bounds is not None else (np.zeros(3), np.ones(3))
@@ -112,7 +112,7 @@ class Refiner:
     def _render(
         self, settings: Mapping[str, Any], serial: int | None = None, layers: list[str] | None = None
     ) -> Image:
-        """Renders a picture, which stops if something else than the request of this number is wanted."""
+        """Renders a picture. It stops when another request than this one, or a pick, is waiting."""
 
         def look(_: float) -> None:
             if serial is not None and (serial != self._serial or self._picks):
@@ -122,7 +122,7 @@ class Refiner:
         return Image(self.spheres._data.render(text, layers or [], self.backend, look))
 
     def image_at(self, camera: Camera, samples: int | None = None, serial: int | None = None) -> Image:
-        """The picture with the given number of samples, or all."""
+        """Renders the picture with this number of samples, or all."""
         settings = {**self.settings, "camera": camera, "size": self.size}
         if samples is not None:
             settings.pop("samples", None)
@@ -130,7 +130,7 @@ class Refiner:
         return self._render(settings, serial)
 
     def stop(self) -> None:
-        """Drops what is wanted and waits until the thread has ended. The interpreter needs that when it ends."""
+        """Drops all requests and waits until the thread has ended, as the interpreter needs before it ends."""
         with self._changed:
             self._serial += 1
             self._done, self._picks = self._serial, []
@@ -138,7 +138,7 @@ class Refiner:
         self.wait(STOPS_WITHIN)
 
     def ask(self, camera: Camera, *, moves: bool) -> None:
-        """Wants a picture. What was wanted before is dropped."""
+        """Requests a picture, in place of earlier requests."""
         with self._changed:
             self._camera, self._moves, self._since = camera, moves, time.monotonic()
             self._serial += 1
@@ -146,13 +146,13 @@ class Refiner:
             self._start()
 
     def settle(self) -> None:
-        """Says that the camera no longer moves."""
+        """Records that the camera no longer moves."""
         with self._changed:
             self._moves = False
             self._changed.notify_all()
 
     def pick(self, camera: Camera, x: float, y: float, tell: Callable[[int | None], object]) -> None:
-        """Looks which sphere is at a place, in parts of the width and height from the upper left, and calls ``tell``."""
+        """Finds the sphere at a place, in fractions of width and height from the upper left, for ``tell``."""
         with self._changed:
             self._picks.append((camera, x, y, tell))
             self._start()
@@ -165,7 +165,7 @@ class Refiner:
         self._changed.notify_all()
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Waits until there is nothing to do. Returns whether that is so."""
+        """Waits until there is nothing left to do. Returns False after a timeout."""
         with self._changed:
             return self._changed.wait_for(lambda: self._thread is None, timeout)
 
@@ -204,16 +204,16 @@ class Refiner:
             tell(None)
             return
         found = int(ids[int(y * height), int(x * width)])
-        # Bonds and what else was added have larger indices than spheres.
+        # Added spheres, such as those of bonds, have larger indices than the data's spheres.
         tell(found if found < len(self.spheres) else None)
 
     def _move(self, serial: int, camera: Camera) -> bool:
-        """Shows a quick picture, and returns whether the camera then stays still."""
+        """Shows a quick picture, and returns whether the camera does not move afterwards."""
         if self._reached[0] == serial:
             return self._stays_still(serial)
         started = time.monotonic()
         size = (max(1, round(self.size[0] * self.part)), max(1, round(self.size[1] * self.part)))
-        # This is not stopped: otherwise, nothing would be seen while the camera moves on and on.
+        # Quick pictures are never stopped, or nothing would be visible while the camera moves continuously.
         image = self._render({**self.quick, "camera": camera, "size": size})
         taken = time.monotonic() - started
         self._reached = (serial, 0)
@@ -223,14 +223,14 @@ class Refiner:
         return self._stays_still(serial)
 
     def _stays_still(self, serial: int) -> bool:
-        """Waits until the camera has stayed still for a while, and returns whether nothing else is wanted first."""
+        """Waits until the camera has not moved for a while. Returns whether no other request came first."""
         with self._changed:
             left = self._since + STILL_AFTER - time.monotonic()
             self._changed.wait_for(lambda: serial != self._serial or bool(self._picks) or not self._moves, left)
             return serial == self._serial and not self._picks
 
     def _refine(self, serial: int, camera: Camera) -> None:
-        """Shows pictures with more and more samples."""
+        """Shows pictures with increasing numbers of samples."""
         samples = 1
         while samples < self.samples:
             if self._reached[0] != serial or self._reached[1] < samples:
@@ -247,7 +247,7 @@ class Refiner:
         self.show(stage)
 
 
-#: What has had a thread.
+#: Refiners that have had a thread.
 _at_work: weakref.WeakSet[Refiner] = weakref.WeakSet()
 
 
@@ -258,7 +258,7 @@ def _stop_all() -> None:
 
 
 def screen_size(size: tuple[int, int], ratio: float) -> tuple[int, int]:
-    """The pixels of a picture of so many CSS pixels on a screen with so many pixels for each of them."""
+    """The size in pixels of a picture of this size in CSS pixels, on a screen with this number of pixels for each."""
     side, area = LARGEST
     most = min(side / max(size), math.sqrt(area / (size[0] * size[1])))
     factor = min(max(ratio, 1.0), max(most, 1.0))
@@ -266,7 +266,7 @@ def screen_size(size: tuple[int, int], ratio: float) -> tuple[int, int]:
 
 
 def checked_size(size: Any) -> tuple[int, int]:
-    """A size that can be shown."""
+    """Checks that a picture of this size can be shown."""
     _settings.picture_settings({"size": size})
     width, height = size
     return (int(width), int(height))

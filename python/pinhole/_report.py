@@ -1,4 +1,4 @@
-"""Certificates as HTML: one page that needs no other files. All text that comes from elsewhere is escaped."""
+"""Certificates as HTML: one page that needs no other files. All text from elsewhere is escaped."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ._pinhole import Judged, png_of
 
-#: The colour and the meaning of each verdict; those of the program's report.
+#: The colour and the meaning of each verdict, as in the program's report.
 VERDICTS = {
     "decided": ("e4ebef", "one answer is legal, and the device gave it"),
     "silhouette": ("0072b2", "a sphere and a miss are legal; the device gave one of them"),
@@ -19,20 +19,20 @@ VERDICTS = {
     "violation": ("d55e00", "the device gave an answer that is not legal"),
 }
 
-#: The outcomes in words.
+#: The words for the outcomes.
 OUTCOMES = {
     "proved": ("Legal", "Every pixel is one that a conforming device may have made."),
     "undecided": ("Undecided", "No violation was found, but more than 1 % of the pixels have several legal answers."),
     "violated": ("Not legal", "The device gave answers that no conforming device gives."),
 }
 
-#: The colour of a verdict that has none.
+#: The colour of verdicts that are not in the list.
 OTHER = ("808080", "")
 
-#: The longest side of the picture of the verdicts. A pixel of a smaller one shows the worst of those that it stands for.
+#: The longest side of the picture of verdicts. Each pixel of a reduced picture shows the worst verdict that it covers.
 LONGEST = 1024
 
-#: The largest number of violations that are listed.
+#: Maximum number of violations in the list.
 LISTED = 50
 
 
@@ -104,7 +104,7 @@ def _picture(verdicts: npt.NDArray[Any], names: list[str]) -> str:
     height, width = verdicts.shape
     step = -(-max(height, width) // LONGEST)
     if step > 1:
-        # Verdicts are in the order from the best to the worst.
+        # Verdicts are ordered from the best to the worst.
         rows = np.maximum.reduceat(verdicts, range(0, height, step), axis=0)
         verdicts = np.maximum.reduceat(rows, range(0, width, step), axis=1)
     palette = np.array([list(bytes.fromhex(VERDICTS.get(name, OTHER)[0])) for name in names], np.uint8)

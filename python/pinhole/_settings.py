@@ -1,4 +1,4 @@
-"""Settings: Python values become the text of a scene file, in which the library checks every key."""
+"""Settings: Python values become the text of a scene file, whose keys the library checks."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ SHORT = {
     "dpi": ("output", "dpi"),
 }
 
-#: A text, and the argument of each of its lines.
+#: A text, with the argument of each of its lines.
 Text = tuple[str, list[str]]
 
 
@@ -106,7 +106,7 @@ def bare(key: object) -> str:
 
 
 def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
-    """Writes the text of a scene file, and the argument that each line is of."""
+    """Writes the text of a scene file, and returns the argument of each line as well."""
     lines: list[tuple[str, str]] = []
     tables: list[tuple[str, str]] = []
     for key, item in settings.items():
@@ -132,7 +132,7 @@ def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
 
 
 class Tagged(dict[str, Any]):
-    """A table that knows where it belongs."""
+    """A table with the name of the argument that takes it."""
 
     #: The argument that takes the table, or a list of such tables.
     argument: ClassVar[str] = ""
@@ -169,14 +169,14 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     if isinstance(material, (list, tuple)):
         raise InputError("material: values for each sphere are an argument of Spheres(...); give one Material")
     if isinstance(material, Mapping):
-        # A table of its own is what a scene file would name.
+        # A material given directly becomes a named material, as in a scene file.
         settings["materials"] = {**settings.get("materials", {}), "given": dict(material)}
         settings["material"] = "given"
     return settings
 
 
 def material_tables(given: list[Any], known: Any) -> tuple[dict[str, Any], list[str]]:
-    """The table ``materials`` with those of spheres one by one, which are names or tables, and the name of each."""
+    """Adds materials of single spheres, names or tables, to the table ``materials``. Returns it and their names."""
     tables: dict[str, Any] = {} if known is None else dict(known)
     names = []
     for index, one in enumerate(given):
@@ -234,13 +234,13 @@ def picture_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
             raise InputError(f"{name} is given twice, also in {table}; remove one of them")
         tables[table] = {**inside, key: settings[name]}
     if tables.get("style") == "path" and "integrator" not in tables and "studio" not in tables:
-        # Otherwise materials and samples alone would ask for a studio.
+        # Materials and samples without an integrator would choose a studio.
         tables["integrator"] = "path"
     return tables
 
 
 def style_of(tables: Mapping[str, Any]) -> Any:
-    """Returns the style of a picture: as for a data file of the program, if its settings name none."""
+    """Returns the style of a picture. The default is that of a data file in the program."""
     if "style" in tables:
         return tables["style"]
     integrator = tables.get("integrator")

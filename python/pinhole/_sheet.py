@@ -19,10 +19,10 @@ Array = npt.NDArray[Any]
 def sheet(
     path: str | os.PathLike[str], images: Iterable[Image | Array], *, columns: int | None = None, gap: int = 0
 ) -> None:
-    """Writes pictures of one size as one PNG, row by row; ``columns`` of them are beside each other, or all.
+    """Writes pictures of one size as one PNG, row by row. A row has ``columns`` pictures, by default all.
 
-    Pictures are ``Image`` or arrays of type uint8 (sRGB) and shape (height, width, 3) or (height, width, 4). Between them
-    are ``gap`` white pixels.
+    Pictures are ``Image`` objects, or uint8 arrays (sRGB) of shape (height, width, 3) or (height, width, 4). There are
+    ``gap`` white pixels between them.
     """
     path = os.fspath(path)
     if os.path.splitext(path)[1].lower() != ".png":

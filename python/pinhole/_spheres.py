@@ -1,4 +1,4 @@
-"""Spheres, and what can be done with them."""
+"""Spheres and their methods."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Spheres:
         Centres in any unit of length: shape (n, 3), any float or integer type, any strides. float64 keeps its precision:
         spheres are stored as float32 offsets from a float64 origin.
     radius
-        One radius or an array of shape (n,), in the unit of the positions. Without it, spheres are so large that neighbours
+        about touch.
         about touch.
     color
         A CSS colour such as ``"steelblue"``, or n of them; a linear triple (r, g, b); an array of shape (n, 3) or (n, 4) in
@@ -43,11 +43,11 @@ class Spheres:
     cmap
         The name of a colour map, such as ``"viridis"``.
     color_range
-        The numbers at both ends of the colour map, or percentiles such as ``("2%", "98%")``; by default all are in range.
+        The numbers at both ends of the colour map, or percentiles such as ``("2%", "98%")``; by default all values.
     opacity
-        From 0 to 1: one number, or an array of shape (n,).
+        One number from 0 to 1, or an array of shape (n,).
     material
-        A ``Material``; or n of them, or of names of ``materials={"name": Material(...)}``.
+        A ``Material``; or a list of n, which may be names from ``materials={"name": Material(...)}``.
     columns
         Named arrays of shape (n,), for ``color_by``, ``radius_by``, ``select`` and so on.
     settings
@@ -61,7 +61,7 @@ class Spheres:
 
     __slots__ = ("_data", "_settings", "camera")
 
-    #: The camera of pictures for which ``render`` is given none.
+    #: The default camera of ``render``.
     camera: Camera | None
 
     def __init__(
@@ -160,12 +160,12 @@ class Spheres:
 
     @property
     def positions(self) -> Array:
-        """A copy of the centres as they are rendered: float64, (n, 3)."""
+        """A copy of the centres used in pictures: float64, (n, 3)."""
         return self._data.positions()
 
     @property
     def radii(self) -> Array:
-        """A copy of the radii as they are rendered: float32, (n,)."""
+        """A copy of the radii used in pictures: float32, (n,)."""
         return self._data.radii()
 
     @property
@@ -176,8 +176,8 @@ class Spheres:
 
     @property
     def color_key(self) -> dict[str, Any] | None:
-        """What colours mean, if a column gives them: ``title``; and either ``range`` (two numbers), ``log`` (a bool) and
-        ``colors`` (uint8 sRGB, (k, 3), the low end first), or ``categories`` (names with colours in uint8 sRGB).
+        """The meaning of colours, if a column gives them: ``title``; and either ``range`` (two numbers), ``log``
+        (a bool) and ``colors`` (uint8 sRGB, (k, 3), low end first), or ``categories`` (names, colours in uint8 sRGB).
         """
         key: dict[str, Any] | None = self._data.color_key()
         if key is not None and "colors" in key:
@@ -188,7 +188,7 @@ class Spheres:
 
     @property
     def notes(self) -> list[str]:
-        """What the user should know about the data, such as the range of colours."""
+        """Notes for the user about the data, such as the range of colours."""
         return self._data.notes
 
     @property
@@ -207,7 +207,7 @@ class Spheres:
         return found
 
     def scene_file(self, **settings: Any) -> str:
-        """The text of the scene file that a picture with these settings has; its data has the name ``spheres``."""
+        """Returns the text of the scene file for a picture with these settings. It names the data ``spheres``."""
         return self._text(settings)[0]
 
     def _text(self, settings: Mapping[str, Any]) -> _settings.Text:
@@ -236,7 +236,7 @@ class Spheres:
         Parameters
         ----------
         size
-            Width and height in pixels; 800 by 600 without it.
+            Width and height in pixels; by default 800 by 600.
         style
             A look: ``"default"``, ``"fast"``, ``"path"`` and so on, as in the program's ``--style``.
         samples
@@ -279,10 +279,10 @@ class Spheres:
         camera: Camera | str | Mapping[str, Any] | None = None,
         **settings: Any,
     ) -> View:
-        """A view in a notebook, which is turned by dragging, zoomed by the wheel, and in which a click picks a sphere.
+        """Shows a view in a notebook. Drag to turn it, use the wheel to zoom, and click to pick a sphere.
 
-        It needs the package anywidget: ``pip install pinhole-rt[notebook]``. ``size`` is in the pixels of the page, of which
-        screens may have several for each. Further arguments are those of ``render``.
+        It needs the package anywidget: ``pip install pinhole-rt[notebook]``. ``size`` is in CSS pixels; a screen may
+        have several pixels for each. Further arguments are those of ``render``.
         """
         try:
             from ._view import View
@@ -295,8 +295,8 @@ class Spheres:
         return View(self, size, camera, {"style": style, **settings})
 
     def verify(self, size: tuple[int, int] | None = None, **settings: Any) -> Certificate:
-        """Renders the view with one ray for each pixel on the device, and decides pixel by pixel whether a conforming device
-        may have made that picture. Light is not checked. Arguments are those of ``render``.
+        """Renders the view with one ray for each pixel on the device, and decides pixel by pixel whether a conforming
+        device may have made this picture. Light is not checked. Arguments are those of ``render``.
         """
         text = self._text({**settings, "size": size})
         return Certificate(self._data.verify(text))
@@ -304,7 +304,7 @@ class Spheres:
     def _placed(
         self, settings: Mapping[str, Any], corners: tuple[list[float], list[float]] | None = None
     ) -> dict[str, Any]:
-        """The table of a camera with its position, which frames a box, or else these spheres."""
+        """Returns the table of a camera with its position. It frames a box, or by default these spheres."""
         settings = {key: of for key, of in settings.items() if key not in ("backend", "layers", "progress")}
         placed: dict[str, dict[str, Any]] = json.loads(self._data.placed(self._text(settings), corners))
         return {kind: {key: of for key, of in keys.items() if of is not None} for kind, keys in placed.items()}
@@ -314,7 +314,7 @@ class Spheres:
     ) -> None:
         """Renders a movie in which the camera goes once around the spheres, about the direction that is up.
 
-        ``path`` is that of ``pinhole.movie``; further arguments are those of ``render``.
+        ``path`` is as for ``pinhole.movie``; further arguments are those of ``render``.
         """
         if not isinstance(frames, (int, np.integer)) or frames < 1:
             raise InputError(f"frames is {frames!r}; it must be a whole number of at least 1")
@@ -340,8 +340,8 @@ class Spheres:
     def update(self, *, positions: Any = None, radius: Any = None, color: Any = None, first: int = 0) -> None:
         """Gives spheres new centres, radii or colours in place, from the sphere ``first`` on.
 
-        ``positions`` has the shape (k, 3), ``radius`` (k,) and ``color`` (k, 3) or (k, 4) in uint8, which needs spheres that
-        were made with such colours. The device keeps its copy and builds only what must be built anew.
+        ``positions`` has the shape (k, 3), ``radius`` (k,) and ``color`` (k, 3) or (k, 4) in uint8. Colours can change
+        only if spheres were made with such colours. The device keeps its copy, and rebuilds only the changed parts.
         """
         centers = None if positions is None else np.ascontiguousarray(_arrays.positions("positions", positions))
         count = len(self) - first if centers is None else len(centers)
@@ -362,7 +362,7 @@ class Spheres:
 
 
 def _with_map(color_by: Any, cmap: str | None, color_range: tuple[Any, Any] | None) -> dict[str, Any]:
-    """The table ``color_by`` with another colour map or range."""
+    """Returns the table ``color_by`` with another colour map or range."""
     if color_by is None:
         what = "cmap" if cmap is not None else "color_range"
         raise InputError(f"{what} needs numbers: give color an array of shape (n,), or name a column in color_by")
@@ -372,14 +372,14 @@ def _with_map(color_by: Any, cmap: str | None, color_range: tuple[Any, Any] | No
 
 
 def _is_triple(color: Any, count: int) -> bool:
-    """Whether three numbers are one colour, and not those of three spheres."""
+    """Whether three numbers are a single colour rather than values for three spheres."""
     array = np.asarray(color)
     is_three = array.shape == (3,) and array.dtype.kind in "biuf"
     return is_three and (count != 3 or isinstance(color, (tuple, list)))
 
 
 def _triple(color: Any) -> Any:
-    """A colour as a scene file has it."""
+    """Returns a colour as a scene file writes it."""
     if isinstance(color, str):
         return color
     numbers = _arrays.numbers("color", color)
@@ -392,9 +392,9 @@ def _triple(color: Any) -> Any:
 
 
 def warn(notes: Iterable[str]) -> None:
-    """Tells the user what is not an error."""
+    """Warns the user about notes, which are not errors."""
     for note in notes:
         if note.startswith("colors show "):
-            # A range that nobody gave is what is expected; `Spheres.notes` has it.
+            # A default range is to be expected, and `Spheres.notes` has it.
             continue
         warnings.warn(note.replace("--radius sets it", "radius=... sets it"), Note, stacklevel=3)

@@ -1,4 +1,4 @@
-"""Tables of a scene file as objects. They are dicts, so that dicts may take their place everywhere."""
+"""Tables of a scene file as objects. They are dicts, and plain dicts may replace them everywhere."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._pinhole import SphereData
 
 
 class Table(_settings.Tagged):
-    """A table of a scene file. Its keys are the arguments; those that are None are left out. Printed, it is the text of a
+    """A table of a scene file. Its keys are the arguments that are not None. Printing it gives the text of a
     scene file.
     """
 
@@ -28,7 +28,7 @@ class Table(_settings.Tagged):
         cls.name, cls.names, cls.is_listed = of, tuple(keys.split()), listed
         cls.argument = argument or of
         cls.__module__ = "pinhole"
-        # What help and completion show.
+        # Help and completion show this signature.
         parameters = [inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=None) for key in cls.names]
         cls.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
 
@@ -39,7 +39,7 @@ class Table(_settings.Tagged):
         self._check()
 
     def _check(self) -> None:
-        """Lets the library read the table."""
+        """Checks the table by letting the library read it."""
         table: Any = [self] if self.is_listed else self
         *outer, last = self.name.split(".")
         for part in (last, *reversed(outer)):
@@ -52,7 +52,7 @@ class Table(_settings.Tagged):
 
 @cache
 def _nothing() -> SphereData:
-    """No spheres, for which texts are read."""
+    """Makes data without spheres, for checking texts."""
     return SphereData.of_arrays(np.zeros((0, 3), np.float32), 1.0, None, [], ("", []))
 
 
@@ -71,19 +71,19 @@ class Studio(Table, of="studio", keys="ambient shadows max_surfaces occlusion de
 
 
 class Occlusion(Table, of="studio.occlusion", keys="radius samples"):
-    """How spheres hide ambient light from each other, for ``Studio``."""
+    """Ambient light that spheres hide from each other, for ``Studio``."""
 
 
 class Outline(Table, of="studio.outline", keys="width color depth angle"):
-    """Lines around what jumps in depth or direction, for ``Studio``."""
+    """Lines along jumps in depth or direction, for ``Studio``."""
 
 
 class DepthCue(Table, of="studio.depth_cue", keys="near far color"):
-    """How colours fade with the distance, for ``Studio``."""
+    """Fading of colours with distance, for ``Studio``."""
 
 
 class Path(Table, of="path", keys="max_depth roulette_from light_sampling"):
-    """How light paths are followed."""
+    """Settings of path tracing."""
 
 
 class Sampling(Table, of="sampling", keys="samples seed filter denoise"):
@@ -100,11 +100,11 @@ class Light(
 
 
 class Sun(Table, of="sun", keys="toward direction angular_radius angular_diameter color strength"):
-    """A sun, whose disk is seen."""
+    """A sun with a visible disk."""
 
 
 class Sky(Table, of="sky", keys="kind color zenith horizon nadir image rotation strength visible"):
-    """What surrounds everything and gives light to paths."""
+    """The surroundings, which give light to paths."""
 
 
 class Ground(Table, of="ground", keys="height point normal color shadow_catcher"):
@@ -112,11 +112,11 @@ class Ground(Table, of="ground", keys="height point normal color shadow_catcher"
 
 
 class Output(Table, of="output", keys="exposure tone transparent bits dpi"):
-    """How a picture becomes a PNG file."""
+    """The conversion of a picture to a PNG file."""
 
 
 class Legend(Table, of="legend", keys="title position"):
-    """What the colours of numbers and names mean."""
+    """A legend for colours of numbers or categories."""
 
 
 class ScaleBar(Table, of="scale_bar", keys="length unit position"):
@@ -128,7 +128,7 @@ class Label(Table, of="labels", keys="text position", listed=True):
 
 
 class Text(Table, of="text", keys="scale color panel"):
-    """How texts look."""
+    """The appearance of texts."""
 
 
 class Material(
@@ -137,7 +137,7 @@ class Material(
     keys="kind specular roughness ior attenuation_distance strength opacity",
     argument="material",
 ):
-    """What spheres are made of; an argument of ``Spheres``."""
+    """The material of spheres; an argument of ``Spheres``."""
 
 
 class ColorBy(Table, of="color_by", keys="column map reverse range log missing"):
@@ -153,7 +153,7 @@ class OpacityBy(Table, of="opacity_by", keys="column factor"):
 
 
 class EmissionBy(Table, of="emission_by", keys="column factor"):
-    """Light that spheres give, from a column; an argument of ``Spheres``."""
+    """Emitted light from a column; an argument of ``Spheres``."""
 
 
 class Bonds(Table, of="bonds", keys="factor length"):

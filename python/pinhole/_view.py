@@ -1,4 +1,4 @@
-"""The view of spheres in a notebook: a widget, which needs the package anywidget."""
+"""The view of spheres in a notebook, a widget that needs the package anywidget."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from ._refine import Refiner, Stage, checked_size, screen_size
 if TYPE_CHECKING:
     from ._spheres import Spheres
 
-#: The most spheres of which a label shows columns, which are copied for that.
+#: Labels show columns up to this number of spheres, because that copies the columns.
 LABELLED = 2_000_000
 
-#: The most columns that a label shows.
+#: Maximum number of columns in a label.
 COLUMNS = 6
 
 
 class View(anywidget.AnyWidget):
     """A picture in a notebook that is turned by dragging and zoomed by the wheel; ``Spheres.view`` makes it.
 
-    Pictures are rendered in the kernel, on a thread: quick and small ones while the camera moves, and then one with more
-    and more samples. A click picks a sphere.
+    Pictures are rendered in the kernel, on a thread: quick and small ones while the camera moves, and then one with
+    increasing numbers of samples. A click picks a sphere.
 
     ====================================  =====================
     drag, arrow keys                      turn
@@ -48,7 +48,7 @@ class View(anywidget.AnyWidget):
     _esm = Path(__file__).with_name("_view.js").read_text("utf-8")
     _css = Path(__file__).with_name("_view.css").read_text("utf-8")
 
-    #: The index of the sphere that was picked, which can be observed; None if none is.
+    #: The index of the picked sphere, which can be observed; None if there is none.
     picked = traitlets.Int(None, allow_none=True).tag(sync=True)
     _label = traitlets.Unicode("").tag(sync=True)
     _status = traitlets.Unicode("").tag(sync=True)
@@ -79,19 +79,19 @@ class View(anywidget.AnyWidget):
         self.refresh()
 
     def _placed(self, camera: Camera | str | Mapping[str, Any] | None) -> Orbit:
-        """The camera with its place, around which it can turn."""
+        """Returns the camera with its position, as an orbit that can turn."""
         placed = self._spheres._placed({**self._settings, "size": self._shown_size, "camera": camera})
         return Orbit(placed, self._spheres.bounds)
 
     def _page_size(self) -> list[int]:
-        """The size of the picture on the page; those of two eyes are side by side."""
+        """The size of the picture on the page. The pictures of two eyes are side by side."""
         width, height = self._shown_size
         return [2 * width if "stereo" in self._orbit.rest else width, height]
 
     @property
     def camera(self) -> Camera:
-        """The camera as it is now. ``render(camera=view.camera)`` makes the picture in any size. Assigning a camera, or the
-        name of a view, moves this one there.
+        """The camera in its current position. ``render(camera=view.camera)`` makes the picture in any size. Assign a
+        camera, or the name of a view, to move it.
         """
         return self._orbit.camera
 
@@ -103,12 +103,12 @@ class View(anywidget.AnyWidget):
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the picture in its own pixels: more than were asked for on screens with small pixels."""
+        """Width and height of the picture in pixels of the screen: more than CSS pixels if these are larger."""
         return self._refiner.size
 
     @property
     def image(self) -> Image | None:
-        """The newest picture; None before there is one."""
+        """The newest picture; None before the first."""
         stage = self._refiner.stage
         return None if stage is None else stage.image
 
@@ -123,18 +123,18 @@ class View(anywidget.AnyWidget):
         return stage.image
 
     def refresh(self) -> None:
-        """Renders the picture again, as after ``Spheres.update``."""
+        """Renders the picture again, such as after ``Spheres.update``."""
         self._ask(moves=False)
 
     def on_pick(self, function: Callable[[int | None], object], remove: bool = False) -> None:
-        """Calls a function with the index of the sphere whenever another one is picked, and with None when none is."""
+        """Calls a function with the index of each newly picked sphere, and with None when none is picked any more."""
         self._functions.register_callback(function, remove=remove)
 
     def _ask(self, *, moves: bool) -> None:
         self._refiner.ask(self._orbit.camera, moves=moves)
 
     def _on_message(self, _: object, message: Any, buffers: object) -> None:
-        """Does what the page says."""
+        """Handles a message of the page."""
         kind = message.get("kind") if isinstance(message, dict) else None
         if kind == "move":
             (turn_x, turn_y), (pan_x, pan_y) = (_numbers(message, name, 2) for name in ("turn", "pan"))
@@ -174,16 +174,16 @@ class View(anywidget.AnyWidget):
         self._functions(index)
 
     def _label_of(self, index: int) -> str:
-        """What the view says about a sphere."""
+        """The text about a sphere."""
         spheres, words = self._spheres, [f"sphere {index}"]
         if 0 <= index < len(spheres) <= LABELLED:
             columns = ((name, spheres[name]) for name in spheres.columns[:COLUMNS])
-            # Columns of a selection are those of all spheres.
+            # Columns of a selection have the values of all spheres, so they are left out.
             words += [f"{name} {_short(values[index])}" for name, values in columns if len(values) == len(spheres)]
         return ", ".join(words)
 
     def _show(self, stage: Stage) -> None:
-        """Sends a picture to the page. The thread calls it."""
+        """Sends a picture to the page. The rendering thread calls it."""
         refines = not (stage.is_quick or stage.is_final)
         self._picture = stage.image._repr_png_()
         self._status = f"{stage.samples} of {self._refiner.samples} samples" if refines else ""
@@ -192,7 +192,7 @@ class View(anywidget.AnyWidget):
         self._status = str(error)
 
     def _repr_mimebundle_(self, **keys: Any) -> Any:
-        """The widget, and the newest picture for where there are no widgets."""
+        """Returns the widget, and the newest picture for pages that cannot show widgets."""
         bundle = super()._repr_mimebundle_(**keys)
         data, metadata = bundle if isinstance(bundle, tuple) else (bundle or {}, {})
         if self._picture:
@@ -205,7 +205,7 @@ class View(anywidget.AnyWidget):
 
 
 def _on_loop(function: Callable[[int | None], object]) -> Callable[[int | None], object]:
-    """A function for other threads that calls this one where messages arrive, so that it may print and set variables."""
+    """Wraps a function for calls from other threads. It runs where messages arrive, and may print and set variables."""
     try:
         loop = asyncio.get_running_loop()
     except RuntimeError:
@@ -218,7 +218,7 @@ def _on_loop(function: Callable[[int | None], object]) -> Callable[[int | None],
 
 
 def _numbers(message: Mapping[str, Any], name: str, count: int) -> list[float]:
-    """Numbers in a message; zeros where they are missing or are none."""
+    """The numbers in a message; zeros for missing or wrong ones."""
     found = message.get(name)
     given: list[Any] = found if isinstance(found, list) else [found]
     if len(given) != count or not all(isinstance(item, (int, float)) and math.isfinite(item) for item in given):
@@ -227,5 +227,5 @@ def _numbers(message: Mapping[str, Any], name: str, count: int) -> list[float]:
 
 
 def _short(item: Any) -> str:
-    """A value of a column in few characters."""
+    """Formats a value of a column in few characters."""
     return f"{item:g}" if isinstance(item, (float, np.floating)) else str(item)

@@ -1,9 +1,9 @@
-"""Pictures and movies of files that the workers of a Dask cluster render, in the same parts as ``pinhole job`` of the program.
+"""Pictures and movies of files, rendered by the workers of a Dask cluster in the same parts as ``pinhole job``.
 
-What is written is what ``pinhole render`` writes on one machine, byte for byte, whichever worker renders which part, and
-however often one is lost: retries are Dask's. The workers, the scheduler's client and this package must have the same
-version, the program ``pinhole`` must be on their ``PATH`` (or ``PINHOLE_PROGRAM`` must name it), and all must see the same
-folder.
+The files have the same bytes as those of ``pinhole render`` on one machine, whichever worker renders which part, and
+however often one is lost: Dask retries. The workers, the scheduler's client and this package must have the same
+version. The program ``pinhole`` must be on their ``PATH`` (or ``PINHOLE_PROGRAM`` must name it), and all must see the
+same folder.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ def render(
 ) -> None:
     """Renders the frames of a file, or a scene, on the workers of ``client``, a ``dask.distributed.Client``.
 
-    ``frames`` is the path of a data file or a scene file. ``output`` is what ``-o`` of ``pinhole render`` is: a picture, a
-    pattern such as ``f%04d.png``, or a movie; ``layers`` names files of layers, such as ``{"depth": "d%04d.npy"}``. Each
-    picture is divided into ``tiles``, columns and rows; or the spheres of a file of bricks into ``by_depth`` groups. Other
-    arguments are flags of the program, with ``_`` for ``-``: ``size="640x480"``, ``samples=16``, ``frames_range="0:100"`` for
-    ``--frames`` (all, unless the output is one picture), ``transparent=True``; a list repeats a flag.
+    ``frames`` is the path of a data file or a scene file. ``output`` is that of ``pinhole render``: a picture, a
+    pattern such as ``f%04d.png``, or a movie. ``layers`` names files of layers, as ``{"depth": "d%04d.npy"}``. Each
+    picture is divided into ``tiles``, columns and rows; or the spheres of a file of bricks into ``by_depth`` groups.
+    Other arguments are flags of the program, with ``_`` for ``-``: ``size="640x480"``, ``transparent=True``, and
+    ``frames_range="0:100"`` for ``--frames`` (all, unless the output is one picture). A list repeats a flag.
 
-    The parts are kept in ``folder``, which all workers must see; it is removed at the end. By default it is made beside the
-    output. If a folder is named, it stays, and what is in it is not rendered again.
+    The parts are stored in ``folder``, which all workers must see. The default is a folder beside the output, which is
+    removed at the end. A named folder stays, and parts in it are not rendered again.
     """
     if not hasattr(client, "submit") or not hasattr(client, "gather"):
         raise InputError(f"client is {client!r}; give a dask.distributed.Client")
@@ -95,7 +95,7 @@ def movie(
 
 
 def _flags(flags: Mapping[str, Any]) -> list[str]:
-    """Arguments of the program."""
+    """Returns the arguments for the program."""
     words: list[str] = []
     for name, value in flags.items():
         flag = "--" + name.replace("_", "-")
@@ -104,7 +104,7 @@ def _flags(flags: Mapping[str, Any]) -> list[str]:
             if one is True:
                 words.append(flag)
             elif one is not None and one is not False:
-                # Of one word, so that a value may begin with a minus.
+                # The flag and its value are one word, so that the value may begin with a minus.
                 words.append(f"{flag}={one}")
     return words
 
@@ -117,7 +117,7 @@ def _program() -> str:
 
 
 def _run(*arguments: str) -> str:
-    """Runs the program, and turns its line about an error into an exception."""
+    """Runs the program. Its line about an error becomes an exception."""
     program = _program()
     try:
         done = subprocess.run([program, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL)
@@ -132,7 +132,7 @@ def _run(*arguments: str) -> str:
 
 
 def _missing(job: str) -> list[int]:
-    """The units of a job that have no valid part."""
+    """The units of a job without a valid part."""
     return [int(unit) for unit in _run("job", "status", job, "--missing", "--check").split()]
 
 
@@ -163,7 +163,7 @@ def _check_versions(client: Any) -> None:
 
 
 def _part(job: str, units: str, version: str) -> str:
-    """Renders units on a worker. A worker that came later may have another version, which the job refuses."""
+    """Renders units on a worker. A worker that joined later may have another version, which is refused."""
     if version != __version__:
         raise Error(f"this worker has pinhole {__version__}, and the job is of {version}; install the same version")
     _run("job", "part", job, units, "-q")

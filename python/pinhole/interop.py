@@ -1,6 +1,6 @@
-"""Spheres from the objects of other libraries, none of which must be installed.
+"""Spheres from objects of other libraries, none of which must be installed.
 
-Every function takes the settings of ``Spheres`` as well.
+Every function also takes the settings of ``Spheres``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ._spheres import Spheres
 
 
 def from_ase(atoms: Any, **settings: Any) -> Spheres:
-    """Spheres of ``ase.Atoms``: covalent radii of ASE, and the column ``species``, by which they are coloured."""
+    """Spheres of ``ase.Atoms``, with covalent radii from ASE, coloured by the column ``species``."""
     from ase.data import covalent_radii
 
     radius = settings.pop("radius", covalent_radii[atoms.numbers])
@@ -25,8 +25,8 @@ def from_ase(atoms: Any, **settings: Any) -> Spheres:
 
 
 def from_mdanalysis(group: Any, **settings: Any) -> Spheres:
-    """Spheres of an MDAnalysis ``Universe`` or ``AtomGroup`` in its current frame, with the columns ``name``, ``resname``,
-    ``type`` and so on, as far as it has them.
+    """Spheres of an MDAnalysis ``Universe`` or ``AtomGroup`` in its current frame, with the columns ``name``,
+    ``resname``, ``type`` and so on that it has.
     """
     atoms = group.atoms
     columns: dict[str, Any] = {}
@@ -41,7 +41,7 @@ def from_mdanalysis(group: Any, **settings: Any) -> Spheres:
 
 
 def from_gsd(frame: Any, **settings: Any) -> Spheres:
-    """Spheres of a frame of ``gsd.hoomd``: half of its diameters, and the column ``type``."""
+    """Spheres of a frame of ``gsd.hoomd``, with radii of half its diameters, and the column ``type``."""
     particles = frame.particles
     columns: dict[str, Any] = {}
     if particles.types is not None and particles.typeid is not None:
@@ -56,8 +56,8 @@ def from_gsd(frame: Any, **settings: Any) -> Spheres:
 
 
 def from_frame(table: Any, positions: tuple[str, str, str] = ("x", "y", "z"), **settings: Any) -> Spheres:
-    """Spheres of a table with named columns, such as a pandas ``DataFrame``, a dict of arrays or an xarray ``Dataset``: the
-    columns of positions, ``radius`` if there is one, and all others as columns.
+    """Spheres of a table with named columns, such as a pandas ``DataFrame``, a dict of arrays or an xarray
+    ``Dataset``. Columns give the positions, and ``radius`` if there is one; all others become columns.
     """
     names = [str(name) for name in (table.keys() if hasattr(table, "keys") else table.columns)]
     missing = [name for name in positions if name not in names]
@@ -73,7 +73,7 @@ def from_frame(table: Any, positions: tuple[str, str, str] = ("x", "y", "z"), **
 
 
 def from_pyvista(points: Any, **settings: Any) -> Spheres:
-    """Spheres at the points of a PyVista data set, such as ``PolyData``, with its arrays of one number for each point."""
+    """Spheres at the points of a PyVista data set, such as ``PolyData``, with its arrays of one number per point."""
     data = points.point_data
     columns = {str(name): np.asarray(data[name]) for name in data.keys() if np.ndim(data[name]) == 1}
     columns.update(settings.pop("columns", {}))
@@ -81,8 +81,8 @@ def from_pyvista(points: Any, **settings: Any) -> Spheres:
 
 
 def colorbar(spheres: Spheres, axes: Any = None, **keys: Any) -> Any:
-    """Adds what the colours of spheres mean to the figure of matplotlib's ``axes``, beside them: a colour bar, or a legend
-    of categories. Returns it; ``keys`` are those of ``figure.colorbar`` or ``axes.legend``.
+    """Adds the meaning of the spheres' colours beside matplotlib's ``axes``: a colour bar, or a legend of categories.
+    Returns it. ``keys`` are those of ``figure.colorbar`` or ``axes.legend``.
     """
     import matplotlib.pyplot as plt
     from matplotlib import cm, colors, patches
@@ -105,8 +105,8 @@ def colorbar(spheres: Spheres, axes: Any = None, **keys: Any) -> Any:
 
 
 def imshow(image: Image, axes: Any = None, **keys: Any) -> Any:
-    """Shows a picture in the axes of matplotlib, without ticks, and returns what ``axes.imshow`` returns. The extent is in
-    pixels, with row 0 at the top; ``keys``, such as ``extent``, are those of ``axes.imshow``.
+    """Shows a picture in the axes of matplotlib, without ticks, and returns the result of ``axes.imshow``. The extent
+    is in pixels, with row 0 at the top. ``keys``, such as ``extent``, are those of ``axes.imshow``.
     """
     if axes is None:
         import matplotlib.pyplot as plt

@@ -1,5 +1,5 @@
-//! NumPy arrays become spheres and colours, and what colours mean becomes a dict. Python has checked shapes and types; strides may
-//! be any.
+//! Converts NumPy arrays to spheres and colours, and the meaning of colours to a dict. Python has checked shapes and
+//! types. Strides may be any.
 
 use numpy::ndarray::{ArrayView1, ArrayView2};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -37,7 +37,7 @@ pub(crate) enum ColorArray<'py> {
 }
 
 impl Centers<'_> {
-    /// The spheres with these centres; radii are 0 if there are none.
+    /// Makes spheres with these centres. Radii are 0 if there are none.
     pub(crate) fn spheres(&self, radii: Option<&Radii<'_>>) -> Outcome<SphereArray> {
         Ok(match (self, radii) {
             (Self::Narrow(centers), Some(Radii::Narrow(radii))) => {
@@ -59,7 +59,7 @@ impl Centers<'_> {
     }
 }
 
-/// Spheres of one radius. The GIL is held, so that nobody changes the array meanwhile.
+/// Makes spheres of one radius. The GIL is held, so that no other thread changes the array meanwhile.
 fn all<T: Copy>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
     match centers.as_slice() {
         Some(numbers) => {
@@ -69,14 +69,14 @@ fn all<T: Copy>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
     }
 }
 
-/// Spheres with radii of their own.
+/// Makes spheres with radii of their own.
 fn each<T: Copy>(centers: ArrayView2<'_, T>, radii: ArrayView1<'_, T>) -> Vec<[T; 4]> {
     let rows = centers.rows().into_iter().zip(radii);
     rows.map(|(center, radius)| [center[0], center[1], center[2], *radius]).collect()
 }
 
 impl ColorArray<'_> {
-    /// The colours as sRGB with alpha, if they are bytes.
+    /// Returns the colours as sRGB with alpha, if they are bytes.
     pub(crate) fn rgba8(&self) -> Option<Vec<[u8; 4]>> {
         let Self::Bytes(bytes) = self else { return None };
         let rgba = |row: ArrayView1<'_, u8>| {
@@ -85,7 +85,7 @@ impl ColorArray<'_> {
         Some(bytes.as_array().rows().into_iter().map(rgba).collect())
     }
 
-    /// The colours as linear light.
+    /// Returns the colours as linear light.
     pub(crate) fn linear(&self) -> Outcome<Vec<LinearRgb>> {
         match self {
             Self::Bytes(bytes) => {
@@ -105,7 +105,7 @@ impl ColorArray<'_> {
         }
     }
 
-    /// How opaque each sphere is, if the colours have alpha.
+    /// Returns the opacity of each sphere, if the colours have alpha.
     pub(crate) fn opacities(&self) -> Option<Vec<f32>> {
         let Self::Bytes(bytes) = self else { return None };
         let bytes = bytes.as_array();
@@ -114,8 +114,8 @@ impl ColorArray<'_> {
     }
 }
 
-/// A dict: `title`, the name of the column; and either `range`, `log` and the table `colors`, three bytes of sRGB for
-/// each colour from the low end on, or `categories`, names with their colours.
+/// Makes a dict with `title`, the name of the column; and either `range`, `log` and the table `colors`, three bytes
+/// of sRGB for each colour from the low end on, or `categories`, names with their colours.
 pub(crate) fn in_python(py: Python<'_>, key: &ColorKey) -> PyResult<Py<PyAny>> {
     let found = PyDict::new(py);
     found.set_item("title", &key.title)?;
@@ -136,7 +136,7 @@ pub(crate) fn in_python(py: Python<'_>, key: &ColorKey) -> PyResult<Py<PyAny>> {
     Ok(found.into_any().unbind())
 }
 
-/// The colours of CSS with these names, three bytes of sRGB for each; None if any of the names is not that of a colour.
+/// The CSS colours of these names, three bytes of sRGB for each; None if any name is not that of a colour.
 #[pyfunction]
 pub(crate) fn srgb_of_names(names: Vec<String>) -> Option<Vec<u8>> {
     let colors = names.iter().map(|name| css::color(name).ok().map(LinearRgb::to_srgb8));

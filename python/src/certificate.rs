@@ -1,4 +1,4 @@
-//! Whether a device rendered as it should.
+//! The check of whether a device rendered correctly.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -29,7 +29,7 @@ impl CertificateData {
         self.certificate.outcome().name()
     }
 
-    /// Whether it is proved that every pixel is one that a conforming device may have made.
+    /// Whether every pixel is proved to be one that a conforming device may have made.
     #[getter]
     fn is_legal(&self) -> bool {
         self.certificate.is_legal()

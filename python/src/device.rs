@@ -1,4 +1,4 @@
-//! The device that all threads of a process share, which is opened when it is first needed, and how much memory is free.
+//! The device that all threads of a process share, which is opened when first needed, and the free memory.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -46,7 +46,7 @@ struct SharedDevice {
     opened: Option<Arc<OpenDevice>>,
 }
 
-/// A part of the name of the adapter that is wanted; `None` for the best.
+/// A part of the wanted adapter's name; `None` for the best adapter.
 static WANTED: Mutex<Option<String>> = Mutex::new(None);
 
 static SHARED: Mutex<Option<SharedDevice>> = Mutex::new(None);
@@ -103,12 +103,12 @@ pub(crate) fn adapters(py: Python<'_>) -> Vec<String> {
     py.detach(|| adapter::adapters().wait().iter().map(|found| found.get_info().name).collect())
 }
 
-/// Renders from now on with the adapter whose name contains a text, or with the best one if it is None.
+/// Chooses the adapter whose name contains a text, or the best one if it is None, for all later pictures.
 #[pyfunction]
 #[pyo3(signature = (name=None))]
 pub(crate) fn use_adapter(py: Python<'_>, name: Option<String>) -> PyResult<()> {
     let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-    // A device of a parent process cannot be replaced, and `device` says so.
+    // A device of a parent process cannot be replaced, and `device` reports that.
     shared.take_if(|shared| shared.process == std::process::id());
     drop(shared);
     let before =
@@ -129,12 +129,12 @@ pub(crate) fn forget(lost: &Arc<OpenDevice>) {
     }
 }
 
-/// The most bytes per pixel that encoding needs in addition to the picture: 8 for the encoded pixels and 8 for the PNG made
-/// of them; or 8 for one and 12 for an array.
+/// The most bytes per pixel that encoding needs besides the picture: 8 for the encoded pixels and 8 for the PNG made of
+/// them; or 8 for one and 12 for an array.
 pub(crate) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
-/// The bytes that are free on this machine or in the control group of the process; `None` if that is not known, as on
-/// systems other than Linux, so that only the allocation can fail.
+/// The bytes that are free on this machine or in the control group of the process; `None` if they are not known, as
+/// on systems other than Linux, so that only allocations can fail.
 pub(crate) fn available() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
@@ -147,7 +147,7 @@ pub(crate) fn available() -> Option<u64> {
     Some(group.min(kibibytes.saturating_mul(1024)))
 }
 
-/// Refuses a picture of the CPU for which there is not enough memory. That of a device is in its plan.
+/// Refuses a picture of the CPU for which there is not enough memory. The plan of a device includes its own memory.
 pub(crate) fn check_on_cpu(plan: &SearchPlan<'_>, look: &Look, layers: LayerSet) -> Outcome<()> {
     let Some(available) = available() else { return Ok(()) };
     let views = if look.eyes.is_some() { 4 } else { 1 };

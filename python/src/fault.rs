@@ -1,4 +1,4 @@
-//! What may go wrong, and the Python exceptions that say so.
+//! Failures, and the Python exceptions that they become.
 
 use pinhole::gpu::GpuError;
 use pinhole_data::load::{LoadError, Place};
@@ -12,9 +12,9 @@ pub(crate) enum Fault {
     File(String),
     /// A device cannot do the work: `pinhole.DeviceError`, a `RuntimeError`.
     Device(String),
-    /// The device was lost, so that a new one may do the work.
+    /// The device was lost. A new device may do the work.
     Lost(String),
-    /// The work was stopped, because Python has an exception of its own, such as `KeyboardInterrupt`.
+    /// The work was stopped, because Python raised an exception, such as `KeyboardInterrupt`.
     Stopped,
     /// A defect of this package: `pinhole.InternalError`, a `RuntimeError`.
     Internal(String),
@@ -25,7 +25,7 @@ pub(crate) enum Fault {
 pub(crate) type Outcome<T> = Result<T, Fault>;
 
 impl Fault {
-    /// Bad input, in the words of an error of the library.
+    /// Makes bad input from an error of the library.
     pub(crate) fn input(error: impl std::fmt::Display) -> Self {
         Self::Input(error.to_string())
     }

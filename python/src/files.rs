@@ -1,4 +1,4 @@
-//! Reads files, as a whole or frame by frame, and what colours mean in all frames.
+//! Reads files, as a whole or frame by frame, and joins the meaning of colours in all frames.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +13,7 @@ use crate::worker;
 use pinhole_data::load::{self, Dataset, Format, LoadError, Options, Trajectory};
 use pinhole_figure::color_by::JoinedKeys;
 
-/// A file of spheres, perhaps with several frames, of which one at a time is read.
+/// A file of spheres, perhaps with several frames, which are read one at a time.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 pub(crate) struct FileData {
     path: String,
@@ -93,7 +93,7 @@ impl FileData {
         read.map_err(|error| Fault::reading(&self.path, &error))
     }
 
-    /// Adds the file's name to what is wrong with its spheres.
+    /// Adds the file's name to a fault of its spheres.
     fn in_file(&self, fault: Fault) -> Fault {
         match fault {
             Fault::Input(message) => Fault::Input(format!("{}: {message}", self.path)),
@@ -102,7 +102,7 @@ impl FileData {
     }
 }
 
-/// The format of a name, or that of a file.
+/// The format with a name, or by default that of a file.
 fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
     let names = || load::FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ");
     match name {
@@ -118,7 +118,7 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
     }
 }
 
-/// What colours mean in several frames together.
+/// The meaning of colours in several frames together.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 #[derive(Default)]
 pub(crate) struct FrameKeys {
@@ -132,7 +132,7 @@ impl FrameKeys {
         Self::default()
     }
 
-    /// Adds what colours mean in a frame, if a column gives them.
+    /// Adds the meaning of colours in a frame, if a column gives them.
     fn add(&self, frame: &SphereData) {
         if let Some(key) = &frame.key {
             self.keys.lock().unwrap_or_else(PoisonError::into_inner).add(key);

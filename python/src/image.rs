@@ -14,7 +14,7 @@ use pyo3::types::PyBytes;
 use crate::fault::{Fault, Outcome};
 use crate::worker;
 
-/// A picture with its layers, and how it is encoded.
+/// A picture with its layers, and its encoding.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 pub(crate) struct Picture {
     pub(crate) image: Image,
@@ -23,9 +23,9 @@ pub(crate) struct Picture {
     /// The name of the adapter that rendered; None if the CPU did.
     #[pyo3(get)]
     pub(crate) adapter: Option<String>,
-    /// The layers that were asked for, which EXR files have.
+    /// The requested layers, which EXR files contain.
     pub(crate) layers: LayerSet,
-    /// Lines that the user should know.
+    /// Notes for the user, one line each.
     #[pyo3(get)]
     pub(crate) notes: Vec<String>,
 }
@@ -44,7 +44,7 @@ impl Picture {
         self.image.height()
     }
 
-    /// The names of the layers that the picture has.
+    /// The names of the picture's layers.
     fn layer_names(&self) -> Vec<&'static str> {
         self.image.layers().iter().map(Layer::name).collect()
     }
@@ -89,7 +89,7 @@ impl Picture {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// The bytes of an OpenEXR file with the layers that were asked for.
+    /// The bytes of an OpenEXR file with the requested layers.
     fn exr<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let this = slf.clone().unbind();
         let bytes = worker::run(py, None, move |_| this.get().exr_bytes())?;
@@ -115,7 +115,7 @@ pub(crate) fn png_of<'py>(
     };
     let side = |side: usize| u32::try_from(side).map_err(Fault::input);
     let size = [side(width)?, side(height)?];
-    // In the order of rows, whatever the strides are.
+    // Samples are in the order of rows, whatever the strides are.
     let samples: Vec<u8> = pixels.as_array().iter().copied().collect();
     let bytes = worker::run(py, None, move |_| {
         let encoded = if channels == 4 {

@@ -1,5 +1,5 @@
-//! The compiled half of the Python package `pinhole`: arrays, files, rendering and verification. `python/pinhole/` is the
-//! other half, which checks arguments and writes settings as the text of a scene file.
+//! The compiled half of the Python package `pinhole`: arrays, files, rendering and verification. The other half, in
+//! `python/pinhole/`, checks arguments and writes settings as the text of a scene file.
 
 #![allow(
     clippy::needless_pass_by_value,
@@ -20,16 +20,16 @@ mod scene;
 mod spheres;
 mod worker;
 
-/// Panics in work, so that tests see what becomes of it.
+/// Panics during work, so that tests can check the exception.
 #[pyfunction]
 fn panic_for_tests(py: Python<'_>, index: usize) -> PyResult<u8> {
     Ok(worker::run(py, None, move |_| Ok([1, 2, 3][index]))?)
 }
 
-/// The compiled half of `pinhole`, which is not for use by itself.
+/// The compiled half of pinhole. Use the package `pinhole` instead.
 #[pymodule]
 fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // What a panic says becomes an exception.
+    // The message of a panic becomes an exception.
     std::panic::set_hook(Box::new(|_| {}));
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<certificate::CertificateData>()?;

@@ -1,5 +1,5 @@
-//! The text of a scene file, which Python writes from its arguments, becomes cameras, settings and encoding for a scene that
-//! exists.
+//! Makes cameras, settings and encoding for an existing scene from the text of a scene file, which Python writes from
+//! its arguments.
 
 use pyo3::prelude::*;
 
@@ -13,7 +13,7 @@ use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::read::environment;
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 
-/// The text of a scene file, and which argument of Python each line is of.
+/// The text of a scene file, with the Python argument for each line.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneText {
     text: String,
@@ -40,7 +40,7 @@ impl SceneText {
         self.text.trim().is_empty()
     }
 
-    /// An error in the text, with the argument in place of the line.
+    /// Makes a fault from an error in the text, with the argument in place of the line.
     pub(crate) fn fault(&self, error: &SceneFileError) -> Fault {
         let argument = self.arguments.get(error.line.saturating_sub(1)).map_or("", String::as_str);
         let message = &error.message;
@@ -51,7 +51,7 @@ impl SceneText {
     }
 }
 
-/// How a scene is seen, lit and encoded.
+/// The camera, the settings and the encoding of a scene's picture.
 pub(crate) struct Look {
     pub(crate) film: Film,
     /// The camera; for a stereo camera, the view from the middle between the eyes.
@@ -60,13 +60,13 @@ pub(crate) struct Look {
     pub(crate) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(crate) settings: RenderSettings,
     pub(crate) encoding: Encoding,
-    /// What is drawn over the picture.
+    /// Annotations to draw over the picture.
     pub(crate) annotations: Annotations,
     pub(crate) notes: Vec<String>,
 }
 
 impl Look {
-    /// Reads the text for a scene, of which `key` says what colours mean.
+    /// Reads the text for a scene. `key` has the meaning of colours.
     pub(crate) fn new(text: &SceneText, scene: &Scene, key: Option<&ColorKey>) -> Outcome<Self> {
         let file = text.parse()?;
         let film = file.film;
@@ -103,7 +103,7 @@ impl Look {
         View::new(self.camera.as_ref(), self.film)
     }
 
-    /// The views that are rendered: one, or those of two eyes.
+    /// The views to render: one, or those of two eyes.
     pub(crate) fn views(&self) -> Vec<View<'_>> {
         match &self.eyes {
             None => vec![self.view()],
@@ -111,7 +111,7 @@ impl Look {
         }
     }
 
-    /// These layers and those that encoding needs.
+    /// Returns these layers and those that encoding needs.
     pub(crate) fn layers(&self, asked: LayerSet) -> LayerSet {
         asked.iter().chain(self.encoding.layers().iter()).collect()
     }
@@ -124,7 +124,7 @@ fn environment_of(path: &str) -> Outcome<Environment> {
     environment::read(&bytes).map_err(|error| Fault::Input(format!("sky: {path}: {error}")))
 }
 
-/// The camera of a text with its position, as JSON. It frames a box from one corner to the other, or else the scene.
+/// The camera of a text with its position, as JSON. It frames the box between two corners, or else the scene.
 pub(crate) fn placed(
     text: &SceneText,
     scene: &Scene,

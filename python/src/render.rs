@@ -1,4 +1,4 @@
-//! Renders a look of a scene: on the shared device, where the scene stays between pictures, or on the CPU.
+//! Renders a look of a scene: on the shared device, which keeps the scene between pictures, or on the CPU.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
@@ -17,7 +17,7 @@ use pinhole::render::{Integrator, Picture, Watch};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene, View};
 
-/// How long a thread sleeps before it looks again whether another has rendered its picture.
+/// Time that a thread sleeps before it looks again whether another thread has rendered its picture.
 const WAIT: Duration = Duration::from_millis(2);
 
 struct DeviceScene {
@@ -28,7 +28,7 @@ struct DeviceScene {
     version: u64,
 }
 
-/// Which settings a scene was copied for, because structures differ.
+/// The kind of settings for which a scene was copied, because structures differ.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Light {
     None,
@@ -46,16 +46,16 @@ impl Light {
     }
 }
 
-/// A scene on the device, if it was copied there. It is taken while a picture is rendered.
+/// A scene on the device, if it was copied there. It is locked while a picture is rendered.
 #[derive(Default)]
 pub(crate) struct OnDevice {
     uploaded: Mutex<Option<DeviceScene>>,
 }
 
-/// A picture, and by whom it was rendered.
+/// A picture, with the name of its renderer.
 pub(crate) struct RenderedImage {
     pub(crate) image: Image,
-    /// The name of the adapter, if an adapter rendered.
+    /// The name of the adapter; `None` for the CPU.
     pub(crate) adapter: Option<String>,
     pub(crate) warning: Option<String>,
 }
@@ -85,7 +85,7 @@ impl OnDevice {
         }
     }
 
-    /// What is on the device, as soon as no other thread renders it.
+    /// Locks the scene on the device, as soon as no other thread renders it.
     fn wait(&self, stop: &Stop) -> Outcome<MutexGuard<'_, Option<DeviceScene>>> {
         loop {
             match self.uploaded.try_lock() {
@@ -154,19 +154,19 @@ impl OnDevice {
                 done
             }
         };
-        // A render that was stopped leaves a scene that the next one may use.
+        // The next render may use the scene of a render that was stopped.
         *slot = kept;
         let images = images?;
         let adapter = Some(headless.adapter_info().name.clone());
         Ok(RenderedImage { image: joined(images)?, adapter, warning: opened.warning.clone() })
     }
 
-    /// Brings what the device has up to date with a scene to which an update was applied. What cannot be updated is
-    /// copied again when it is needed.
+    /// Applies an update of a scene to the copy on the device. A copy that cannot be updated is dropped, and made
+    /// again when it is needed.
     pub(crate) fn update(&self, (scene, version): (&Scene, u64), update: &SceneUpdate<'_>) {
         let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(uploaded) = slot.as_mut() {
-            // Of two updates at the same time, the later may come first.
+            // The later of two simultaneous updates may come first.
             let is_next = uploaded.version + 1 == version;
             let DeviceScene { opened, buffers, .. } = uploaded;
             if is_next && opened.headless.update(buffers, scene, update).wait().is_ok() {
@@ -192,7 +192,7 @@ fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<
     Ok(RenderedImage { image: joined(images)?, adapter: None, warning: None })
 }
 
-/// Renders each view, and says how far all of them are.
+/// Renders each view, and reports the progress of all views together.
 fn each<E>(
     views: &[View<'_>],
     stop: &Stop,

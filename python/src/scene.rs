@@ -1,4 +1,4 @@
-//! Spheres with what a scene file says about data become a scene.
+//! Makes a scene from spheres and the settings about data in a scene file.
 
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
@@ -8,26 +8,26 @@ use pinhole_data::load::Dataset;
 use pinhole_figure::color_by::{ColorBy, ColorKey, JoinedKeys};
 use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 
-/// A scene, and what is known about its spheres.
+/// A scene, with facts about its spheres.
 pub(crate) struct DataScene {
     pub(crate) scene: Scene,
-    /// What colours mean, if a column gives them.
+    /// The meaning of colours, if a column gives them.
     pub(crate) key: Option<ColorKey>,
     pub(crate) notes: Vec<String>,
 }
 
-/// What is known of data besides what was loaded.
+/// Facts about data in addition to the loaded data.
 #[derive(Default)]
 pub(crate) struct DataExtras {
-    /// The colours of spheres that have bytes for colours, where nothing else gives them.
+    /// The colours of spheres that have bytes for colours, if nothing else gives colours.
     pub(crate) colors: Option<Vec<[u8; 4]>>,
-    /// Whether the caller gave radii, which bonds then leave as they are.
+    /// Whether the caller gave radii, so that bonds do not change them.
     pub(crate) radii: bool,
-    /// What colours mean in all frames of which the data is one.
+    /// The meaning of colours in all frames, if the data is one of several frames.
     pub(crate) keys: Option<JoinedKeys>,
 }
 
-/// Makes the scene of data.
+/// Makes a scene from data.
 pub(crate) fn scene_of(loaded: Dataset, text: &SceneText, given: DataExtras) -> Outcome<DataScene> {
     let file = text.parse()?;
     let mut data = file.data().cloned().unwrap_or_else(|| Data::of_file(""));
@@ -58,7 +58,7 @@ pub(crate) fn scene_of(loaded: Dataset, text: &SceneText, given: DataExtras) -> 
     Ok(made)
 }
 
-/// Makes a scene as of a data file with flags.
+/// Makes a scene as the program does for a data file with flags.
 fn dressed(mut loaded: Dataset, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Outcome<DataScene> {
     let kept = data.select.as_ref().map(|select| select.apply(&mut loaded)).transpose();
     let kept = kept.map_err(|error| Fault::Input(format!("select: {error}")))?;
@@ -66,7 +66,7 @@ fn dressed(mut loaded: Dataset, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Ou
     let mut notes = std::mem::take(&mut loaded.notes);
     notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
     if let Some(colors) = colors.filter(|_| data.mapping.is_empty() && is_simple(data)) {
-        // These need no list of distinct colours, which takes long.
+        // Such colours need no list of distinct colours, which takes long to make.
         let appearance = Appearance::new(Colors::Rgba8(colors));
         let scene = Scene::from_parts(loaded.spheres, appearance).map_err(Fault::input)?;
         return Ok(DataScene { scene, key: None, notes });
@@ -79,7 +79,7 @@ fn dressed(mut loaded: Dataset, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Ou
     Ok(DataScene { scene, key: mapped.key().cloned(), notes })
 }
 
-/// Makes a scene as of a scene file with data.
+/// Makes a scene as the program does for a scene file with data.
 fn applied(loaded: Dataset, file: &SceneFile, data: &Data, text: &SceneText) -> Outcome<DataScene> {
     let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
     let applied = data.apply(loaded).map_err(Fault::input)?;
@@ -88,7 +88,7 @@ fn applied(loaded: Dataset, file: &SceneFile, data: &Data, text: &SceneText) -> 
     Ok(DataScene { scene, key: applied.color_key, notes: applied.notes })
 }
 
-/// Whether the keys say no more about the data than flags of the program can.
+/// Whether the keys about the data could also be given by flags of the program.
 fn is_plain(data: &Data) -> bool {
     data.surface == SurfaceProperties::default()
         && data.elements.is_empty()

@@ -1,4 +1,4 @@
-//! Spheres that Python holds: a checked scene, and what of it a device has.
+//! Spheres in Python: a checked scene, and its copy on a device.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -26,11 +26,11 @@ use pinhole_figure::color_by::ColorKey;
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 pub(crate) struct SphereData {
-    /// The scene; replaced or changed by updates.
+    /// The scene, which updates replace or change.
     scene: Mutex<Arc<Scene>>,
-    /// What colours mean, if a column gives them.
+    /// The meaning of colours, if a column gives them.
     pub(crate) key: Option<ColorKey>,
-    /// What was loaded, if it says more than the scene does.
+    /// The loaded data, if they contain more than the scene.
     pub(crate) loaded: Option<Arc<Dataset>>,
     /// Whether the caller gave radii.
     has_radii: bool,
@@ -39,7 +39,7 @@ pub(crate) struct SphereData {
     #[pyo3(get)]
     notes: Vec<String>,
     pub(crate) on_device: OnDevice,
-    /// The number of updates of the scene since it was made of what was loaded. It changes while the scene is locked.
+    /// The number of updates since the scene was made from loaded data. It changes while the scene is locked.
     updates: AtomicU64,
 }
 
@@ -52,7 +52,7 @@ enum Values<'py> {
 }
 
 impl SphereData {
-    /// Makes spheres of what was loaded.
+    /// Makes spheres from loaded data.
     pub(crate) fn of_loaded(
         loaded: Dataset,
         text: &SceneText,
@@ -84,13 +84,13 @@ impl SphereData {
         Arc::clone(&self.lock())
     }
 
-    /// The scene as it is now, and the number of its updates.
+    /// The current scene, and the number of its updates.
     fn versioned(&self) -> (Arc<Scene>, u64) {
         let scene = self.lock();
         (Arc::clone(&scene), self.updates.load(Ordering::Acquire))
     }
 
-    /// What the text of a scene file says about a picture of the scene.
+    /// Reads the text of a scene file for a picture of the scene.
     pub(crate) fn look(&self, scene: &Scene, text: &SceneText) -> Outcome<Look> {
         Look::new(text, scene, self.key.as_ref())
     }
@@ -111,7 +111,7 @@ impl SphereData {
     ) -> PyResult<Self> {
         let spheres = positions.spheres(radius.as_ref())?;
         let rgba8 = color.as_ref().and_then(ColorArray::rgba8);
-        // Simple spheres take their bytes as they are.
+        // The bytes of simple spheres are used unchanged.
         let is_simple = rgba8.is_some() && columns.is_empty() && text.is_empty();
         let linear = color.as_ref().filter(|_| !is_simple).map(ColorArray::linear).transpose()?;
         let opacities = color.as_ref().filter(|_| !is_simple).and_then(ColorArray::opacities);
@@ -127,7 +127,7 @@ impl SphereData {
         })?)
     }
 
-    /// The same data with other settings.
+    /// Returns the same data with other settings.
     fn restyled(&self, py: Python<'_>, text: SceneText) -> PyResult<Self> {
         if self.updates.load(Ordering::Acquire) > 0 {
             return Err(Fault::Input(
@@ -197,7 +197,7 @@ impl SphereData {
         }
     }
 
-    /// What colours mean, if a column gives them.
+    /// The meaning of colours, if a column gives them.
     fn color_key(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
         self.key.as_ref().map(|key| arrays::in_python(py, key)).transpose()
     }
@@ -207,8 +207,8 @@ impl SphereData {
         self.loaded.as_ref()?.cell
     }
 
-    /// The direction in which a camera looks that frames the spheres, and the direction that is up: from `view`, or else
-    /// from where the program stands.
+    /// The direction of view of a camera that frames the spheres, and the direction that is up. The direction comes
+    /// from `view`, or else from the program's default.
     #[pyo3(signature = (view, turn, up))]
     fn view_axes(
         &self,
@@ -230,7 +230,7 @@ impl SphereData {
         Ok((direction.to_array(), up.to_array()))
     }
 
-    /// The camera of a text with its position, as JSON; it frames a box from one corner to the other, or else the spheres.
+    /// The camera of a text with its position, as JSON. It frames the box between two corners, or else the spheres.
     fn placed(&self, text: SceneText, corners: Option<([f64; 3], [f64; 3])>) -> PyResult<String> {
         Ok(look::placed(&text, &self.scene(), corners)?)
     }
@@ -288,7 +288,7 @@ impl SphereData {
         color: Option<PyReadonlyArray2<'_, u8>>,
     ) -> PyResult<()> {
         let not_in_order = || Fault::Internal("an array is not contiguous".to_owned());
-        // Copies, because other threads of Python may write into arrays while this one does not hold the GIL.
+        // These are copies, because other Python threads may write to the arrays while this one does not hold the GIL.
         let mut narrow: Option<Vec<[f32; 3]>> = None;
         let mut wide: Option<Vec<[f64; 3]>> = None;
         match &positions {
@@ -317,7 +317,7 @@ impl SphereData {
             Arc::make_mut(&mut locked).apply(&update).map_err(Fault::input)?;
             let version = 1 + this.updates.fetch_add(1, Ordering::AcqRel);
             let scene = Arc::clone(&locked);
-            // A render may keep the device for long, and others ask for the scene meanwhile.
+            // A render may hold the device for long, while others ask for the scene.
             drop(locked);
             this.on_device.update((&scene, version), &update);
             Ok(())

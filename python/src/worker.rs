@@ -1,4 +1,4 @@
-//! Runs work on a thread of its own, without the GIL, while the caller's thread looks for signals such as Ctrl-C.
+//! Runs work on a separate thread, without the GIL, while the caller's thread watches for signals such as Ctrl-C.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,14 +12,14 @@ use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
 
-/// How often Python is asked whether there was a signal.
+/// Time between two checks for signals in Python.
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
-/// What the thread that works and the thread that waits tell each other.
+/// The messages between the working thread and the waiting thread.
 #[derive(Default)]
 pub(crate) struct Stop {
     is_wanted: AtomicBool,
-    /// The bits of the part of the work that is done.
+    /// The bits of the fraction of the work that is done.
     part: AtomicU64,
 }
 
@@ -29,41 +29,41 @@ impl Stop {
         self.is_wanted.load(Ordering::Relaxed)
     }
 
-    /// What a render should do next.
+    /// The next step of a render: to go on, or to stop.
     pub(crate) fn decision(&self) -> Decision {
         if self.is_wanted() { Decision::Stop } else { Decision::GoOn }
     }
 
-    /// Says how much of the work is done, from 0 to 1.
+    /// Reports the fraction of the work that is done, from 0 to 1.
     pub(crate) fn report(&self, part: f64) {
-        // Several threads report. The bits of positive numbers are in their order.
+        // Several threads report. The bits of positive numbers have the same order as the numbers.
         self.part.fetch_max(part.to_bits(), Ordering::Relaxed);
     }
 
-    /// Tells a Python function how much is done, if there is one.
+    /// Calls a Python function, if there is one, with the fraction that is done.
     fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(progress) = progress else { return Ok(()) };
         progress.call1(py, (f64::from_bits(self.part.load(Ordering::Relaxed)),)).map(drop)
     }
 }
 
-/// How long work may go on after it was asked to stop until its caller no longer waits for it. Structures are built in one
-/// go, which takes a few seconds for many millions of spheres.
+/// Time after which a caller no longer waits for work that was asked to stop. Structures are built without
+/// interruption, which takes a few seconds for many millions of spheres.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The number of threads for which no caller waits any more.
+/// The number of working threads without a waiting caller.
 static LEFT_ALONE: AtomicUsize = AtomicUsize::new(0);
 
-/// What a thread that works and the thread that waits for it share.
+/// The state that a working thread and the thread that waits for it share.
 struct State<T> {
     stop: Stop,
     done: Mutex<Option<Outcome<T>>>,
     is_done: Condvar,
 }
 
-/// Runs work on a thread of its own without the GIL, and waits for it. If Python has a signal to handle that raises an
-/// exception, the work is asked to stop, and the exception is the result. A panic becomes an exception. Meanwhile
-/// `progress` is called with the part of the work that is done.
+/// Runs work on a separate thread without the GIL, and waits for it. If a signal in Python raises an exception, the
+/// work is asked to stop, and the exception is the result. A panic becomes an exception. Meanwhile `progress` is
+/// called with the fraction of the work that is done.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
@@ -96,7 +96,7 @@ pub(crate) fn run<T: Send + 'static>(
 }
 
 impl<T> State<T> {
-    /// The result, if there is one within a time.
+    /// Returns the result, if there is one within a time.
     fn wait(&self, time: Duration) -> Option<Outcome<T>> {
         let done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         let waited = self.is_done.wait_timeout_while(done, time, |done| done.is_none());
@@ -104,7 +104,7 @@ impl<T> State<T> {
     }
 }
 
-/// Lets a thread come to its end by itself.
+/// Lets a thread end without a waiting caller.
 fn leave_alone(thread: JoinHandle<()>) {
     LEFT_ALONE.fetch_add(1, Ordering::AcqRel);
     let joined = thread::Builder::new().spawn(move || {
@@ -116,7 +116,7 @@ fn leave_alone(thread: JoinHandle<()>) {
     }
 }
 
-/// Waits for threads that were left alone, because drivers do not survive the end of a process while they work.
+/// Waits for threads without a waiting caller, because drivers do not survive the end of a process during their work.
 #[pyfunction]
 pub(crate) fn wait_for_threads(py: Python<'_>) {
     py.detach(|| {
@@ -126,22 +126,22 @@ pub(crate) fn wait_for_threads(py: Python<'_>) {
     });
 }
 
-/// The panic of a defect, in one line.
+/// Makes a fault of one line from a panic, which is a defect.
 fn internal(panic: &(dyn Any + Send)) -> Fault {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     Fault::Internal(format!("a defect of pinhole, please report it: {}", text.replace('\n', " ")))
 }
 
-/// The process that used threads first.
+/// The process that was the first to use threads.
 static FIRST: OnceLock<u32> = OnceLock::new();
 
-/// Whether this process was forked from one that had used threads, which do not survive that.
+/// Whether this process was forked from one that used threads, which do not survive a fork.
 fn is_forked() -> bool {
     *FIRST.get_or_init(std::process::id) != std::process::id()
 }
 
-/// Runs work on threads that exist: after a fork, on new ones.
+/// Runs work on threads that exist, which are new ones after a fork.
 fn on_live_threads<T: Send>(work: impl FnOnce() -> Outcome<T> + Send) -> Outcome<T> {
     static POOL: Mutex<Option<(u32, Arc<rayon::ThreadPool>)>> = Mutex::new(None);
     if !is_forked() {
@@ -156,7 +156,7 @@ fn on_live_threads<T: Send>(work: impl FnOnce() -> Outcome<T> + Send) -> Outcome
             let made =
                 made.map_err(|error| Fault::Device(format!("threads cannot be started: {error}")))?;
             let made = Arc::new(made);
-            // The threads of a parent process are not here to be ended.
+            // The threads of a parent process do not exist here, so the pool must not end them.
             std::mem::forget(pool.replace((process, Arc::clone(&made))));
             made
         }

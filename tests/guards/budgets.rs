@@ -1,5 +1,5 @@
-//! How large the code may be: `budgets.txt` has a number for each folder, and for other things that only grow if nobody
-//! looks. A change may lower a number; who raises one writes a reason behind it.
+//! Limits on the size of the code. `budgets.txt` has a number for each folder, and for other things that tend to grow
+//! unnoticed. A change may lower a number. Anyone who raises one must write a reason behind it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use super::sources::{ROOT, sources};
 
 const FILE: &str = "tests/guards/budgets.txt";
 
-/// What there is now of a budget, given by its words; and a list, if one helps to make it less.
+/// Returns the current amount for a budget, by its name, and a list that helps to reduce it, which may be empty.
 fn amount(what: &str) -> (usize, String) {
     let lines = |folder: &str| -> usize {
         sources(folder).iter().map(|(_, text)| text.lines().count()).sum()
@@ -37,7 +37,7 @@ fn root() -> &'static Path {
     Path::new(ROOT)
 }
 
-/// With `PINHOLE_UPDATE_BUDGETS=1` numbers are lowered to what there is.
+/// With `PINHOLE_UPDATE_BUDGETS=1`, numbers are lowered to the current amounts.
 #[test]
 fn nothing_is_larger_than_its_budget() {
     let text = fs::read_to_string(root().join(FILE)).unwrap();

@@ -1,6 +1,6 @@
-//! Files of a crate that import each other in circles. A file imports another if a `use` or a path names something that
-//! the other defines; where a name passes through `pub use`, the file that defines it counts. A `pub use` whose name its
-//! own file does not need is a door and not an import.
+//! Finds files of a crate that import each other in circles. A file imports another if a `use` or a path names an item
+//! of the other file. If a name passes through `pub use`, the file that defines it counts. A door is a `pub use` of a
+//! name that its own file does not need. It is not an import.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,15 +14,15 @@ use super::sources::{ROOT, sources};
 /// Segments of the path of a module below the root of its crate.
 type Module = Vec<String>;
 
-/// What a file names.
+/// The names in a file.
 #[derive(Default)]
 struct Names {
     /// Imports: whether it is public, the name in this file, and the path.
     uses: Vec<(bool, String, Vec<String>)>,
-    /// Paths in the code, and first segments of all paths.
+    /// The paths in the code, and the first segments of all paths.
     paths: Vec<Vec<String>>,
     words: BTreeSet<String>,
-    /// Modules that exist in tests only.
+    /// Modules that are compiled only for tests.
     test_modules: BTreeSet<String>,
 }
 
@@ -57,7 +57,7 @@ impl Names {
     }
 }
 
-/// Whether code exists in tests only.
+/// Whether code is compiled only for tests.
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let words = attribute.meta.to_token_stream().to_string();
@@ -80,7 +80,7 @@ impl<'a> Visit<'a> for Names {
         }
     }
 
-    /// `pub(crate)` names no code.
+    /// The path in `pub(crate)` names no code.
     fn visit_visibility(&mut self, _: &'a syn::Visibility) {}
 
     fn visit_path(&mut self, path: &'a syn::Path) {
@@ -112,7 +112,7 @@ impl Crate {
             }
             let mut names = Names::default();
             names.visit_file(&syn::parse_file(&text).unwrap());
-            // Beside `lib.rs`, `main.rs` is a crate of its own, which nobody imports.
+            // If there is a `lib.rs`, `main.rs` is a separate crate that no file imports.
             if !is_root || path.ends_with("lib") || !files.contains_key(&module) {
                 files.insert(module, names);
             }
@@ -126,7 +126,7 @@ impl Crate {
         Self { files }
     }
 
-    /// The path of what a path in a file names, from the root of the crate; `None` if another crate has it.
+    /// Converts a path in a file to a path from the root of the crate; `None` if it leads to another crate.
     fn absolute(&self, file: &Module, path: &[String]) -> Option<Vec<String>> {
         let first = path.first()?;
         let mut base = file.clone();
@@ -149,7 +149,7 @@ impl Crate {
         Some([&base[..], rest].concat())
     }
 
-    /// The file that defines what has an absolute path.
+    /// Returns the file that defines the item with an absolute path.
     fn definition(&self, path: &[String], depth: usize) -> Option<Module> {
         let longest = (0..=path.len()).rev().find(|n| self.files.contains_key(&path[..*n]))?;
         let (module, rest) = path.split_at(longest);
@@ -164,7 +164,7 @@ impl Crate {
         Some(module)
     }
 
-    /// The files that a file imports.
+    /// Returns the files that a file imports.
     fn imports(&self, file: &Module) -> BTreeSet<Module> {
         let names = &self.files[file];
         let used = names
@@ -177,7 +177,7 @@ impl Crate {
         found.filter(|module| module != file).collect()
     }
 
-    /// The files that import themselves through others, and what they import of each other.
+    /// Returns the files that import themselves through others, with their imports from the same circle.
     fn circles(&self) -> BTreeMap<Module, BTreeSet<Module>> {
         let imports: BTreeMap<&Module, BTreeSet<Module>> =
             self.files.keys().map(|file| (file, self.imports(file))).collect();
@@ -196,7 +196,7 @@ impl Crate {
     }
 }
 
-/// The number of files of a crate that import each other in circles, and who imports whom among them.
+/// Returns the number of files of a crate that import each other in circles, and a list of these imports.
 pub(crate) fn circles(folder: &str) -> (usize, String) {
     let circles = Crate::read(folder).circles();
     let name = |module: &Module| match module.join("/") {
@@ -210,7 +210,7 @@ pub(crate) fn circles(folder: &str) -> (usize, String) {
     (circles.len(), circles.iter().map(line).collect())
 }
 
-/// The finder itself: it reads `super`, follows `pub use`, and leaves out tests and doors.
+/// The search itself: it reads `super`, follows `pub use`, and ignores tests and doors.
 #[test]
 fn circles_are_found() {
     let names = |text: &str| {

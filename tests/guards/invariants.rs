@@ -1,4 +1,4 @@
-//! Rules of ARCHITECTURE.md that a text search can guard.
+//! Rules of ARCHITECTURE.md that a search of the text can check.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use super::sources::{ROOT, sources};
 const CRATES: [&str; 6] =
     ["src", "crates/data/src", "crates/figure/src", "cli/src", "python/src", "viewer/src"];
 
-/// Files below `folder` that contain one of the words, but for those that end with `except`.
+/// Checks that files below `folder` contain none of the words, except files whose paths end with one of `except`.
 fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
     for (path, text) in sources(folder) {
         if except.iter().any(|end| path.ends_with(end)) {
@@ -38,14 +38,14 @@ fn the_reference_and_the_gpu_do_not_know_each_other() {
     assert_absent("src/gpu", &["crate::cpu", "cpu::"], &[]);
 }
 
-/// Testing every sphere is what everything is compared with, so it must not depend on a structure.
+/// The test of every sphere is the standard for all comparisons, so it must not depend on a structure.
 #[test]
 fn the_reference_knows_no_structure() {
     let except = ["cpu/search.rs", "cpu/search_tests.rs"];
     assert_absent("src/cpu", &["crate::accel"], &except);
 }
 
-/// What judges shares nothing with what is judged, and nothing with what judged it before.
+/// The checker shares no code with the structures and renderers that it checks.
 #[test]
 fn the_checker_knows_no_structure_and_no_renderer() {
     assert_code_is_without("src/verify", &["crate::accel", "crate::cpu", "crate::gpu"]);
@@ -55,7 +55,7 @@ fn the_checker_knows_no_structure_and_no_renderer() {
 fn only_the_gpu_module_names_wgpu() {
     for (path, text) in sources("src") {
         let allowed = path.components().any(|c| c.as_os_str() == "gpu");
-        // The crate's documentation tells embedders of it.
+        // The crate's documentation mentions wgpu for embedders.
         assert!(
             allowed || path.ends_with("lib.rs") || !text.contains("wgpu"),
             "{}",
@@ -68,14 +68,14 @@ fn only_the_gpu_module_names_wgpu() {
 fn only_headless_submits_polls_and_waits() {
     let calls = [".submit(", ".poll(", "map_async", "on_submitted_work_done"];
     assert_absent("src", &calls, &["gpu/headless/mod.rs", "gpu/headless/waiting.rs"]);
-    // Blocking forms are separate from what they wait for.
+    // Blocking functions are separate from the asynchronous ones that they call.
     let but = ["src/gpu/headless/waiting.rs"];
     assert_absent("src", &["pollster::"], &but);
 }
 
 #[test]
 fn readers_and_writers_touch_no_files() {
-    // The crate's documentation shows how a picture is written.
+    // The crate's documentation has an example that writes a picture.
     let but = ["kernels/tests.rs", "kernels/page_tests.rs", "load/source.rs", "src/lib.rs"];
     for folder in ["src", "crates/data/src", "crates/figure/src"] {
         assert_absent(folder, &["std::fs", "fs::File"], &but);
@@ -112,7 +112,7 @@ fn recordings_know_neither_the_renderer_nor_the_checker() {
 /// The engine knows no file format, and what reads formats knows no settings.
 #[test]
 fn packages_use_only_those_below() {
-    // The crate's documentation shows how a file is rendered.
+    // The crate's documentation has an example that reads a file.
     assert_absent("src", &["pinhole_data", "pinhole_figure"], &["src/lib.rs"]);
     assert_absent("crates/data/src", &["pinhole_figure"], &[]);
     for folder in ["crates/data/src", "crates/figure/src", "python/src"] {
@@ -142,7 +142,7 @@ fn folders_are_small() {
     }
 }
 
-/// A shader that a comment names is there: by its path below `shaders`, or by its file's name.
+/// Every shader named in a comment exists, by its path below `shaders` or by its file name.
 #[test]
 fn shaders_that_are_named_exist() {
     let root = Path::new(ROOT).join("shaders");

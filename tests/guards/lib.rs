@@ -1,5 +1,5 @@
-//! Rules of the code that a search of its text can guard. They are tests alone, need no GPU and build in seconds, because
-//! they do not use what they guard.
+//! Rules of the code that a search of its text can check. This crate has only tests, needs no GPU and builds in
+//! seconds, because it does not use the code that it checks.
 #![cfg(test)]
 
 mod budgets;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The folder of the workspace.
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
-/// Every Rust file below a folder of the workspace, with its text.
+/// Returns every Rust file below a folder of the workspace, with its text.
 pub(crate) fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     let mut folders = vec![Path::new(ROOT).join(folder)];
@@ -14,7 +14,7 @@ pub(crate) fn sources(folder: &str) -> Vec<(PathBuf, String)> {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                // What builds write is not source.
+                // Files that builds write are not sources.
                 if !path.ends_with("target") {
                     folders.push(path);
                 }

@@ -1,4 +1,4 @@
-//! The window: what is shown, and how pointer and keys change it.
+//! The window: its contents, and the effects of pointer and keys.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,13 +12,13 @@ use crate::quick::Quick;
 use crate::state::{Fields, State};
 use crate::worker::{Message, News, Saving, Window, Worker};
 
-/// How long nothing moves before still pictures are rendered.
+/// Time without motion after which still pictures are rendered.
 pub(crate) const STILL_AFTER: Duration = Duration::from_millis(120);
 
-/// The environment variable that lets the viewer say on standard error what happens.
+/// The environment variable that makes the viewer log events on standard error.
 const LOG: &str = "PINHOLE_VIEWER_LOG";
 
-/// Where the window leaves the error that ends the program.
+/// The place for the error that ends the program.
 pub(crate) type Ending = Arc<Mutex<Option<ViewError>>>;
 
 pub(crate) struct App {
@@ -32,20 +32,20 @@ pub(crate) struct App {
     pub(crate) fields: Fields,
     pub(crate) player: Player,
     pub(crate) saving: Option<Saving>,
-    /// What went wrong, until the user closes it or something else goes right.
+    /// The last error, until the user closes it or a change of the flags succeeds.
     pub(crate) error: Option<String>,
-    /// What the last action did.
+    /// A message about the last action.
     pub(crate) said: String,
-    /// Since when a file is read.
+    /// The time since which a file is being read.
     pub(crate) busy: Option<Instant>,
     pub(crate) rate: Rate,
-    /// When the state changed, until the worker is asked for it.
+    /// The time at which the state changed; `None` after the worker was asked for it.
     changed: Option<Instant>,
-    /// When the camera moved last.
+    /// The time at which the camera last moved.
     pub(crate) moved: Option<Instant>,
-    /// The quick picture that is shown: its state, and whether it was a moving one.
+    /// The visible quick picture: its state, and whether the camera was moving.
     pub(crate) seen: Option<(u64, bool)>,
-    /// Whether the next result of a pick becomes the point that the camera turns around.
+    /// Whether the next pick sets the point around which the camera turns.
     pub(crate) centers: bool,
     ending: Ending,
     logs: bool,
@@ -68,7 +68,7 @@ pub(crate) struct Player {
 pub(crate) struct Rate {
     pub(crate) since: Instant,
     pub(crate) before: u64,
-    /// Pictures a second, while the camera moves.
+    /// Pictures per second while the camera moves.
     pub(crate) value: Option<f64>,
 }
 
@@ -114,14 +114,14 @@ impl App {
         Ok(app)
     }
 
-    /// Says what happens, for tests and measurements.
+    /// Logs an event, for tests and measurements.
     pub(crate) fn log(&self, text: impl FnOnce() -> String) {
         if self.logs {
             pinhole_cli::viewing::print_note(&text());
         }
     }
 
-    /// Changes the flags, or shows why that is not possible.
+    /// Changes the flags, or shows the error if they are not valid.
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut RenderFlags)) {
         match self.state.change(change) {
             Ok(true) => {
@@ -133,7 +133,7 @@ impl App {
         }
     }
 
-    /// Notes that the state changed.
+    /// Records that the state changed.
     pub(crate) fn mark(&mut self) {
         self.worker.cancel();
         self.changed = Some(Instant::now());
@@ -148,13 +148,13 @@ impl App {
         self.mark();
     }
 
-    /// Lets the camera frame everything from the side from which it looks.
+    /// Makes the camera frame everything without a change of its direction.
     pub(crate) fn fit(&mut self) {
         let Some(camera) = self.orbit.as_ref().map(|orbit| orbit.camera.clone()) else { return };
         self.change(|flags| camera.write_fit_to(flags));
     }
 
-    /// Keeps the camera where it is, whatever the spheres do.
+    /// Fixes the camera in its place, so that it does not follow the spheres.
     fn hold_camera(&mut self) {
         if self.state.flags.get("eye").is_none() {
             self.fly(|orbit| orbit.move_to(orbit.pivot));
@@ -166,7 +166,7 @@ impl App {
         self.change(|flags| flags.set("frame", &frame.to_string()));
     }
 
-    /// Copies the command that renders what is seen.
+    /// Copies the command that renders this view.
     pub(crate) fn copy(&mut self, context: &egui::Context) {
         let command = self.state.command();
         pinhole_cli::viewing::print_line(&command);
@@ -189,7 +189,7 @@ impl App {
         self.moved.is_some_and(|moved| moved.elapsed() < STILL_AFTER)
     }
 
-    /// Whether the still picture in the window is that of the state.
+    /// Returns the still picture, if it shows the current state.
     pub(crate) fn current_still(&self) -> Option<&Still> {
         self.still.as_ref().filter(|still| still.state == self.state.number)
     }
@@ -206,7 +206,7 @@ impl App {
     fn learn(&mut self, news: Box<News>) {
         if let Some(quick) = &news.quick {
             self.quick.set_scene(quick.clone());
-            // The picture of the scene before stays until there is a new one.
+            // The old scene's picture stays until there is a new one.
             self.seen = self.seen.map(|_| (0, false));
         }
         let is_new = |old: &News| !Arc::ptr_eq(&old.facts.scene, &news.facts.scene);
@@ -249,7 +249,7 @@ impl App {
         }
     }
 
-    /// Shows what failed, and goes back to what was shown before. Without anything before, the program ends.
+    /// Shows an error, and returns to the previous state. If there was none, the program ends.
     fn fail(&mut self, state: u64, error: ViewError, context: &egui::Context) {
         if self.news.is_none() {
             *self.ending.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
@@ -272,7 +272,7 @@ impl App {
         }
     }
 
-    /// Asks the worker for what is to be shown.
+    /// Asks the worker for the pictures of the current state.
     fn ask(&mut self, context: &egui::Context) {
         let Some(changed) = self.changed else { return };
         let request = self.state.request(!self.player.plays);
@@ -319,7 +319,7 @@ impl App {
             return;
         }
         use egui::{Key, Modifiers};
-        // The modifiers are those of the key's own event: a quick user has let go of them in the same frame.
+        // The modifiers are those of the key's event, as a quick user releases them in the same frame.
         let pressed = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
         let line = self.news.as_ref().and_then(|news| news.facts.time_line.clone());
         let is_copy = |event: &egui::Event| matches!(event, egui::Event::Copy);
@@ -389,7 +389,7 @@ impl eframe::App for App {
     }
 
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        // Panels and pictures cover the rest.
+        // Panels and pictures cover most of this colour.
         BESIDE.to_normalized_gamma_f32()
     }
 
@@ -408,5 +408,5 @@ pub(crate) fn dress(context: &egui::Context) {
     });
 }
 
-/// The color beside a picture that does not fill its part of the window.
+/// The colour around a picture that does not fill its part of the window.
 pub(crate) const BESIDE: Color32 = Color32::from_rgb(214, 216, 220);

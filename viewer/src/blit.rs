@@ -1,12 +1,12 @@
-//! How a quick picture is drawn into the window's render pass, stretched to the viewport.
+//! Draws a quick picture in the window's render pass, stretched to the viewport.
 //!
-//! egui could draw them too, but its shader does more for each pixel, which counts on software devices.
+//! egui could draw it too, but its shader does more work for each pixel, which matters on software devices.
 
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 
-/// A triangle that covers the viewport, and the texture on it. The texture has encoded colours; a target that encodes
-/// by itself is given linear light.
+/// Draws a triangle that covers the viewport, with a texture. The texture has encoded colours. A target that encodes
+/// colours itself gets linear light.
 const SHADER: &str = "
 override IS_LINEAR: bool;
 @group(0) @binding(0) var picture: texture_2d<f32>;
@@ -76,7 +76,7 @@ impl Blit {
         Self { pipeline, sampler }
     }
 
-    /// What draws a texture.
+    /// Makes the bind group for drawing a texture.
     pub(crate) fn group(
         &self,
         device: &wgpu::Device,

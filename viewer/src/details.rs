@@ -1,4 +1,4 @@
-//! What is known about a sphere that was picked.
+//! Details of a picked sphere.
 
 use std::sync::Arc;
 
@@ -6,14 +6,14 @@ use pinhole::glam::DVec3;
 use pinhole::scene::Scene;
 use pinhole_data::load::{Column, ColumnValues};
 
-/// A sphere that was picked.
+/// A picked sphere, with its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Details {
     /// Index of the sphere in the scene.
     pub(crate) id: u32,
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
-    /// Whether it was added to the data, as the spheres of bonds are.
+    /// Whether the sphere was added to the data, such as those of bonds.
     pub(crate) is_added: bool,
     pub(crate) rows: Vec<Row>,
 }
@@ -23,7 +23,7 @@ pub(crate) struct Details {
 pub(crate) struct Row {
     pub(crate) name: String,
     pub(crate) value: String,
-    /// The expression that selects spheres with this value, where there is one.
+    /// The expression that selects spheres with this value, if there is one.
     pub(crate) select: Option<String>,
 }
 
@@ -41,7 +41,7 @@ impl Details {
                 ColumnValues::Labels(labels) => labels.indices.len(),
                 ColumnValues::Numbers(numbers) => numbers.len(),
             };
-            // The spheres of the data follow those that a scene file has itself.
+            // Spheres of the data follow those in the scene file itself.
             let index = index.checked_sub(of_data.checked_sub(count)?)?;
             row(column, index)
         });
@@ -52,7 +52,7 @@ impl Details {
         self.rows.iter().find(|row| row.name == name).map(|row| row.value.as_str())
     }
 
-    /// A short name, such as `CA 42 A`, from the columns that files of atoms have.
+    /// A short name, such as `CA 42 A`, from the columns of files of atoms.
     pub(crate) fn title(&self) -> String {
         if self.is_added {
             return "bond or edge of the cell".to_owned();
@@ -84,10 +84,10 @@ fn row(column: &Column, index: usize) -> Option<Row> {
     })
 }
 
-/// Writes a number with as many digits as files usually have.
+/// Writes a number with the usual number of digits of files.
 pub(crate) fn readable(number: f64) -> String {
     if !number.is_finite() || number == 0.0 || (1e-4..1e7).contains(&number.abs()) {
-        // Seven significant digits, without zeros at the end.
+        // The text has seven significant digits, without zeros at the end.
         let before = number.abs().max(1.0).log10().floor();
         let digits = (6.0 - before).clamp(0.0, 8.0) as usize;
         let text = format!("{number:.digits$}");

@@ -1,7 +1,7 @@
 //! The program `pinhole-viewer`: a window that shows what `pinhole render` renders. `pinhole view` starts it.
 //!
 //! The state of the window is a list of flags of `pinhole render`, so that the command that it copies and the pictures
-//! that it saves are exact by construction.
+//! that it saves match the view by construction.
 
 use std::process::ExitCode;
 use std::sync::{Arc, PoisonError};
@@ -46,7 +46,7 @@ fn run(flags: RenderFlags) -> Result<(), ViewError> {
     let adapter = state.flags.get("adapter").map(str::to_owned);
     let worker = Worker::start(state.request(false))
         .map_err(|error| ViewError::new(format!("a thread cannot be started: {error}")))?;
-    // What cannot be read is said at once, without a window.
+    // A file that cannot be read is reported at once, without a window.
     let first = worker.message_within(Duration::from_millis(400));
     if let Some(Message::Failed { error, .. }) = first {
         return Err(error);
@@ -58,7 +58,7 @@ fn run(flags: RenderFlags) -> Result<(), ViewError> {
             .with_inner_size([1180.0, 760.0])
             .with_min_inner_size([480.0, 360.0]),
         wgpu_options: wgpu_options(adapter.clone()),
-        // The picture's own bytes are shown.
+        // Dithering would change the picture's bytes.
         dithering: false,
         ..eframe::NativeOptions::default()
     };
@@ -73,7 +73,7 @@ fn run(flags: RenderFlags) -> Result<(), ViewError> {
     ending.map_or(Ok(()), Err)
 }
 
-/// Why there is no window: no display, no adapter, or something else.
+/// Explains why there is no window: no display, no adapter, or another reason.
 fn explained(error: &eframe::Error, adapter: Option<&str>) -> ViewError {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let displays = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
@@ -90,7 +90,7 @@ fn explained(error: &eframe::Error, adapter: Option<&str>) -> ViewError {
     }
 }
 
-/// The adapter that `pinhole render` would use, as far as it can show windows, with all its limits.
+/// Chooses the adapter that `pinhole render` would use, if it can show windows, with all of its limits.
 fn wgpu_options(name: Option<String>) -> egui_wgpu::WgpuConfiguration {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {

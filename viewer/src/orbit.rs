@@ -1,25 +1,25 @@
-//! How a camera moves when the pointer does.
+//! Moves a camera with the pointer.
 
 use pinhole::glam::{DQuat, DVec3};
 use pinhole_cli::viewing::ViewCamera;
 
-/// A full turn for each so many heights of the picture that the pointer moves.
+/// The number of full turns when the pointer moves by one height of the picture.
 const TURNS_PER_HEIGHT: f64 = 0.5;
 
-/// How much nearer a step of the wheel brings the camera, as a power of e.
+/// The change of the distance by one step of the wheel, as a power of e.
 const ZOOM_PER_POINT: f64 = 0.003;
 
-/// A camera and the point that it turns around.
+/// A camera, and the point around which it turns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Orbit {
     pub(crate) camera: ViewCamera,
     pub(crate) pivot: DVec3,
-    /// No nearer to the pivot than this.
+    /// The least distance of the camera from the pivot.
     least: f64,
 }
 
 impl Orbit {
-    /// Lets the camera turn around the point at which it looks, or else around what is in front of it at the depth of
+    /// Sets the pivot to the point at which the camera looks, or else to the point in front of it at the depth of
     /// `center`. `size` is the length of the scene.
     pub(crate) fn new(camera: ViewCamera, center: DVec3, size: f64) -> Self {
         let (eye, direction) = (camera.eye(), camera.direction());
@@ -37,7 +37,7 @@ impl Orbit {
         self.camera.direction().cross(self.camera.up())
     }
 
-    /// Turns the scene under the pointer, which moved to the right and down by parts of the picture's height.
+    /// Turns the scene under the pointer, which moved to the right and down by fractions of the picture's height.
     pub(crate) fn turn(&mut self, [x, y]: [f64; 2]) {
         let angle = |part: f64| -part * TURNS_PER_HEIGHT * std::f64::consts::TAU;
         let (up, right) = (self.camera.up(), self.right());
@@ -52,21 +52,21 @@ impl Orbit {
         self.camera.set_place(self.camera.eye(), self.pivot, turn * self.camera.up());
     }
 
-    /// Moves the camera such that what is at the depth of the pivot follows the pointer. `height` is the height of the
-    /// picture at that depth, in units of the scene.
+    /// Moves the camera so that points at the depth of the pivot follow the pointer. `height` is the height of the
+    /// picture at that depth, in scene units.
     pub(crate) fn pan(&mut self, [x, y]: [f64; 2], height: f64) {
         let by = height * (y * self.camera.up() - x * self.right());
         self.move_to(self.pivot + by);
     }
 
-    /// Lets the camera look at a point from the same direction.
+    /// Makes the camera look at a point from the same direction.
     pub(crate) fn move_to(&mut self, pivot: DVec3) {
         let eye = self.camera.eye() + (pivot - self.pivot);
         self.pivot = pivot;
         self.camera.set_place(eye, pivot, self.camera.up());
     }
 
-    /// Comes nearer by steps of the wheel.
+    /// Moves nearer by steps of the wheel.
     pub(crate) fn zoom(&mut self, steps: f64) {
         let factor = (-ZOOM_PER_POINT * steps).clamp(-1.0, 1.0).exp();
         if self.camera.is_orthographic() {
@@ -114,14 +114,14 @@ mod tests {
 
     #[test]
     fn the_pointer_takes_things_along() {
-        // What faces the camera moves to the right and down with the pointer.
+        // The side that faces the camera moves to the right and down with the pointer.
         let mut turned = orbit();
         let front = 5.0 * -turned.camera.direction();
         turned.turn([0.05, 0.05]);
         let at = camera_of(&turned.camera).location_of(front).unwrap();
         assert!(at.x > 0.01 && at.y < -0.01, "{at}");
 
-        // What is at the pivot follows the pointer exactly: 0.1 of the height are 0.2 in relative locations.
+        // The pivot follows the pointer exactly: 0.1 of the height is 0.2 in relative locations.
         let mut moved = orbit();
         let vectors = camera_of(&moved.camera).vectors();
         let height = 2.0 * moved.distance() * vectors.up.length() / vectors.forward.length();
@@ -144,7 +144,7 @@ mod tests {
         assert!(zoomed.distance() > 0.0 && camera_of(&zoomed.camera).vectors().origin.is_finite());
     }
 
-    /// What is seen after any motion is what the flags make again: the state is the flags.
+    /// The flags give the same view again after any motion, because the flags are the state.
     #[test]
     fn motions_survive_the_flags() {
         let mut orbit = orbit();

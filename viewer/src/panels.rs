@@ -163,7 +163,7 @@ impl App {
         });
     }
 
-    /// What the window is doing, or has done.
+    /// A text about the current or the last action.
     fn status(&self) -> String {
         let doing = match (self.rate.value, self.current_still()) {
             (Some(rate), _) => format!("{rate:.0} pictures/s"),
@@ -178,7 +178,7 @@ impl App {
         if self.said.is_empty() { doing } else { format!("{} · {doing}", self.said) }
     }
 
-    /// What lies over the picture: errors, and that a file is read.
+    /// Draws over the picture: errors, and a note while a file is read.
     pub(crate) fn overlay(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let is_long = |since: &std::time::Instant| since.elapsed().as_millis() > 250;
         if self.busy.as_ref().is_some_and(is_long) {
@@ -219,7 +219,7 @@ impl App {
     }
 }
 
-/// A part of the controls, with a title.
+/// A section of the controls, with a title.
 fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
     let title = RichText::new(title).strong();
     egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);

@@ -1,4 +1,4 @@
-//! The picture in the window, and how the pointer moves it.
+//! The picture in the window, which the pointer moves.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
 
 impl App {
-    /// The camera of what is to be seen, for the picture in the window.
+    /// The camera of the current state, for the picture in the window.
     fn camera(&self) -> Option<Box<dyn Camera>> {
         let (news, orbit) = (self.news.as_ref()?, self.orbit.as_ref()?);
         let [width, height] = self.state.window.map(f64::from);
@@ -63,7 +63,7 @@ impl App {
                 self.fly(|orbit| orbit.turn(parts));
             }
         } else if response.dragged() {
-            // A button that is held still moves nothing, but may do so again.
+            // While a button is held still nothing moves, but the motion may continue.
             self.moved = self.moved.map(|_| Instant::now());
         }
         if response.hovered() {
@@ -81,7 +81,7 @@ impl App {
         {
             self.centers = response.double_clicked();
             let part = (at - response.rect.min) / response.rect.size();
-            // The id under a pixel is that of a picture of all pixels.
+            // The pick needs a picture with all pixels.
             self.look(false);
             self.quick.pick([f64::from(part.x), f64::from(part.y)]);
         }
@@ -100,14 +100,14 @@ impl App {
         up / forward * depth.abs()
     }
 
-    /// Renders a quick picture if what is shown is an older one.
+    /// Renders a quick picture if the visible one is out of date.
     fn see(&mut self, context: &egui::Context) {
         let is_moving = self.is_moving() || self.player.plays;
         let wanted = (self.state.number, is_moving);
         self.quick.poll();
-        // What is asked for below is recorded with this frame of the window.
+        // Work requested below is recorded with this frame of the window.
         let is_waiting = self.quick.is_waiting();
-        // The window's own pictures wait for the device, so no more of these are recorded than it renders.
+        // The window's pictures wait for the device, so only as many are recorded as it can render.
         if self.seen != Some(wanted)
             && (is_moving || self.current_still().is_none())
             && self.seen != Some((self.state.number, false))
@@ -129,7 +129,7 @@ impl App {
         self.count(is_moving);
     }
 
-    /// Renders a quick picture of the present state.
+    /// Renders a quick picture of the current state.
     fn look(&mut self, is_moving: bool) {
         let (Some(camera), Some(news)) = (self.camera(), &self.news) else { return };
         let (settings, size) = (news.facts.settings.clone(), self.state.window);
@@ -168,7 +168,7 @@ impl App {
         }
     }
 
-    /// Draws a ring around the sphere that was picked.
+    /// Draws a ring around the picked sphere.
     fn marker(&self, painter: &egui::Painter, rect: egui::Rect) {
         let (Some(details), Some(camera)) = (&self.picked, self.camera()) else { return };
         let up = camera.vectors().up.normalize_or_zero();

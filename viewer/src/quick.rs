@@ -1,5 +1,5 @@
-//! Quick pictures on the window's own device, recorded into the window's encoder: studios with their light, others by
-//! primary rays.
+//! Quick pictures on the window's own device, recorded into the window's encoder. Studios have their light; others
+//! have primary rays.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -15,13 +15,13 @@ use pinhole::camera::{Camera, View};
 use pinhole::gpu::{Frame, LitState, LivePicture, PickedPixel, Picker, TargetTextures, Wait};
 use pinhole::render::{Integrator, RenderSettings};
 
-/// How long a picture may take while the camera moves. Slower ones get fewer pixels.
+/// The time that a picture may take while the camera moves. Slower pictures get fewer pixels.
 const MOVING: Duration = Duration::from_millis(55);
 
-/// The sides of pictures while the camera moves, as parts of the whole.
+/// The sides of pictures while the camera moves, as fractions of the whole.
 const PARTS: [f64; 4] = [1.0, 0.7, 0.5, 0.33];
 
-/// The quick picture of the window. It is shared with what egui calls to record it.
+/// The quick picture of the window, shared with the callback in which egui records it.
 #[derive(Clone)]
 pub(crate) struct Quick(Arc<Mutex<State>>);
 
@@ -33,28 +33,28 @@ struct State {
     camera: Option<Box<dyn Camera>>,
     picker: Option<Picker>,
     is_due: bool,
-    /// A pixel that is to be picked in the picture.
+    /// A pixel of the picture to pick.
     pick: Option<[u32; 2]>,
     is_picking: bool,
-    /// The microseconds that the last picture took; 0 while the device works.
+    /// The microseconds that the last picture took; 0 while the device is working.
     taken: Arc<AtomicU64>,
-    /// Which of the parts the picture has.
+    /// Index in [`PARTS`] of the picture's size.
     part: usize,
-    /// What pictures of each part take: those by primary rays, and live ones.
+    /// The times of pictures of each size: by primary rays, and live.
     times: [Times; 2],
     pictures: u64,
     error: Option<String>,
 }
 
-/// Textures of one size, and what renders into them.
+/// Textures of one size, and the objects that render into them.
 struct TargetSet {
     textures: TargetTextures,
     source: Source,
-    /// What draws the colors.
+    /// The bind group for drawing the colours.
     group: wgpu::BindGroup,
 }
 
-/// What renders a quick picture.
+/// The object that renders a quick picture.
 enum Source {
     /// One ray for each pixel, lit from the eye.
     Primary(Box<Frame>),
@@ -62,21 +62,21 @@ enum Source {
     Live(Box<LivePicture>),
 }
 
-/// How long pictures of each part take, which is learnt while the camera moves.
+/// The time of pictures of each size, which is measured while the camera moves.
 #[derive(Debug, Default)]
 struct Times([Option<Duration>; PARTS.len()]);
 
 impl Times {
     fn learn(&mut self, part: usize, taken: Duration) {
-        // One picture may be held up by other work; several in a row are not.
+        // Other work may delay a single picture, but not several in a row.
         let time = &mut self.0[part];
         *time = Some(time.map_or(taken, |before| before.mul_f64(0.7) + taken.mul_f64(0.3)));
     }
 
-    /// The largest part that is quick enough; or if none is, the largest one that is not much slower than the smallest:
-    /// what does not depend on the number of pixels gets no quicker with fewer.
+    /// Index of the largest size that is quick enough. If none is, it is the largest that is not much slower than the
+    /// smallest, because some work does not depend on the number of pixels.
     fn part(&self) -> usize {
-        // What was not tried yet is tried.
+        // Sizes without a measurement are tried.
         let is_quick = |time: &Option<Duration>| time.is_none_or(|time| time <= MOVING);
         if let Some(part) = self.0.iter().position(is_quick) {
             return part;
@@ -93,13 +93,13 @@ impl Times {
     }
 }
 
-/// What is to be seen.
+/// A view to render.
 pub(crate) struct Sight {
     pub(crate) camera: Box<dyn Camera>,
     pub(crate) settings: RenderSettings,
     /// The size of the whole picture in pixels.
     pub(crate) size: [u32; 2],
-    /// Whether fewer pixels will do.
+    /// Whether fewer pixels are enough.
     pub(crate) is_moving: bool,
 }
 
@@ -126,12 +126,12 @@ impl Quick {
             pictures: 0,
             error,
         })));
-        // Errors that nobody expects are shown, and do not end the program.
+        // Unexpected errors are shown, and do not end the program.
         let weak = Arc::downgrade(&quick.0);
         device.on_uncaptured_error(Arc::new(move |error| {
             let message = error.to_string();
             let Some(state) = weak.upgrade() else { return };
-            // The state may be locked by what caused the error.
+            // The code that caused the error may hold the lock of the state.
             let _ = std::thread::Builder::new().spawn(move || {
                 state.lock().unwrap_or_else(PoisonError::into_inner).error = Some(message);
             });
@@ -143,10 +143,10 @@ impl Quick {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Shows another scene from now on.
+    /// Replaces the scene.
     pub(crate) fn set_scene(&self, scene: QuickScene) {
         let mut state = self.state();
-        // Frames are made for a renderer.
+        // A frame is bound to its renderer.
         let is_same = |old: &QuickScene| Arc::ptr_eq(&old.renderer, &scene.renderer);
         if !state.scene.as_ref().is_some_and(is_same) {
             state.targets = None;
@@ -154,7 +154,7 @@ impl Quick {
         state.scene = Some(scene);
     }
 
-    /// Looks what the device has done, without waiting.
+    /// Checks without waiting which work the device has finished.
     pub(crate) fn poll(&self) {
         let mut state = self.state();
         let _ = state.render.device.poll(wgpu::PollType::Poll);
@@ -173,7 +173,7 @@ impl Quick {
         }
     }
 
-    /// Asks which sphere is at a pixel of the picture, given by parts of its width and height.
+    /// Requests the sphere at a pixel of the picture, given by fractions of its width and height.
     pub(crate) fn pick(&self, [x, y]: [f64; 2]) {
         let mut state = self.state();
         let Some(size) = state.targets.as_ref().map(|targets| targets.textures.size()) else {
@@ -204,7 +204,7 @@ impl Quick {
         }
     }
 
-    /// What went wrong since the last call.
+    /// The last error since the previous call, if there was one.
     pub(crate) fn take_error(&self) -> Option<String> {
         self.state().error.take()
     }
@@ -217,7 +217,7 @@ impl Quick {
         self.state().pictures
     }
 
-    /// What egui calls while it makes its own frame. The picture is drawn into the rectangle if it `is_seen`.
+    /// Makes the callback for egui's own frame. If `is_seen`, it draws the picture into the rectangle.
     pub(crate) fn callback(&self, rect: egui::Rect, is_seen: bool) -> egui::epaint::PaintCallback {
         let recording = Recording { quick: self.clone(), is_seen };
         eframe::egui_wgpu::Callback::new_paint_callback(rect, recording)
@@ -234,7 +234,7 @@ impl State {
         let is_studio = matches!(sight.settings.integrator, Integrator::Studio(_));
         let is_live = scene.is_live && is_studio && !self.times[1].is_slow();
         if is_live && self.see_with(&scene, &sight, true).is_err() {
-            // What cannot be shown with its light is shown without.
+            // A scene that cannot be shown with its light is shown without it.
             if let Some(scene) = &mut self.scene {
                 scene.is_live = false;
             }
@@ -316,7 +316,7 @@ impl State {
             };
             match recorded {
                 Ok(true) => self.is_due = false,
-                // The device has enough to do.
+                // The device is still busy.
                 Ok(false) => return Ok(()),
                 Err(error) => {
                     self.is_due = false;
@@ -390,7 +390,7 @@ mod tests {
         assert_eq!(times([50, 30, 20, 10]).part(), 0);
         assert_eq!(times([300, 150, 54, 40]).part(), 2);
         assert_eq!(times([900, 400, 200, 110]).part(), 3);
-        // Here fewer pixels would not help.
+        // Fewer pixels would not help here.
         assert_eq!(times([120, 110, 105, 100]).part(), 0);
         let mut slow = Times::default();
         slow.learn(0, Duration::from_millis(200));

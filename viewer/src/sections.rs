@@ -194,7 +194,7 @@ impl App {
         ui.label(RichText::new("any flag of `pinhole render`, then Enter").size(11.0).weak());
     }
 
-    /// Adds flags as they stand on a command line.
+    /// Adds flags, written as on a command line.
     fn add_flags(&mut self, text: &str) {
         let words = self.state.flags.words().into_iter();
         let added = text.split_whitespace().map(str::to_owned);
@@ -213,7 +213,7 @@ impl App {
         }
     }
 
-    /// A row with the values of a flag. `own` is what holds without it.
+    /// A row with the values of a flag. `own` is the label for the default.
     fn choice(&mut self, ui: &mut egui::Ui, flag: &str, own: &str, values: &[&str]) {
         row(ui, &format!("--{flag}"), |ui| {
             let given = self.state.flags.get(flag).map(str::to_owned);
@@ -238,7 +238,7 @@ impl App {
         });
     }
 
-    /// A row in which the value of a flag is typed.
+    /// A row with a text field for the value of a flag.
     fn typed(
         &mut self,
         ui: &mut egui::Ui,
@@ -255,7 +255,7 @@ impl App {
         });
     }
 
-    /// A box for a flag that is there or not.
+    /// A check box for a flag without a value.
     fn switch(&mut self, ui: &mut egui::Ui, flag: &str, text: &str) {
         let given = self.state.flags.get(flag);
         let own = flag == "denoise"
@@ -271,7 +271,7 @@ impl App {
         }
     }
 
-    /// A small button that removes a flag, if it is there.
+    /// A small button that removes a flag, if it is set.
     fn reset(&mut self, ui: &mut egui::Ui, flag: &str) {
         if self.state.flags.get(flag).is_some()
             && ui.small_button("×").on_hover_text(format!("Remove --{flag}")).clicked()
@@ -285,7 +285,7 @@ impl App {
         self.change(|flags| {
             if value.is_empty() {
                 flags.remove(flag);
-                // What says how a column becomes colors needs a column.
+                // Flags that turn a column into colours need a column.
                 if flag == "color-by" {
                     let of_map = ["cmap", "cmap-reverse", "range", "log", "missing-color"];
                     let of_legend = ["legend", "legend-title"];
@@ -298,7 +298,7 @@ impl App {
     }
 }
 
-/// A row with a name on the left.
+/// A row with a name at the left.
 fn row(ui: &mut egui::Ui, name: &str, contents: impl FnOnce(&mut egui::Ui)) {
     ui.horizontal(|ui| {
         let label = egui::Label::new(RichText::new(name).monospace().size(11.0));
@@ -314,7 +314,7 @@ fn row(ui: &mut egui::Ui, name: &str, contents: impl FnOnce(&mut egui::Ui)) {
     });
 }
 
-/// An expression that selects some of the spheres.
+/// An example of an expression that selects some spheres.
 fn example(columns: &[Column]) -> String {
     let text = columns.iter().find_map(|column| match &column.values {
         ColumnValues::Labels(labels) => {

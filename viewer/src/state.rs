@@ -1,4 +1,4 @@
-//! What the window shows: flags of `pinhole render`, and how large the picture is.
+//! The state of the window: flags of `pinhole render`, and the size of the picture.
 
 use pinhole_cli::viewing::{RenderFlags, ViewError};
 
@@ -7,12 +7,12 @@ use crate::worker::Request;
 /// The flags of a view, without the size of the picture, and the sizes of the window and of the saved picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
-    /// All flags but `--size`.
+    /// All flags except `--size`.
     pub(crate) flags: RenderFlags,
-    /// The number of this state; every change makes another one.
+    /// The number of this state, which every change increases.
     pub(crate) number: u64,
     pub(crate) window: [u32; 2],
-    /// The size of the saved picture, if it is not that in the window.
+    /// The size of the saved picture, if it differs from that in the window.
     pub(crate) size: Option<[u32; 2]>,
     pub(crate) output: String,
 }
@@ -32,7 +32,7 @@ impl State {
         self.size.unwrap_or(self.window)
     }
 
-    /// Changes the flags, if that makes flags that can be used. Returns whether something changed.
+    /// Changes the flags if the result is valid. Returns whether something changed.
     pub(crate) fn change(
         &mut self,
         change: impl FnOnce(&mut RenderFlags),
@@ -48,7 +48,7 @@ impl State {
         Ok(true)
     }
 
-    /// Fits the picture in the window to a size. Returns whether that is another one.
+    /// Fits the picture in the window to a size. Returns whether the size changed.
     pub(crate) fn resize(&mut self, window: [u32; 2]) -> bool {
         let is_new = self.window != window;
         self.window = window;
@@ -86,16 +86,16 @@ pub(crate) fn sides(text: &str) -> Option<[u32; 2]> {
     Some([width.parse().ok()?, height.parse().ok()?])
 }
 
-/// What the user types, until it becomes a flag.
+/// Texts that the user types, before they become flags.
 pub(crate) struct Fields {
     pub(crate) select: String,
     pub(crate) range: String,
     pub(crate) background: String,
-    /// Any flags, as on a command line.
+    /// Further flags, written as on a command line.
     pub(crate) others: String,
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// Whether the window closes when it has saved a picture.
+    /// Whether the window closes after it has saved a picture.
     pub(crate) closes: bool,
 }
 
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(state.request(true).flags.get("size"), Some("9x9"));
     }
 
-    /// A picture of another shape shows the same height.
+    /// A picture with another aspect ratio shows the same height.
     #[test]
     fn a_view_plane_is_not_stretched() {
         let mut state = state(&[

@@ -1,4 +1,4 @@
-//! Threads beside the window: one reads files and renders stills, others save pictures.
+//! Threads besides the window's: one reads files and renders stills, others save pictures.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -17,10 +17,10 @@ use pinhole::gpu::{
 };
 use pinhole::render::{Integrator, RenderSettings};
 
-/// What the window wants to show.
+/// A request of the window.
 #[derive(Clone, Debug)]
 pub(crate) struct Request {
-    /// The state of the window for which this is.
+    /// The number of the window's state for this request.
     pub(crate) state: u64,
     pub(crate) flags: RenderFlags,
     /// Whether still pictures are wanted.
@@ -35,7 +35,7 @@ pub(crate) enum Message {
         state: u64,
         picture: StillPicture,
     },
-    /// A request failed. What was shown before stays.
+    /// A request failed. The window keeps its contents.
     Failed {
         state: u64,
         error: ViewError,
@@ -43,7 +43,7 @@ pub(crate) enum Message {
     Note(String),
 }
 
-/// What flags mean.
+/// The result of reading the flags and the file of a request.
 pub(crate) struct News {
     pub(crate) state: u64,
     pub(crate) facts: Facts,
@@ -51,16 +51,16 @@ pub(crate) struct News {
     pub(crate) quick: Option<QuickScene>,
 }
 
-/// A scene on the window's device, and what renders it there.
+/// A scene on the window's device, and its renderer there.
 #[derive(Clone)]
 pub(crate) struct QuickScene {
     pub(crate) renderer: Arc<LitRenderer>,
     pub(crate) buffers: Arc<SceneBuffers>,
-    /// Whether the light is that of a studio, which the window's device can follow while things move.
+    /// Whether the scene is lit as a studio, which the window's device can render in motion.
     pub(crate) is_live: bool,
 }
 
-/// The window, as far as this thread needs it.
+/// The parts of the window that this thread needs.
 #[derive(Clone)]
 pub(crate) struct Window {
     pub(crate) context: egui::Context,
@@ -79,7 +79,7 @@ struct Inbox {
 struct WorkerState {
     inbox: Mutex<Inbox>,
     is_changed: Condvar,
-    /// Counts requests, so that work for an older one ends.
+    /// The number of requests so far, so that work for an older one can end.
     newest: AtomicU64,
 }
 
@@ -89,7 +89,7 @@ impl WorkerState {
     }
 }
 
-/// The thread, and the ways to and from it.
+/// The thread, and the channels to and from it.
 pub(crate) struct Worker {
     shared: Arc<WorkerState>,
     messages: Receiver<Message>,
@@ -117,7 +117,7 @@ impl Worker {
         self.shared.is_changed.notify_all();
     }
 
-    /// Asks for something else, in place of what was asked for before.
+    /// Sends a request, which replaces earlier ones.
     pub(crate) fn ask(&self, request: Request) {
         let mut inbox = self.shared.inbox();
         // The thread reads the number with the request.
@@ -127,7 +127,7 @@ impl Worker {
         self.shared.is_changed.notify_all();
     }
 
-    /// Ends the still picture that is being rendered.
+    /// Stops the still picture in progress.
     pub(crate) fn cancel(&self) {
         self.shared.newest.fetch_add(1, Ordering::AcqRel);
     }
@@ -136,12 +136,12 @@ impl Worker {
         self.messages.try_recv().ok()
     }
 
-    /// The next message, if there is one within a time.
+    /// Returns the next message, if there is one within a time.
     pub(crate) fn message_within(&self, time: Duration) -> Option<Message> {
         self.messages.recv_timeout(time).ok()
     }
 
-    /// Ends the thread, so that no driver is interrupted. A file that takes long to read is not waited for.
+    /// Ends the thread, so that no driver is interrupted. It does not wait for a file that takes long to read.
     pub(crate) fn close(&mut self) {
         self.shared.inbox().is_closed = true;
         self.cancel();
@@ -162,9 +162,9 @@ struct Work {
     sender: Sender<Message>,
     shown: Option<OpenView>,
     still: Option<StillRenderer>,
-    /// What renders quick pictures, for a kind of camera.
+    /// The renderer of quick pictures, for a kind of camera.
     renderer: Option<(CameraKind, Arc<LitRenderer>)>,
-    /// What is shown, on the window's device.
+    /// The current scene on the window's device.
     buffers: Option<Arc<SceneBuffers>>,
 }
 
@@ -179,7 +179,7 @@ impl Work {
         }
     }
 
-    /// Waits for a request, or for a window that shows what was asked for before.
+    /// Waits for a request, or for a window that shows the last one.
     fn next(&self) -> Option<(Request, u64)> {
         let mut inbox = self.shared.inbox();
         loop {
@@ -198,7 +198,7 @@ impl Work {
     }
 
     fn tell(&self, message: Message) {
-        // A window that is gone needs no messages.
+        // A closed window needs no messages.
         let _ = self.sender.send(message);
         if let Some(window) = self.window() {
             window.context.request_repaint();
@@ -246,7 +246,7 @@ impl Work {
         Ok(())
     }
 
-    /// Builds what renders quick pictures, and copies the scene to the window's device, unless that was done before.
+    /// Makes the renderer of quick pictures, and copies the scene to the window's device, unless both exist.
     fn prepared(&mut self, window: &Window) -> Result<Option<QuickScene>, GpuError> {
         let Window { device, queue, .. } = window;
         let Some(shown) = &self.shown else { return Ok(None) };
@@ -274,7 +274,7 @@ impl Work {
     }
 }
 
-/// Whether a live picture of what is shown is possible. Builds its pipelines, so that the window does not wait for them.
+/// Whether a live picture of the scene is possible. Builds its pipelines, so that the window does not wait for them.
 fn is_live(
     Window { device, queue, .. }: &Window,
     renderer: &LitRenderer,
@@ -298,7 +298,7 @@ fn error_of(error: &GpuError) -> ViewError {
     ViewError::new(format!("the window's device: {error}"))
 }
 
-/// A picture that is being saved.
+/// A picture that is being written.
 pub(crate) struct Saving {
     pub(crate) output: String,
     pub(crate) started: Instant,
@@ -322,7 +322,7 @@ impl Saving {
         Ok(Self { output, started: Instant::now(), result })
     }
 
-    /// Whether the picture is written, or why not, once that is known.
+    /// The result of saving, once it is known.
     pub(crate) fn result(&self) -> Option<Result<(), ViewError>> {
         use std::sync::mpsc::TryRecvError;
         match self.result.try_recv() {

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints a part of the report at once, because all scenes together take minutes.
+/// Prints a part of the report at once, because measuring all scenes takes minutes.
 fn say(text: &str) -> Result<(), Failure> {
     progress::clear();
     Ok(answer(text.as_bytes())?)
@@ -150,12 +150,12 @@ fn measure(
 
     let times = repeat(headless, &buffers, name, &view, reps)?;
     let longest = times.iter().map(|time| time.longest).max().unwrap_or_default();
-    // The scene counts as it was built, and the frame as it was planned.
+    // The scene has the size of the built structure, and the frame the size that was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
     let clock = AdapterReport::of(headless.adapter_info()).clock();
     let rays = film.pixel_count();
-    // The clock of a software device says nothing about the work.
+    // The clock of a software device does not measure the work.
     let has_clock = clock == DEVICE_CLOCK;
     let of_device = |time: &TraceTime| time.device.filter(|_| has_clock);
     let trace_wall = Spread::of(times.iter().map(|time| Some(time.wall)));
@@ -182,7 +182,7 @@ fn measure(
     })
 }
 
-/// How long building bricks took, and copying them to the device, each in total. Planning counts as building.
+/// Total times of building bricks and of copying them to the device. Planning counts as building.
 struct UploadTimes {
     build: Duration,
     upload: Duration,
@@ -221,14 +221,14 @@ fn repeat(
 /// The scenes to measure by default; any machine has enough memory for them.
 pub(crate) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
 
-/// A scene as it was named on the command line.
+/// A scene that was named on the command line.
 pub(crate) enum BenchSource {
     Standard(Standard),
     File(PathBuf, Box<Source>),
 }
 
 impl BenchSource {
-    /// Finds the standard scene of this name, or takes the name as that of a file.
+    /// Finds the standard scene of this name, or else takes the name as the path of a file.
     pub(crate) fn new(
         named: &Path,
         args: &BenchArgs,
@@ -251,8 +251,8 @@ impl BenchSource {
         }
     }
 
-    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not
-    /// free.
+    /// Generates or reads the scene. For a generated scene, prints the memory that it needs, and refuses it if
+    /// this memory is not free.
     pub(crate) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
         match self {
             Self::Standard(standard) => made(*standard, size),

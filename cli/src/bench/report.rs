@@ -52,16 +52,16 @@ pub(crate) struct RunReport {
     /// Time of the first picture, including the building of pipelines and the copy back to the host.
     pub(crate) first_render_seconds: f64,
     pub(crate) trace_wall: Option<Spread>,
-    /// Tracing time by the device's clock, if it has one that measures work.
+    /// Tracing time by the device's clock, if its clock measures work.
     pub(crate) trace_device: Option<Spread>,
-    /// Clock that the rates and the comparison use: `device` or `host`.
+    /// The clock on which rates and the comparison are based: `device` or `host`.
     pub(crate) clock: &'static str,
     pub(crate) rays: u64,
-    /// From the median time by that clock.
+    /// Rays per second, from the median time by this clock.
     pub(crate) rays_per_second: Option<f64>,
     pub(crate) submissions: u32,
     pub(crate) longest_submission_seconds: f64,
-    /// Memory on the device for the scene and the frame.
+    /// Bytes of device memory for the scene and the frame.
     pub(crate) device_bytes: u64,
     pub(crate) device_bytes_per_sphere: Option<f64>,
     pub(crate) peak_memory_bytes: Option<u64>,
@@ -75,7 +75,7 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Returns `None` if there are no times, or if one of them is not known.
+    /// Summarizes times. Returns `None` if there are none, or if one of them is not known.
     pub(crate) fn of(times: impl Iterator<Item = Option<Duration>>) -> Option<Self> {
         let mut times: Vec<Duration> = times.collect::<Option<_>>()?;
         times.sort_unstable();

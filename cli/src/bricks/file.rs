@@ -1,5 +1,5 @@
-//! What a file of bricks holds: a line that names the format, where the header is, the spheres brick by brick, the header
-//! as JSON, and the digest of both. Numbers of the header are the bits of f64 and f32.
+//! The layout of a file of bricks: a line that names the format, the place of the header, the spheres brick by brick,
+//! the header as JSON, and the digest of place and header. Numbers of the header are the bits of f64 and f32.
 
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec3, Vec3};
@@ -9,21 +9,21 @@ use serde::{Deserialize, Serialize};
 /// The first bytes of a file of this version.
 pub(super) const START: &[u8; 17] = b"pinhole bricks 2\n";
 
-/// How much of it all versions share.
+/// The start of this line, which all versions share.
 pub(super) const NAME: &[u8] = b"pinhole bricks ";
 
-/// Where the place and the length of the header are, in eight bytes each.
+/// Offset of the place and the length of the header, in eight bytes each.
 pub(super) const PLACE: usize = 24;
 
-/// Bytes before the first brick.
+/// Number of bytes before the first brick.
 pub(super) const BEFORE: u64 = 40;
 
 pub(super) const DIGEST: usize = 32;
 
-/// No header is longer.
+/// Maximum header length in bytes.
 pub(super) const LONGEST_HEADER: u64 = 1 << 26;
 
-/// Bytes of a sphere, its id, and its colour if there are colours.
+/// Number of bytes of a sphere, of its id, and of its colour if there are colours.
 pub(super) const SPHERE: u64 = 16;
 pub(super) const ID: u64 = 4;
 pub(super) const COLOR: u64 = 4;
@@ -32,24 +32,24 @@ pub(super) const COLOR: u64 = 4;
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
     pub(super) version: String,
-    /// The file that was sorted.
+    /// Name of the file that was sorted.
     pub(super) source: String,
     pub(super) z_is_up: bool,
     pub(super) has_atoms: bool,
     pub(super) whole: WholeBits,
     pub(super) colors: StoredColors,
-    /// The spheres that reach farthest in some direction, after the bricks, without ids.
+    /// The spheres that extend farthest in some direction. They follow the bricks and have no ids.
     pub(super) outer: Section,
     pub(super) bricks: Vec<Brick>,
 }
 
-/// A part of the file.
+/// A contiguous part of the file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Section {
     /// The number of spheres.
     pub(super) count: u64,
-    /// The first byte.
+    /// Offset of the first byte.
     pub(super) offset: u64,
     pub(super) sha256: String,
 }
@@ -59,7 +59,7 @@ pub(super) struct Section {
 #[serde(deny_unknown_fields)]
 pub(super) struct Brick {
     pub(super) section: Section,
-    /// The corners of the box of the spheres in the frame.
+    /// The corners of the box of the spheres, in the frame of the scene.
     pub(super) min: [u32; 3],
     pub(super) max: [u32; 3],
 }
@@ -68,21 +68,21 @@ pub(super) struct Brick {
 #[serde(rename_all = "kebab-case")]
 pub(super) enum StoredColors {
     None,
-    /// One linear colour for all.
+    /// All spheres have this linear colour.
     One([u32; 3]),
     /// Each sphere has an index into these linear colours.
     Palette(Vec<[u32; 3]>),
     Rgba8,
 }
 
-/// The bits of [`Whole`].
+/// The numbers of [`Whole`] as bits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WholeBits {
     pub(super) count: u64,
     /// The corners of the box in world space.
     bounds: [[u64; 3]; 2],
-    /// The corners of the boxes of spheres and of centres in the frame.
+    /// The corners of the boxes of spheres and of centres, in the frame of the scene.
     spheres: [[u32; 3]; 2],
     centers: [[u32; 3]; 2],
     pub(super) radii: [u32; 2],
@@ -110,7 +110,7 @@ impl WholeBits {
         }
     }
 
-    /// The whole; `None` if the numbers are not finite or the corners are in the wrong order.
+    /// Returns the bounds of the whole; `None` if numbers are not finite or corners are in the wrong order.
     pub(super) fn whole(&self) -> Option<Whole> {
         let [min, max] = self.bounds.map(|bits| DVec3::from(bits.map(f64::from_bits)));
         let bounds = extent(min, max)?;
@@ -135,7 +135,7 @@ impl WholeBits {
 }
 
 impl StoredColors {
-    /// Bytes of a sphere beside its four numbers and its id.
+    /// Number of bytes of a sphere's colour, beside its four numbers and its id.
     pub(super) fn bytes(&self) -> u64 {
         match self {
             Self::None | Self::One(_) => 0,
@@ -143,20 +143,20 @@ impl StoredColors {
         }
     }
 
-    /// Bytes of a sphere of a brick.
+    /// Number of bytes of a sphere in a brick.
     pub(super) fn sphere_bytes(&self) -> u64 {
         SPHERE + ID + self.bytes()
     }
 }
 
-/// The box between two corners; `None` if they are not finite or in the wrong order.
+/// Returns the box between two corners; `None` if they are not finite or in the wrong order.
 pub(super) fn extent(min: DVec3, max: DVec3) -> Option<Bounds> {
     let is_box = min.is_finite() && max.is_finite() && min.cmple(max).all();
     is_box.then(|| Bounds::of_sphere(min, 0.0).union(Bounds::of_sphere(max, 0.0)))
 }
 
 impl Header {
-    /// Whether the parts of the file follow each other without gaps, up to `end`, and have all spheres.
+    /// Whether the sections of the file follow each other without gaps, up to `end`, and have all spheres.
     pub(super) fn is_consistent(&self, end: u64) -> bool {
         let mut next = BEFORE;
         let mut follows = |section: &Section, each: u64| {

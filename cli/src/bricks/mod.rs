@@ -1,9 +1,9 @@
-//! Files of bricks: spheres that `sort` has divided among compact bricks, so that a picture needs one of them in memory at
-//! a time.
+//! Files of bricks. A brick is a compact group of spheres. `sort` divides the spheres of a file among bricks, so that
+//! rendering a picture needs only one brick in memory at a time.
 //!
-//! `writer` reads the spheres in input order, as often as needed, and writes bricks; `sort` divides space by a sample of them; `outer` finds
-//! the spheres that decide what a camera frames; `file` says what it holds, `read` reads it, and
-//! `picture` renders one brick after the other.
+//! `writer` reads the spheres in input order, as often as needed, and writes bricks. `sort` divides space by a sample
+//! of the spheres. `outer` finds the spheres that determine what a camera frames. `file` describes the layout of the
+//! file, `read` reads it, and `picture` renders one brick after the other.
 
 pub(super) use self::picture::{check_without_light, nearest_of, render};
 pub(super) use self::read::BrickFile;

@@ -1,37 +1,37 @@
-//! The spheres that decide what a camera frames: those that reach farthest in some direction.
+//! Finds the spheres that determine what a camera frames: those that extend farthest in some direction.
 //!
-//! A sphere is left out where in each of the eight octants around its centre, borders included, another sphere at least as
-//! large has its centre. A direction n points into one of the octants, and there the other sphere has each of
-//! nₖcₖ and |n|r at least as large, also in floating-point numbers, which round monotonically. So the largest n·c + |n|r
-//! of all spheres is that of the spheres that are kept, to the bit, and so is the camera.
+//! A sphere is left out if each of the eight octants around its centre, borders included, has the centre of another
+//! sphere that is at least as large. A direction n points into one of the octants. For the sphere there, each nₖcₖ and
+//! |n|r is at least as large, also in floating-point numbers, which round monotonically. So the largest n·c + |n|r of
+//! all spheres is that of the kept spheres, to the bit, and so is the camera.
 
 use pinhole::glam::{BVec3, UVec3, Vec3};
 
-/// Cells along a side of the box of many spheres, by which most of them are left out at once.
+/// Cells along a side of the box of many spheres. Most spheres are left out cell by cell.
 const CELLS: u32 = 128;
 
-/// The number of spheres from which on so many cells are worth their time.
+/// The number of spheres above which this many cells are worth their time.
 const MANY: u64 = 1 << 20;
 
-/// The most spheres of the kept ones with which another is compared. With more, too many are kept, and none too few.
+/// The most kept spheres that are compared with another. The limit can only keep too many spheres, never too few.
 const COMPARED: usize = 512;
 
-/// How many candidates are gathered before some are left out.
+/// Number of candidates that are gathered before some are left out.
 const GATHERED: usize = 1 << 20;
 
-/// The largest radius in each cell of a grid, from which follows where no sphere can reach farthest.
+/// The largest radius in each cell of a grid. It shows in which cells no sphere can extend farthest.
 pub(super) struct Cells {
     low: Vec3,
     scale: Vec3,
-    /// Whether all centres lie in one plane along each axis.
+    /// For each axis, whether all centres have the same coordinate.
     flat: BVec3,
-    /// Cells along each side.
+    /// Number of cells along each side.
     side: u32,
     radii: Vec<f32>,
 }
 
 impl Cells {
-    /// Empty cells of a box around the centres of `count` spheres.
+    /// Creates empty cells for a box around the centres of `count` spheres.
     pub(super) fn new(low: Vec3, high: Vec3, count: u64) -> Self {
         let side = if count < MANY { CELLS / 16 } else { CELLS };
         let size = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
@@ -43,7 +43,7 @@ impl Cells {
         ((cell.z * self.side + cell.y) * self.side + cell.x) as usize
     }
 
-    /// A function that does not descend along any axis.
+    /// The cell of a centre. Cell indices never decrease with a coordinate.
     fn cell(&self, center: Vec3) -> UVec3 {
         let place = (center - self.low) * self.scale;
         // Casts of numbers that are too small or too large give the ends of the range.
@@ -56,12 +56,12 @@ impl Cells {
         self.radii[cell] = self.radii[cell].max(radius);
     }
 
-    /// Says along which axes all centres have one coordinate.
+    /// Sets the axes along which all centres have the same coordinate.
     pub(super) fn set_flat(&mut self, flat: BVec3) {
         self.flat = flat;
     }
 
-    /// The cells whose spheres may reach farthest in some direction.
+    /// Finds the cells whose spheres may extend farthest in some direction.
     pub(super) fn outermost(&self) -> Outermost<'_> {
         let mut may = vec![false; self.radii.len()];
         for octant in Octant::all() {
@@ -81,7 +81,7 @@ impl Cells {
         Outermost { cells: self, may }
     }
 
-    /// For each cell the largest radius in it and in all cells that lie farther into an octant along all axes.
+    /// Returns for each cell the largest radius in it and in all cells that lie farther into an octant along all axes.
     fn largest_beyond(&self, octant: Octant) -> Vec<f32> {
         let mut largest = self.radii.clone();
         for axis in 0..3 {
@@ -116,7 +116,7 @@ impl Octant {
         (0..8_u8).map(|bits| Self([0, 1, 2].map(|axis| bits >> axis & 1 == 1)))
     }
 
-    /// The next cell farther into the octant, which along a flat axis is the same; `None` beyond the last.
+    /// Returns the next cell farther into the octant; `None` beyond the last. Along a flat axis it is the same cell.
     fn next(self, mut cell: UVec3, cells: &Cells) -> Option<UVec3> {
         for axis in 0..3 {
             if cells.flat.test(axis) {
@@ -131,24 +131,24 @@ impl Octant {
         Some(cell)
     }
 
-    /// The centre such that the octant is that of three pluses, and the radius.
+    /// Mirrors the centre so that the octant becomes that of positive signs. The radius stays.
     fn turned(self, sphere: [f32; 4]) -> [f32; 4] {
         let sign = |axis: usize| if self.0[axis] { sphere[axis] } else { -sphere[axis] };
         [sign(0), sign(1), sign(2), sphere[3]]
     }
 }
 
-/// The cells in which some spheres may reach farthest.
+/// The cells with spheres that may extend farthest.
 pub(super) struct Outermost<'a> {
     cells: &'a Cells,
     may: Vec<bool>,
 }
 
-/// The spheres that may reach farthest in some direction.
+/// The spheres that may extend farthest in some direction.
 #[derive(Default)]
 pub(super) struct Outer {
     spheres: Vec<[f32; 4]>,
-    /// How many there were when some were left out last.
+    /// Number of spheres after the last reduction.
     reduced: usize,
 }
 
@@ -163,7 +163,7 @@ impl Outer {
         }
     }
 
-    /// The spheres that are kept.
+    /// Returns the kept spheres.
     pub(super) fn into_spheres(mut self) -> Vec<[f32; 4]> {
         self.reduce();
         self.spheres
@@ -182,18 +182,18 @@ impl Outer {
     }
 }
 
-/// The indices of the spheres that no other exceeds in an octant. Of equal spheres one is among them.
+/// Returns the indices of the spheres that no other exceeds in an octant. One of several equal spheres is included.
 fn farthest(spheres: &[[f32; 4]], octant: Octant) -> Vec<usize> {
     let turned: Vec<[f32; 4]> = spheres.iter().map(|sphere| octant.turned(*sphere)).collect();
     let sum = |at: usize| turned[at].iter().map(|x| f64::from(*x)).sum::<f64>();
     let mut order: Vec<(f64, usize)> = (0..turned.len()).map(|at| (sum(at), at)).collect();
-    // What exceeds another has no smaller sum, so that it comes first, unless rounding made the sums equal.
+    // A sphere that exceeds another has no smaller sum, so it comes first, unless rounding made the sums equal.
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (mut compared, mut kept): (Vec<[f32; 4]>, Vec<usize>) = (Vec::new(), Vec::new());
     for (_, at) in order {
         let exceeds = |other: &[f32; 4]| (0..4).all(|i| other[i] >= turned[at][i]);
         if let Some(first) = compared.iter().position(exceeds) {
-            // What has exceeded many will exceed more.
+            // A sphere that has exceeded many will probably exceed more.
             compared.swap(first, first / 2);
             continue;
         }
@@ -228,7 +228,7 @@ mod tests {
         outer.into_spheres()
     }
 
-    /// A pseudo-random number from 0 to 1.
+    /// A pseudo-random number between 0 and 1.
     fn random(seed: u32, number: u32) -> f32 {
         let x = (seed * 7919 + number).wrapping_mul(0x9e37_79b9);
         let x = (x ^ (x >> 15)).wrapping_mul(0x85eb_ca6b);

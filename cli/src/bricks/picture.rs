@@ -1,5 +1,5 @@
-//! Renders files of bricks: one brick after the other is read, traced and dropped, and of all of them each pixel keeps what
-//! is nearest. Bricks that are hidden by nearer ones are not read.
+//! Renders files of bricks. One brick after the other is read, traced and dropped, and each pixel keeps the nearest hit
+//! so far. Bricks that are hidden by nearer ones are not read.
 
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub(crate) fn render(file: &BrickFile, shot: &Shot<'_>) -> Result<Vec<Image>, Fa
     Ok(nearest.into_iter().map(Nearest::into_image).collect())
 }
 
-/// Refuses light, for which all spheres must be there.
+/// Refuses light, which needs all spheres at once.
 pub(crate) fn check_without_light(
     file: &BrickFile,
     settings: &RenderSettings,
@@ -44,7 +44,7 @@ pub(crate) fn check_without_light(
     )))
 }
 
-/// What is nearest of some bricks, in each view.
+/// The nearest hit in some bricks for each pixel, in each view.
 pub(crate) fn nearest_of(
     file: &BrickFile,
     bricks: Range<usize>,
@@ -52,7 +52,7 @@ pub(crate) fn nearest_of(
 ) -> Result<Vec<Nearest>, Failure> {
     let Shot { input, views, .. } = *shot;
     check_without_light(file, &input.settings)?;
-    // The left and the right eye see the bricks in the same order, more or less.
+    // Both eyes see the bricks in about the same order.
     let order = nearest_first(file, bricks, &views[0]);
     let mut nearest: Vec<Nearest> = Vec::new();
     for (number, brick) in order.iter().enumerate() {
@@ -84,7 +84,7 @@ pub(crate) fn nearest_of(
     Ok(nearest)
 }
 
-/// The bricks by the distance of their boxes from the camera. The picture does not depend on the order.
+/// Sorts bricks by the distance of their boxes from the camera. The picture does not depend on the order.
 fn nearest_first(file: &BrickFile, bricks: Range<usize>, view: &View<'_>) -> Vec<usize> {
     let eye = view.camera.ray_in_world(DVec2::ZERO).origin;
     let distance = |brick: usize| {

@@ -1,4 +1,4 @@
-//! Reads files of bricks, and says what is in one.
+//! Reads files of bricks, and reports what a file contains.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -20,7 +20,7 @@ use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::scene::{Appearance, Colors, Scene, Whole};
 
-/// Bytes that are read at a time.
+/// Number of bytes that are read at a time.
 const PIECE: usize = 1 << 20;
 
 /// A file of bricks whose header was read and checked.
@@ -34,7 +34,7 @@ pub(crate) struct BrickFile {
 /// A brick in memory.
 pub(super) struct ReadBrick {
     pub(super) scene: Scene,
-    /// The ids of the spheres in the file that was sorted, ascending.
+    /// The spheres' ids in the file that was sorted, ascending.
     pub(super) ids: Vec<u32>,
 }
 
@@ -63,7 +63,7 @@ impl BrickFile {
         self.header.has_atoms
     }
 
-    /// Whether the file says which colour spheres have.
+    /// Whether the file has colours for the spheres.
     pub(crate) fn has_colors(&self) -> bool {
         self.header.colors != StoredColors::None
     }
@@ -76,8 +76,8 @@ impl BrickFile {
         self.header.bricks.iter().map(|brick| brick.section.count).max().unwrap_or(0)
     }
 
-    /// Divides the bricks into groups of consecutive ones, which lie together, with about equal numbers of spheres: the
-    /// first brick of each group and the one after its last. There must be as many bricks as groups.
+    /// Divides the bricks into groups of consecutive bricks, which lie together, with about equal numbers of spheres.
+    /// Each group has its first brick and the one after its last. There must be at least as many bricks as groups.
     pub(crate) fn groups(&self, groups: usize) -> Vec<[usize; 2]> {
         let counts: Vec<u64> = (0..self.len()).map(|brick| self.count(brick)).collect();
         divided(&counts, groups)
@@ -101,7 +101,7 @@ impl BrickFile {
         extent(origin + corner(brick.min).as_dvec3(), origin + corner(brick.max).as_dvec3())
     }
 
-    /// The spheres that decide what a camera frames, as a scene that stands for all spheres.
+    /// The spheres that determine what a camera frames, as a scene that stands for all spheres.
     pub(crate) fn stand_in(&self, color: LinearRgb) -> Result<Scene> {
         let mut digest = Sha256::new();
         let mut file = self.at(&self.header.outer)?;
@@ -156,7 +156,7 @@ impl BrickFile {
         anyhow!("{}: {DAMAGED}", self.path.display())
     }
 
-    /// The file, from the start of a section on.
+    /// Opens the file at the start of a section.
     fn at(&self, section: &Section) -> Result<File> {
         let cannot = || format!("{}: cannot be read", self.path.display());
         let mut file = File::open(&self.path).with_context(cannot)?;
@@ -204,7 +204,7 @@ impl BrickFile {
             values.extend(piece.as_chunks::<N>().0.iter().map(&value));
             left -= piece.len();
         }
-        // A brick has the digest of those of its parts.
+        // The digest of a brick is the digest of the digests of its parts.
         digest.update(own.finalize());
         Ok(values)
     }
@@ -216,7 +216,7 @@ fn divided(counts: &[u64], groups: usize) -> Vec<[usize; 2]> {
     let group = |number: usize| {
         let first = end;
         let wanted = u128::from(total) * (number as u128 + 1) / groups as u128;
-        // Enough are left for the other groups.
+        // At least one brick is left for each of the other groups.
         let most = counts.len() - (groups - 1 - number);
         while end < most {
             let with = before + counts[end];
@@ -275,7 +275,7 @@ fn parse(file: &mut File, start: &[u8], length: u64) -> Result<Header> {
     Ok(header)
 }
 
-/// What a file of bricks holds.
+/// The contents of a file of bricks.
 #[derive(Serialize)]
 pub(crate) struct Report {
     version: &'static str,
@@ -324,7 +324,7 @@ impl Report {
     }
 }
 
-/// The text of the report, as JSON or for people.
+/// Returns the text of the report, as JSON or for people.
 pub(crate) fn lines(path: &Path, json: bool) -> Result<String> {
     let report = Report::new(path)?;
     if json {

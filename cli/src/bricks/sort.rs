@@ -1,5 +1,5 @@
-//! `pinhole sort`: divides the spheres of a data file among the bricks of a new file. Arrays are read piece by piece, four
-//! times, so that the memory does not depend on their size.
+//! `pinhole sort`: divides the spheres of a data file among the bricks of a new file. Arrays are read in pieces, four
+//! times, so that memory use does not depend on their size.
 
 use std::io::BufWriter;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ use crate::terminal::{memory, threads};
 use pinhole::scene::{Colors, Scene, Whole};
 use pinhole_data::load::Format as DataFormat;
 
-/// Bytes of a brick if nothing is asked for: spheres and ids of 4 Mi spheres.
+/// Default size of a brick in bytes: spheres and ids of 4 Mi spheres.
 const BRICK_BYTES: u64 = 80 << 20;
 
 const MOST_BRICKS: u64 = 1 << 16;
@@ -175,7 +175,7 @@ fn input(args: &SortArgs) -> Result<Input, Failure> {
     Ok(Input { stream: Stream::Scene(Box::new(contents.scene)), z_is_up, has_atoms })
 }
 
-/// How the colours of spheres are kept.
+/// Decides how the colours of spheres are stored.
 fn stored_colors(stream: &Stream) -> Result<StoredColors, Failure> {
     let bits = |color: &pinhole::LinearRgb| color.to_array().map(f32::to_bits);
     let Stream::Scene(scene) = stream else { return Ok(StoredColors::None) };
@@ -236,7 +236,7 @@ fn write(
         Ok(())
     })?;
     let outer = outer.into_spheres();
-    // Bricks without spheres are left out.
+    // Empty bricks are left out.
     let mut number = 0;
     let place: Vec<usize> = counts
         .iter()
@@ -262,7 +262,7 @@ fn write(
         outer: writer::none(),
         bricks: Vec::new(),
     };
-    // What a pass finds wrong is not an error of the output.
+    // A fault that a pass finds in the input is not an error of the output.
     let mut unread = None;
     let written = unnamed_with(&args.output, |file| {
         let mut file = BufWriter::new(file);
@@ -295,11 +295,11 @@ fn write(
     Ok(header)
 }
 
-/// Where a sphere lies among others along an axis: its coordinate as an integer with the same order, and its id, so that
-/// spheres in one place can be divided too.
+/// The position of a sphere among others along an axis: its coordinate as an integer with the same order, and its id,
+/// so that spheres in one place can be divided too.
 type Key = (u32, u32);
 
-/// Spheres of the sample for each brick that are enough for bricks of about equal size.
+/// Number of sampled spheres for each brick that is enough for bricks of about equal size.
 const PER_BRICK: u64 = 1 << 12;
 
 /// The most spheres in the sample.
@@ -307,13 +307,13 @@ const MOST: u64 = 1 << 21;
 
 /// A sample of the spheres, chosen by their ids.
 pub(crate) struct Sample {
-    /// Ids whose hash is below this are chosen.
+    /// Ids whose hash is below this number are chosen.
     below: u64,
     spheres: Vec<([f32; 3], u32)>,
 }
 
 impl Sample {
-    /// An empty sample of `count` spheres, for this many bricks.
+    /// Creates an empty sample of `count` spheres, for this number of bricks.
     pub(crate) fn new(count: u64, bricks: u64) -> Self {
         let wanted = (bricks * PER_BRICK).clamp(1 << 16, MOST);
         let below = if wanted >= count { u64::MAX } else { u64::MAX / count * wanted };
@@ -333,7 +333,7 @@ impl Sample {
     }
 }
 
-/// A bijection of numbers in which near ones are far apart (the finaliser of `SplitMix64`: Steele, Lea and Flood 2014).
+/// A bijection that moves near numbers far apart (the finaliser of `SplitMix64`: Steele, Lea and Flood 2014).
 fn hash(id: u32) -> u64 {
     let x = u64::from(id).wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -341,7 +341,7 @@ fn hash(id: u32) -> u64 {
     x ^ (x >> 31)
 }
 
-/// Repeated cuts across the longest side. Bricks are numbered such that consecutive ones lie together.
+/// Repeated cuts across the longest side. Bricks are numbered so that consecutive ones lie together.
 pub(crate) struct Cuts {
     nodes: Vec<Node>,
     pub(crate) bricks: usize,
@@ -354,7 +354,7 @@ enum Node {
 }
 
 impl Cuts {
-    /// Cuts some spheres of the sample into bricks from `first` on.
+    /// Cuts some spheres of the sample into this number of bricks, from the brick `first` on.
     fn cut(&mut self, spheres: &mut [([f32; 3], u32)], first: usize, bricks: usize) {
         let middle = spheres.len() * (bricks / 2) / bricks.max(1);
         if bricks <= 1 || middle == 0 {
@@ -397,7 +397,7 @@ fn longest_side(spheres: &[([f32; 3], u32)]) -> usize {
     (0..3).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0)
 }
 
-/// An integer with the same order as a number.
+/// Returns an integer with the same order as a number.
 fn ascending(x: f32) -> u32 {
     let bits = (x + 0.0).to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }

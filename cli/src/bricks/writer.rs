@@ -1,4 +1,4 @@
-//! Reads spheres again and again from the file that is sorted, and writes bricks.
+//! Reads spheres repeatedly from the file that is sorted, and writes bricks.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -16,12 +16,12 @@ use pinhole::scene::sphere::Sphere;
 use pinhole::scene::{Scene, SceneError, Whole};
 use pinhole_data::load::Format;
 
-/// Spheres of a piece.
+/// Number of spheres that are read at a time.
 const PIECE: usize = 1 << 16;
 
 /// The spheres of a data file.
 pub(crate) enum Stream {
-    /// An array that is read anew each time.
+    /// An array that is read again for each pass.
     Array(PathBuf, Array),
     /// A file of another format, which is in memory.
     Scene(Box<Scene>),
@@ -35,7 +35,7 @@ impl Stream {
         }
     }
 
-    /// Checks all spheres, and returns their box; `None` without spheres.
+    /// Checks all spheres, and returns their box; `None` if there are no spheres.
     pub(crate) fn bounds(&self) -> Result<Option<Bounds>> {
         let Self::Array(path, array) = self else {
             let Self::Scene(scene) = self else { return Ok(None) };
@@ -59,7 +59,7 @@ impl Stream {
         }
     }
 
-    /// Calls `each` with the id of every sphere and the sphere in the frame of the whole.
+    /// Calls `each` with every sphere and its id. Spheres are in the frame of the whole.
     pub(crate) fn for_each(
         &self,
         whole: &Whole,
@@ -102,18 +102,17 @@ fn rows(path: &Path, array: &Array, each: &mut dyn FnMut([f64; 4]) -> Result<boo
     Ok(())
 }
 
-/// An array of spheres that is read piece by piece: an `.npy` file of rows of three or four little-endian f32 or f64, or raw
-/// f32. Other files, and all that are not as they should be, are left to the readers of the library, which say what is
-/// wrong.
+/// An array of spheres that is read in pieces: an `.npy` file of rows of three or four little-endian f32 or f64, or raw
+/// f32. Other files, and all faulty ones, are left to the readers of the library, which describe the fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Array {
     count: u64,
-    /// The first byte.
+    /// Offset of the first byte.
     offset: u64,
-    /// 3 without radii, and 4.
+    /// The number of columns: 3 without radii, 4 with them.
     columns: usize,
     is_wide: bool,
-    /// The radius of all spheres, where the array has none.
+    /// The radius of all spheres if the array has none.
     radius: f64,
 }
 
@@ -121,7 +120,7 @@ pub(crate) struct Array {
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 impl Array {
-    /// The array in a file; `None` if it must be read otherwise.
+    /// Returns the array in a file; `None` if it must be read in another way.
     pub(crate) fn of(path: &Path, format: &Format, radius: Option<f64>) -> Option<Self> {
         if !path.is_file() {
             return None;
@@ -182,7 +181,7 @@ impl Array {
         file.seek(SeekFrom::Start(self.offset)).map(drop)
     }
 
-    /// The sphere of a row, as the readers of the library make it.
+    /// Returns the sphere of a row, as the readers of the library make it.
     fn sphere(&self, row: &[u8]) -> [f64; 4] {
         let mut sphere = [0.0, 0.0, 0.0, self.radius];
         if self.is_wide {
@@ -191,7 +190,7 @@ impl Array {
         } else {
             let numbers = row.as_chunks::<4>().0.iter().map(|number| f32::from_le_bytes(*number));
             sphere.iter_mut().zip(numbers).for_each(|(to, number)| *to = number.into());
-            // An array of f32 has its radius in f32 as well.
+            // The radius for an array of f32 is rounded to f32 as well.
             if self.columns == 3 {
                 sphere[3] = f64::from(self.radius as f32);
             }
@@ -200,13 +199,13 @@ impl Array {
     }
 }
 
-/// Bytes of all buffers together.
+/// Total number of bytes of all buffers.
 const BUFFERS: usize = 64 << 20;
 
 /// The parts of a brick: spheres, ids and colours.
 const PARTS: usize = 3;
 
-/// Bytes that wait to be written from a place on, and the digest of those before.
+/// Bytes to be written at a place, and the digest of all bytes before them.
 struct Buffer {
     place: u64,
     bytes: Vec<u8>,
@@ -227,14 +226,14 @@ struct Open {
 pub(crate) struct Writer<'a, F: Write + Seek> {
     file: &'a mut F,
     bricks: Vec<Open>,
-    /// How many bytes a buffer has before it is written.
+    /// Number of bytes at which a buffer is written.
     capacity: usize,
     has_colors: bool,
     end: u64,
 }
 
 impl<'a, F: Write + Seek> Writer<'a, F> {
-    /// Bricks with these numbers of spheres, none of which is zero, with or without colours.
+    /// Creates bricks with these numbers of spheres, which must not be zero, with or without colours.
     pub(crate) fn new(file: &'a mut F, counts: &[u64], has_colors: bool) -> Self {
         let mut end = BEFORE;
         let color = if has_colors { COLOR } else { 0 };
@@ -276,7 +275,7 @@ impl<'a, F: Write + Seek> Writer<'a, F> {
         [spheres, ids, colors].into_iter().try_for_each(|part| part.write(*file, *capacity))
     }
 
-    /// Writes what waits, and returns the bricks and where they end.
+    /// Writes the remaining bytes, and returns the bricks and where they end.
     pub(crate) fn finish(mut self) -> io::Result<(Vec<Brick>, u64)> {
         if self.bricks.iter().any(|brick| brick.added < brick.count) {
             return Err(changed());
@@ -302,7 +301,7 @@ fn changed() -> io::Error {
 }
 
 impl Buffer {
-    /// Writes the bytes if there are at least so many.
+    /// Writes the bytes if there are at least `least`.
     fn write(&mut self, file: &mut (impl Write + Seek), least: usize) -> io::Result<()> {
         if self.bytes.len() >= least.max(1) {
             file.seek(SeekFrom::Start(self.place))?;
@@ -315,7 +314,7 @@ impl Buffer {
     }
 }
 
-/// Writes the outer spheres where the bricks end.
+/// Writes the outer spheres after the bricks.
 pub(crate) fn outer(
     file: &mut (impl Write + Seek),
     place: u64,
@@ -331,7 +330,7 @@ pub(crate) fn outer(
     })
 }
 
-/// Writes the header where everything else ends, and then the start of the file, which knows where that is.
+/// Writes the header at the end, and then the start of the file, which has the header's place.
 pub(crate) fn header(
     file: &mut (impl Write + Seek),
     place: u64,
@@ -350,7 +349,7 @@ pub(crate) fn header(
     file.write_all(&start)
 }
 
-/// A part of the file that has not been written yet.
+/// A section of the file that has not been written yet.
 pub(crate) fn none() -> Section {
     Section { count: 0, offset: 0, sha256: String::new() }
 }

@@ -1,4 +1,4 @@
-//! `pinhole info FILE`: says what a data file or a scene file holds. Of a trajectory one frame is in memory.
+//! `pinhole info FILE`: describes a data file or a scene file. Only one frame of a trajectory is in memory.
 
 use std::path::{Path, PathBuf};
 
@@ -108,7 +108,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
     Ok(with_spheres(path, kind, &loaded))
 }
 
-/// Adds what the spheres themselves say. Those that cannot be rendered are named, and left out of the box.
+/// Adds facts about the spheres. Spheres that cannot be rendered are named, and left out of the box.
 fn with_spheres(path: &Path, kind: Kind, loaded: &Dataset) -> Report {
     let mut notes = loaded.notes.clone();
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -196,7 +196,7 @@ pub(crate) struct Report {
     pub(crate) notes: Vec<String>,
 }
 
-/// What only one of the two kinds of file has.
+/// Facts that only one of the two kinds of file has.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub(crate) enum Kind {
@@ -211,16 +211,16 @@ pub(crate) struct DataReport {
     pub(crate) about: &'static str,
     /// Whether the file is compressed with gzip; `None` on standard input.
     pub(crate) compressed: Option<bool>,
-    /// Number of frames; `None` if files of this format have none, or it is not known.
+    /// Number of frames; `None` if the format has no frames, or the number is not known.
     pub(crate) frames: Option<usize>,
     /// The frame that the rest describes.
     pub(crate) frame: Option<usize>,
-    /// What is wrong after the last complete frame.
+    /// The error after the last complete frame.
     pub(crate) problem: Option<String>,
     pub(crate) colors: bool,
     pub(crate) opacities: bool,
     pub(crate) cell: Option<[[f64; 3]; 3]>,
-    /// The corner from which the edges of the cell start.
+    /// The corner at which the edges of the cell start.
     pub(crate) cell_origin: Option<[f64; 3]>,
     pub(crate) columns: Vec<ColumnReport>,
 }
@@ -367,7 +367,7 @@ fn row(ColumnReport { name, values }: &ColumnReport) -> [String; 3] {
     }
 }
 
-/// A number with six digits, which are as many as anyone reads.
+/// Formats a number with six digits, which are enough for a reader.
 fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
     let size = rounded.abs();

@@ -1,4 +1,4 @@
-//! Spheres that the program makes: `pinhole generate` writes them into a file, and `pinhole demo` a scene and its picture.
+//! Generated spheres: `pinhole generate` writes them into a file, and `pinhole demo` writes a scene and its picture.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `pinhole info`: lists the adapters of the machine, and tests one, or describes a file.
+//! `pinhole info`: lists the adapters of the machine and tests one of them, or describes a file.
 
 #[cfg(feature = "gpu")]
 use std::path::PathBuf;
@@ -58,15 +58,15 @@ struct Info {
     version: &'static str,
     /// The adapters, best first; `render` uses the one that is `chosen`.
     adapters: Vec<ListedAdapter>,
-    /// Why no adapter is chosen, with the message of `render`.
+    /// The reason why no adapter is chosen, with the message of `render`.
     problem: Option<String>,
     #[cfg(feature = "gpu")]
     #[serde(skip_serializing_if = "Option::is_none")]
     self_test: Option<SelfTestResults>,
 }
 
-/// An adapter, with the limits that bound the size of pictures and scenes, and the optional features that are of interest
-/// for ray tracing.
+/// An adapter, with the limits that bound the size of pictures and scenes, and the optional features that matter for
+/// ray tracing.
 #[derive(Serialize)]
 struct ListedAdapter {
     #[serde(flatten)]
@@ -78,7 +78,7 @@ struct ListedAdapter {
     features: [(&'static str, bool); 4],
 }
 
-/// Writes values with names as the object that has them.
+/// Writes named values as an object.
 fn named<S: Serializer, T: Serialize, const N: usize>(
     values: &[(&'static str, T); N],
     serializer: S,
@@ -129,7 +129,7 @@ fn info() -> Info {
     use pinhole::gpu::{GpuError, Wait, adapter};
 
     let adapters = adapter::adapters().wait();
-    // This is the choice that `render` makes, also if WGPU_ADAPTER_NAME asks for another adapter.
+    // `render` makes the same choice, also if WGPU_ADAPTER_NAME asks for another adapter.
     let choice = adapter::index_of_choice(&adapters, None);
     let is_chosen = |index| choice == Ok(index);
     let reports = adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index)));

@@ -1,4 +1,4 @@
-//! The commands that have no room of their own, each with what it does.
+//! The commands that have no folder of their own, with their code.
 
 pub(crate) mod file_info;
 pub(crate) mod generate;

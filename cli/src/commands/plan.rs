@@ -253,7 +253,7 @@ impl BufferReport {
     }
 }
 
-/// Formats a number of bytes exactly and in MiB or GiB.
+/// Formats a number of bytes, exactly and in MiB or GiB.
 fn in_words(bytes: u64) -> String {
     format!("{bytes} bytes ({})", memory::readable(bytes))
 }

@@ -61,7 +61,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         let encoding = job.encoding.apply_to(input.encoding);
         return Ok(print(&input, encoding, job.annotation.plan_over(&input.annotations))?);
     }
-    // The driver is loaded while the file is read, which saves time.
+    // The driver is loaded while the file is read, to save time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
@@ -95,15 +95,15 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Says in one line what was rendered, with which look, and how long it took.
+/// Prints one line with the input, the look and the time.
 fn said(quiet: bool, input: &Input, started: Instant) {
     if !quiet {
         tell(input.report.line(started.elapsed()));
     }
 }
 
-/// Writes the scene file to standard output. `encoding` and `annotations` have the flags about the picture's file and
-/// about what is drawn on it.
+/// Writes the scene file to standard output. `encoding` and `annotations` include the flags about the picture's file
+/// and about annotations.
 pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPlan) -> Result<()> {
     let contents = Contents {
         film: input.film,
@@ -125,7 +125,7 @@ pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPl
     answer(text.as_bytes())
 }
 
-/// Returns a path as text, which is all that a scene file can name.
+/// Returns a path as text, because a scene file can only name paths that are text.
 fn named(path: &Path) -> Result<String> {
     let text = path.to_str().ok_or_else(|| {
         anyhow!(

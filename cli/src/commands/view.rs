@@ -1,4 +1,4 @@
-//! `pinhole view`: starts the viewer, which is a program of its own, because a window brings many dependencies.
+//! `pinhole view`: starts the viewer, which is a separate program because windows need many dependencies.
 
 use std::path::PathBuf;
 use std::process::Command;

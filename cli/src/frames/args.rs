@@ -1,4 +1,4 @@
-//! The flags for several pictures and for movies: which frames, and the names of their files.
+//! The flags for several pictures and for movies: the choice of frames, and the names of their files.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -43,12 +43,12 @@ pub(crate) struct FramesArgs {
 }
 
 impl FramesArgs {
-    /// Whether these flags ask for several pictures, whatever the output is.
+    /// Whether these flags ask for several pictures, regardless of the output.
     pub(crate) fn asks_for_several(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some() || self.camera_path.is_some()
     }
 
-    /// A flag that says how pictures are written, and not which.
+    /// Returns a flag about the way in which pictures are written, if one is given.
     pub(crate) fn of_writing(&self) -> Option<&'static str> {
         let given = [("--resume", self.resume), ("--raw", self.raw.is_some())];
         given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
@@ -61,7 +61,7 @@ pub(crate) enum Raw {
     Y4m,
 }
 
-/// Frames of a file: one of them, or those of a slice.
+/// A choice of frames of a file: one of them, or a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FrameRange {
     /// One frame; a negative number counts from the end.
@@ -119,7 +119,7 @@ impl FrameRange {
             }
             Self::Slice { start, end, step } => (start, end, step),
         };
-        // As Python clips them.
+        // The ends are clipped as in Python.
         let (low, high) = if step > 0 { (0, count) } else { (-1, count - 1) };
         let clip = |number: i64| from_end(number).clamp(low, high);
         let (first, last) = if step > 0 { (low, high) } else { (high, low) };
@@ -145,12 +145,12 @@ impl FrameRange {
 pub(crate) struct Pattern {
     folder: PathBuf,
     before: String,
-    /// The least number of digits, filled up with zeros.
+    /// The least number of digits, with leading zeros.
     digits: usize,
     after: String,
 }
 
-/// Whether a path contains the sign of patterns.
+/// Whether a path contains a per cent sign, as patterns do.
 pub(crate) fn has_sign(path: &Path) -> bool {
     path.to_string_lossy().contains('%')
 }
@@ -208,7 +208,7 @@ mod tests {
         text.parse::<FrameRange>()?.of(count)
     }
 
-    /// What Python gives for `list(range(5))[text]`.
+    /// The expected frames are those of `list(range(5))[text]` in Python.
     #[test]
     fn ranges_are_those_of_python() {
         for (text, expected) in [

@@ -43,7 +43,7 @@ pub(super) struct SeriesRequest {
 }
 
 impl SeriesRequest {
-    /// Returns what the flags ask for; `None` if they ask for one picture.
+    /// Returns the job that the flags ask for; `None` if they ask for one picture.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Self>, Failure> {
         let FramesArgs { frames, turntable, camera_from, fps, resume, raw, .. } = args.frames;
         let path = args.frames.camera_path.as_deref();
@@ -101,11 +101,11 @@ impl SeriesRequest {
         Ok(Some(Self { pictures, picture_name: name, target, fps: fps.unwrap_or(25), resume }))
     }
 
-    /// The path from which the format and the layers of the pictures follow.
+    /// The path that determines the format and the layers of the pictures.
     pub(super) fn picture(&self) -> &Path {
         match &self.target {
             Target::Files { path, .. } => path,
-            // What the pictures of a movie may hold is what a PNG on standard output may hold.
+            // The pictures of a movie may hold the same as a PNG on standard output.
             _ => Path::new("-"),
         }
     }

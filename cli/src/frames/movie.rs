@@ -1,4 +1,4 @@
-//! Writes several pictures on a thread of its own: files, or a movie in one of its formats.
+//! Writes several pictures on a separate thread, as files or as a movie in one of its formats.
 
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
@@ -19,11 +19,11 @@ use pinhole::image::Image;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole_figure::write::png::samples_annotated;
 
-/// The message if the program is stopped when some frames are complete.
+/// The message if the program is stopped after some frames are complete.
 pub(crate) const STOPPED_BETWEEN: &str =
     "stopped; the frames that were written are complete, and --resume goes on after them";
 
-/// What is sent to the thread that writes.
+/// A message to the thread that writes.
 pub(crate) enum Message {
     Picture {
         number: usize,
@@ -39,7 +39,7 @@ pub(crate) struct Sink<'a> {
     pub(crate) encoding: &'a Encoding,
     pub(crate) adapter: Option<&'a str>,
     pub(crate) frames_per_second: u32,
-    /// How many pictures there will be.
+    /// The total number of pictures.
     pub(crate) count: usize,
     pub(crate) size: [u32; 2],
 }
@@ -95,7 +95,7 @@ impl Sink<'_> {
     }
 }
 
-/// Writes pictures that repeat without end.
+/// Writes an APNG that repeats endlessly.
 pub(crate) fn write_apng(
     sink: &Sink<'_>,
     samples: &Samples<'_>,
@@ -118,7 +118,7 @@ pub(crate) fn write_apng(
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     let count = u32::try_from(sink.count).map_err(io::Error::other)?;
     encoder.set_animated(count, 0).map_err(failed)?;
-    // At most 240, as the flag allows.
+    // The number is at most 240, the limit of the flag.
     let per_second = u16::try_from(sink.frames_per_second).unwrap_or(u16::MAX);
     encoder.set_frame_delay(1, per_second).map_err(failed)?;
     let mut writer = encoder.write_header().map_err(failed)?;
@@ -128,10 +128,10 @@ pub(crate) fn write_apng(
     writer.finish().map_err(failed)
 }
 
-/// How much of a picture the choice of its palette looks at, from 1 (all, slow) to 30.
+/// The speed at which palettes are chosen, from 1 (looks at all of the picture, slow) to 30.
 const SPEED: i32 = 10;
 
-/// Writes pictures that repeat without end.
+/// Writes a GIF that repeats endlessly.
 pub(crate) fn write_gif(
     sink: &Sink<'_>,
     samples: &Samples<'_>,
@@ -157,24 +157,24 @@ pub(crate) fn write_gif(
     out.flush()
 }
 
-/// How long a picture is shown, in hundredths of a second. Each is rounded such that all together have the right length.
+/// The time for which a picture is shown, in hundredths of a second. Times are rounded so that their sum is right.
 fn delay(index: u64, per_second: u32) -> u16 {
     let ends_at = |index: u64| (index * 100 + u64::from(per_second) / 2) / u64::from(per_second);
     u16::try_from(ends_at(index + 1) - ends_at(index)).unwrap_or(u16::MAX)
 }
 
-/// Ends ffmpeg if the movie is not complete.
+/// Ends ffmpeg when it is dropped, if the movie is not complete.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It has ended already if all went well.
+        // After success, ffmpeg has already ended.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Writes a movie to a file that exists, in a container that ffmpeg knows by this name.
+/// Writes a movie to an existing file. `container` is the name that ffmpeg has for its format.
 pub(crate) fn write_video(
     sink: &Sink<'_>,
     samples: &Samples<'_>,
@@ -182,7 +182,7 @@ pub(crate) fn write_video(
     path: &Path,
 ) -> io::Result<()> {
     let size = sink.size;
-    // Compressed colours have half of the resolution, which needs sides of even lengths.
+    // Compressed colours have half the resolution, so sides must have even lengths.
     let even = size.map(|side| side + side % 2);
     let [width, height] = even;
     let mut command = Command::new("ffmpeg");
@@ -201,7 +201,7 @@ pub(crate) fn write_video(
     }
     command.args(["-f", container]).arg(path);
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    // Ctrl-C in a terminal is for this program, which ends ffmpeg itself.
+    // Ctrl-C in a terminal should reach only this program, which ends ffmpeg itself.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let failed = |problem: String| io::Error::other(format!("ffmpeg {problem}"));
@@ -217,7 +217,7 @@ pub(crate) fn write_video(
         if let Err(error) = &sent
             && error.kind() != io::ErrorKind::BrokenPipe
         {
-            // The pictures failed, not ffmpeg.
+            // The error comes from the pictures, not from ffmpeg.
             let _ = running.0.kill();
             return sent;
         }
@@ -241,7 +241,7 @@ fn send(samples: &Samples<'_>, size: [u32; 2], mut stdin: impl Write) -> io::Res
     stdin.flush()
 }
 
-/// Repeats the last column and the last row of RGB bytes where a side is odd.
+/// Repeats the last column and the last row of RGB bytes if a side is odd.
 fn with_even_sides(rgb: Vec<u8>, [width, height]: [u32; 2]) -> Vec<u8> {
     let row = 3 * width as usize;
     let mut even = rgb;
@@ -256,7 +256,7 @@ fn with_even_sides(rgb: Vec<u8>, [width, height]: [u32; 2]) -> Vec<u8> {
     even
 }
 
-/// The last line that a program says, of at most a few hundred characters.
+/// The last line that a program printed, cut to a few hundred characters.
 fn last_words(mut stderr: impl Read) -> String {
     const MOST: usize = 1 << 12;
     let (mut tail, mut piece) = (Vec::new(), [0; 1 << 10]);
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(last_words(&b""[..]), "");
     }
 
-    /// The values of the standard.
+    /// The expected values are those of the standard.
     #[test]
     fn colors_are_those_of_bt_601() {
         for (rgb, expected) in [

@@ -19,7 +19,7 @@ use pinhole::scene::Scene;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::scene_file::{SceneFile, parse_camera_path};
 
-/// Most pictures of one scene along a path.
+/// The most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;
 
 #[derive(Clone, Debug)]
@@ -38,11 +38,11 @@ impl WantedPath {
         Ok(Self { path, file: file.to_path_buf() })
     }
 
-    /// How many pictures there are of a scene that has no frames: those up to the last key.
+    /// The number of pictures of a scene without frames: pictures up to the last key.
     pub(crate) fn count(&self, frames_per_second: u32) -> Result<usize, Failure> {
         let last = match self.path.clock() {
             PathClock::Frames => self.path.end(),
-            // A second is a whole number of pictures up to rounding.
+            // A second has a whole number of pictures, apart from rounding.
             PathClock::Seconds => self.path.end() * f64::from(frames_per_second) + 1e-6,
         };
         let count = last.max(0.0) as usize + 1;
@@ -57,17 +57,17 @@ impl WantedPath {
     }
 }
 
-/// What a moving camera sees, and what makes the light of each picture.
+/// The scene that a moving camera sees, and the data from which the light of each picture is made.
 pub(crate) struct Stage {
-    /// The spheres that the camera frames, and that light and style are chosen for.
+    /// The spheres that the camera frames, and for which light and style are chosen.
     pub(crate) framed: Scene,
-    /// What the legend shows.
+    /// The meaning of colours for the legend.
     pub(crate) key: Option<ColorKey>,
     pub(crate) file: Arc<SceneFile>,
     pub(crate) sky: Option<Environment>,
 }
 
-/// A camera that is elsewhere in each picture.
+/// A camera with another position in each picture.
 pub(crate) struct MovingCamera {
     pub(crate) course: Course,
     pub(crate) stage: Stage,
@@ -75,15 +75,15 @@ pub(crate) struct MovingCamera {
 
 #[expect(clippy::large_enum_variant, reason = "a job has one of them")]
 pub(crate) enum Course {
-    /// Turned about an axis, at the end once around.
+    /// Turned about an axis, once around over all pictures.
     Turn { count: usize, axis: Axis },
     Path {
         motion: CameraMotion,
         clock: PathClock,
         frames_per_second: f64,
-        /// The camera before it is moved, with its position.
+        /// The camera, with its position, before it moves.
         base: CameraParameters,
-        /// The middle of what it frames, and how far from it the camera is.
+        /// The middle of the framed spheres, and the distance of the camera from it.
         center: DVec3,
         distance: f64,
     },
@@ -97,7 +97,7 @@ impl MovingCamera {
         frames_per_second: u32,
         stage: Stage,
     ) -> Result<Self, Failure> {
-        // From a distance at which every view fits.
+        // The camera starts at a distance from which every view fits.
         let whole = around(&stage.framed).with_context(|| source.name())?;
         let framed = FramedScene::new(&whole, stage.key.as_ref());
         let base = source.look(&stage.file, framed, stage.sky.clone(), None)?.parameters;
@@ -112,7 +112,7 @@ impl MovingCamera {
         Ok(Self { course, stage })
     }
 
-    /// Makes the camera and the light of one picture: the frame with this number, which is the picture `index` of the
+    /// Makes the camera and the light of one picture. It shows the frame `number`, and is the picture `index` of the
     /// movie.
     pub(crate) fn view(
         &self,
@@ -138,14 +138,14 @@ impl MovingCamera {
                         .context("the camera cannot follow its path")
                 };
                 let look = look(&moved).map_err(|failure| in_frame(failure, number))?;
-                // No flag shows the view.
+                // No flag would give this view.
                 Ok(Look { view: None, ..look })
             }
         }
     }
 }
 
-/// A failure of the job in one frame, with its number.
+/// Adds the number of the frame to a failure.
 pub(crate) fn in_frame(failure: Failure, number: usize) -> Failure {
     match failure {
         Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
@@ -184,7 +184,7 @@ pub(crate) struct Axis {
     pub(crate) center: DVec3,
 }
 
-/// Turns a camera that has its position by a part of a full turn, counter-clockwise seen from above.
+/// Turns a camera that has a position by a part of a full turn, counter-clockwise as seen from above.
 pub(crate) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result<CameraParameters> {
     let turn = DQuat::from_axis_angle(axis.direction, TAU * part);
     let mut camera = CameraTable::new(camera).context("this camera cannot be turned")?;
@@ -204,7 +204,7 @@ pub(crate) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result
         .map_err(|message| anyhow::anyhow!("this camera cannot be turned: {message}"))
 }
 
-/// The direction that is up for a camera that has its position.
+/// The direction that is up for a camera that has a position.
 pub(crate) fn up_of(camera: &CameraParameters) -> Option<DVec3> {
     CameraTable::new(camera)?.vector("up")?.try_normalize()
 }

@@ -1,4 +1,4 @@
-//! Which pictures there are, the frames of a file or the moments of a moving camera, and what all of them are together.
+//! The numbers of the pictures, which are frames of a file or moments of a moving camera, and facts about all of them.
 
 use std::collections::HashSet;
 
@@ -16,15 +16,15 @@ use pinhole_figure::color_by::{ColorBy, JoinedKeys};
 
 #[derive(Default)]
 pub(crate) struct Numbers {
-    /// Those that the camera frames, if these are not all.
+    /// The pictures that the camera frames, if not all.
     pub(crate) framed: Option<Vec<usize>>,
     pub(crate) all: Vec<usize>,
-    /// Whether the pictures are those of one scene.
+    /// Whether all pictures show one scene.
     pub(crate) is_still: bool,
 }
 
 impl Numbers {
-    /// The place of a number among all pictures, from 0.
+    /// The index of a number among all pictures, from 0.
     pub(crate) fn index_of(&self, number: usize) -> usize {
         self.all.iter().position(|one| *one == number).unwrap_or(0)
     }
@@ -95,7 +95,7 @@ pub(crate) fn numbers(
     Ok(Numbers { framed: framed.transpose()?, all, is_still: false })
 }
 
-/// Finds the frames of the file. `None` if it has none, and the camera moves.
+/// Finds the frames of the file; `None` if it has none and the camera moves.
 fn open_frames(
     source: &mut Source,
     wanted: &SeriesRequest,
@@ -128,22 +128,22 @@ fn in_range(range: FrameRange, count: usize, flag: &str) -> Result<Vec<usize>, F
     range.of(count).map_err(|error| Failure::usage(format!("{flag}: {error}")))
 }
 
-/// What was found in all frames. It is kept in the folder of a job, so that no part reads all of them again.
+/// Facts about all frames. They are stored in the folder of a job, so that its parts need not read all frames again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Overview {
-    /// Spheres that reach as far as those of all frames, each x, y, z, radius.
+    /// Spheres that extend as far as those of all frames, each x, y, z, radius.
     pub(crate) spheres: Vec<[f64; 4]>,
-    /// How many of them, at the end, were added to the data.
+    /// The number of these spheres, at the end, that were added to the data.
     pub(crate) added: usize,
     pub(crate) colors: JoinedKeys,
-    /// The frame whose kinds have colors that no flag asked for.
+    /// The frame with kinds of spheres by which it is coloured without a flag.
     pub(crate) kinds_from: Option<usize>,
-    /// These colors, if they are known.
+    /// The choice of these colours, if it is known.
     kinds: Option<ColorBy>,
 }
 
 impl Overview {
-    /// What was found before, without the colors by kind, which are read again from their frame.
+    /// Restores facts that were stored. The colours by kind are read again from their frame.
     pub(crate) fn stored(
         spheres: Vec<[f64; 4]>,
         added: usize,
@@ -153,7 +153,7 @@ impl Overview {
         Self { spheres, added, colors, kinds_from, kinds: None }
     }
 
-    /// Reads all frames that the camera frames.
+    /// Reads all frames that the camera frames, and gathers the facts.
     pub(crate) fn of(source: &mut Source, numbers: &Numbers) -> Result<Self, Failure> {
         let framed = numbers.framed.as_ref().unwrap_or(&numbers.all);
         let (mut union, mut overview) = (Union::default(), Self::default());
@@ -170,7 +170,7 @@ impl Overview {
         Ok(overview)
     }
 
-    /// The colors by kind that no flag asked for.
+    /// Returns the colours by kind that no flag asked for.
     pub(crate) fn kinds(&self, source: &mut Source) -> Result<Option<ColorBy>, Failure> {
         match (&self.kinds, self.kinds_from) {
             (None, Some(number)) => Ok(frame(source, number)?.details.kinds),
@@ -184,7 +184,7 @@ impl Overview {
     }
 }
 
-/// Notes that were told, each of them once.
+/// Notes that were printed. Each is printed only once.
 pub(crate) struct Notes {
     told: HashSet<String>,
     quiet: bool,

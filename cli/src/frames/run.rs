@@ -1,4 +1,4 @@
-//! Renders several pictures, while the next one is read and the one before is written.
+//! Renders several pictures. Meanwhile the next one is read and the previous one is written.
 
 use std::cell::RefCell;
 use std::panic::resume_unwind;
@@ -23,19 +23,19 @@ use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 
-/// Several pictures that are ready to be made.
+/// Several pictures, with everything that rendering them needs.
 pub(crate) struct Ready {
     pub(crate) series: Series,
     pub(crate) opened: OpenDevice,
     pub(crate) stop_rule: StopRule,
     pub(crate) writing: Writing,
-    /// What was found in all frames together, if the pictures are frames.
+    /// Facts about all frames, if the pictures are frames.
     pub(crate) overview: Option<Overview>,
-    /// The numbers of all pictures, also of those that are not made now.
+    /// The numbers of all pictures, including those that are not made now.
     pub(crate) all: Vec<usize>,
 }
 
-/// How pictures are written.
+/// The form in which pictures are written.
 pub(crate) struct Writing {
     pub(crate) encoding: Encoding,
     outputs: Outputs,
@@ -45,16 +45,16 @@ pub(crate) struct Writing {
     quiet: bool,
 }
 
-/// What is known before the pictures are made ready.
+/// Facts that may be known before the pictures are prepared.
 #[derive(Default)]
 pub(crate) struct ReadyOptions<'a> {
-    /// What all frames are together; without it they are read.
+    /// Facts about all frames. If absent, the frames are read.
     pub(crate) overview: Option<Overview>,
-    /// The numbers of the pictures that are made, in order; without it, all.
+    /// The numbers of the pictures to make, in order; by default all.
     pub(crate) only: Option<&'a [usize]>,
 }
 
-/// Reads the input of the first picture, and opens the device beside that. `None` if no picture is left.
+/// Reads the input of the first picture, and opens the device meanwhile. `None` if no picture is left to make.
 pub(crate) fn ready(
     args: &RenderArgs,
     wanted: &SeriesRequest,
@@ -112,7 +112,7 @@ pub(crate) fn ready(
     Ok(Some(Ready { series, opened, stop_rule: job.stop_rule, writing, overview, all }))
 }
 
-/// The numbers of the pictures that are to be made, without those that are there already.
+/// Returns the numbers of the pictures to make, without those that exist already.
 fn left(
     wanted: &SeriesRequest,
     outputs: &Outputs,
@@ -155,7 +155,7 @@ pub(crate) fn run(args: &RenderArgs, wanted: &SeriesRequest, job: Job) -> Result
     Ok(())
 }
 
-/// Takes pictures, which are written by another thread.
+/// Sends pictures to the thread that writes them.
 pub(crate) struct PictureSender<'a> {
     status: &'a mut Status,
     sender: SyncSender<Message>,
@@ -166,7 +166,7 @@ impl PictureSender<'_> {
         self.status.show();
     }
 
-    /// Hands over a picture. Returns `false` if no more can be written; the thread that writes says why.
+    /// Sends a picture. Returns `false` if no more can be written; the writing thread reports why.
     pub(crate) fn send(&mut self, number: usize, image: Image) -> bool {
         let is_sent = self.sender.send(Message::Picture { number, image: Box::new(image) }).is_ok();
         if is_sent {
@@ -177,7 +177,7 @@ impl PictureSender<'_> {
 }
 
 impl Writing {
-    /// Writes the pictures that `make` sends, on a thread of its own, and returns their number.
+    /// Writes the pictures that `make` sends on a separate thread, and returns their number.
     pub(crate) fn write(
         &self,
         wanted: &SeriesRequest,
@@ -204,7 +204,7 @@ impl Writing {
             let mut pictures = PictureSender { status: &mut status, sender };
             let made = make(&mut pictures);
             if made.is_ok() {
-                // If this fails, the thread that writes says why.
+                // If this fails, the writing thread reports why.
                 let _ = pictures.sender.send(Message::End);
             }
             drop(pictures);
@@ -222,7 +222,7 @@ impl Writing {
     }
 }
 
-/// Time between two lines where there is no terminal.
+/// Time between two lines of progress without a terminal.
 const PAUSE: Duration = Duration::from_secs(20);
 
 pub(crate) struct Status {
@@ -239,7 +239,7 @@ impl Status {
         Self { total, done: 0, started: now, said: now, quiet }
     }
 
-    /// Shows that the next frame is at work.
+    /// Shows that work on the next frame has begun.
     pub(crate) fn show(&mut self) {
         let text = self.text();
         if !progress::frames(text.clone()) && !self.quiet && self.said.elapsed() >= PAUSE {

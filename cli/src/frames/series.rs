@@ -1,4 +1,4 @@
-//! Several pictures of one input, one after the other: the next one is read while work on one is done.
+//! Several pictures of one input in sequence. The next picture is read while one is being rendered.
 
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
@@ -19,27 +19,27 @@ struct Change {
     look: Option<Box<Look>>,
 }
 
-/// The start of a series: the input of the first picture, and the camera of all, if it moves.
+/// The start of a series: the input of the first picture, and the camera of all pictures, if it moves.
 pub(crate) struct Start {
     pub(crate) input: Input,
     pub(crate) camera: Option<Box<MovingCamera>>,
 }
 
-/// Several pictures, of which the first was read.
+/// Several pictures, the first of which was read.
 pub(crate) struct Series {
     pub(super) source: Source,
     /// The input of the first picture.
     pub(crate) input: Input,
     pub(super) camera: Option<Box<MovingCamera>>,
     pub(super) numbers: Numbers,
-    /// The numbers of the pictures that are made, in order.
+    /// The numbers of the pictures to make, in order.
     pub(crate) left: Vec<usize>,
     pub(crate) notes: Notes,
 }
 
 impl Series {
-    /// Calls `work` with the number and the input of each picture, while the next is read, until it returns `false` or
-    /// an error.
+    /// Calls `work` with the number and the input of each picture until it returns `false` or an error. The next
+    /// picture is read meanwhile.
     pub(crate) fn for_each(
         self,
         mut work: impl FnMut(usize, &mut Input) -> Result<bool, Failure>,
@@ -61,7 +61,7 @@ impl Series {
     }
 }
 
-/// Reads the first frame that is rendered, and makes the camera and the colors of all frames.
+/// Reads the first frame to render, and makes the camera and the colours of all frames.
 pub(super) fn frames(
     source: &mut Source,
     overview: &Overview,
@@ -75,7 +75,7 @@ pub(super) fn frames(
     source.kinds = kinds;
     let framed = overview.scene().with_context(|| source.name())?;
     let mut contents = frame(source, first)?;
-    // The legend is that of all frames.
+    // The legend describes all frames.
     if let Some(key) = contents.details.color_key.as_mut() {
         key.missing = key.missing.or(missing);
     }
@@ -108,7 +108,7 @@ pub(super) fn still(
     prepared(source, contents, camera, first, index)
 }
 
-/// Reads the scene, and frames the body that it sweeps while it turns.
+/// Reads the scene, and frames the body that it sweeps in a full turn.
 pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<Start, Failure> {
     let contents = source.contents()?;
     let sky = source.sky(&contents)?;
@@ -129,7 +129,7 @@ pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<S
     prepared(source, contents, camera, first, first)
 }
 
-/// What was read, seen by the moving camera in the first picture.
+/// Prepares the input of the first picture, as the moving camera sees it.
 fn prepared(
     source: &Source,
     contents: Contents,
@@ -142,7 +142,7 @@ fn prepared(
     Ok(Start { input, camera: Some(Box::new(camera)) })
 }
 
-/// Reads or makes what follows the first picture, until nobody waits for it.
+/// Reads or makes the pictures after the first, until the receiver is gone.
 fn read(
     mut source: Source,
     camera: Option<&MovingCamera>,

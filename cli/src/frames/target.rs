@@ -1,4 +1,4 @@
-//! Where several pictures go, from the name of the output.
+//! The destination of several pictures, from the name of the output.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -26,11 +26,11 @@ pub(super) enum Target {
 pub(super) enum Movie {
     Apng,
     Gif,
-    /// What ffmpeg writes, with the name of its container.
+    /// A container that ffmpeg writes, with its name.
     Video(&'static str),
 }
 
-/// Returns the format of a movie with this extension.
+/// Returns the format of a movie, by the extension of its path.
 pub(super) fn movie_of(path: &Path) -> Option<Movie> {
     Some(match extension(path)?.as_str() {
         "apng" => Movie::Apng,
@@ -44,7 +44,7 @@ pub(super) fn movie_of(path: &Path) -> Option<Movie> {
 }
 
 impl Target {
-    /// Checks the name of the output, and what is written beside it.
+    /// Checks the name of the output and the layers beside it.
     pub(super) fn new(
         output: &Path,
         movie: Option<Movie>,
@@ -95,7 +95,7 @@ impl Target {
         matches!(self, Self::Files { .. })
     }
 
-    /// Refuses an encoding that this kind of movie does not have.
+    /// Refuses an encoding that this kind of movie cannot have.
     pub(super) fn check(&self, encoding: &Encoding, size: [u32; 2]) -> Result<(), Failure> {
         let kind = match self {
             Self::Files { .. } => return Ok(()),
@@ -124,7 +124,7 @@ impl Target {
     }
 }
 
-/// Refuses a movie that needs ffmpeg if there is none.
+/// Refuses a movie that needs ffmpeg if ffmpeg is missing.
 fn check_ffmpeg(output: &Path) -> Result<(), Failure> {
     let mut command = Command::new("ffmpeg");
     command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());

@@ -1,4 +1,4 @@
-//! The spheres of several scenes together, for one camera and one look of all of them.
+//! The spheres of several scenes together, for one camera and one look.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,15 +7,15 @@ use pinhole::glam::{DQuat, DVec3};
 use pinhole::scene::{Scene, SceneError};
 use rayon::prelude::*;
 
-/// The most spheres that are kept. If there are more, only those stay that reach farthest in some direction, and a few
-/// others for the mean radius.
+/// The most spheres that are kept. If there are more, only spheres that extend farthest in some direction stay, and a
+/// few others for the mean radius.
 const MOST: usize = 1 << 20;
 
-/// Number of directions in which spheres that reach far are kept. What reaches farthest in a direction between them is
-/// missed by at most 1% of its distance from the middle.
+/// Number of directions for which the farthest sphere is kept. The extent in a direction between them is wrong by at
+/// most 1% of the distance from the middle.
 const DIRECTIONS: usize = 256;
 
-/// Most spheres that are kept for the mean radius.
+/// The most spheres that are kept for the mean radius.
 const SAMPLE: usize = 1 << 14;
 
 /// The spheres of several scenes, each x, y, z, radius.
@@ -40,26 +40,26 @@ impl Union {
         }
     }
 
-    /// The spheres that are left, and how many of them, at the end, were added to the data.
+    /// Returns the kept spheres, and the number of those, at the end, that were added to the data.
     pub(super) fn into_spheres(mut self) -> (Vec<[f64; 4]>, usize) {
         let added = self.added.len();
         self.spheres.append(&mut self.added);
         (self.spheres, added)
     }
 
-    /// Makes a scene of the spheres that are left.
+    /// Makes a scene of the kept spheres.
     pub(super) fn scene(self) -> Result<Scene, SceneError> {
         let (spheres, added) = self.into_spheres();
         scene_of(&spheres, added)
     }
 }
 
-/// A scene of spheres, of which some at the end were added to the data.
+/// Makes a scene of spheres, the last `added` of which were added to the data.
 pub(super) fn scene_of(spheres: &[[f64; 4]], added: usize) -> Result<Scene, SceneError> {
     Ok(Scene::from_f64(spheres, LinearRgb::WHITE)?.with_added(added))
 }
 
-/// Leaves out spheres that lie within the others.
+/// Keeps only the spheres that extend farthest in some direction, and a sample of all.
 fn reduce(spheres: &mut Vec<[f64; 4]>) {
     let all = &*spheres;
     let farthest = |index: usize| {
@@ -71,7 +71,7 @@ fn reduce(spheres: &mut Vec<[f64; 4]>) {
     *spheres = kept.into_iter().chain(sample(all)).collect();
 }
 
-/// Some of the spheres, at equal steps.
+/// A sample of the spheres, at equal steps.
 fn sample(spheres: &[[f64; 4]]) -> impl Iterator<Item = [f64; 4]> {
     spheres.iter().step_by(spheres.len().div_ceil(SAMPLE).max(1)).copied()
 }
@@ -82,11 +82,11 @@ fn in_world(origin: DVec3, sphere: &[f32; 4]) -> [f64; 4] {
     [center.x, center.y, center.z, radius]
 }
 
-/// The body that a scene sweeps while it turns about an axis through a point, as a scene of spheres on its surface.
+/// The body that a scene sweeps as it turns about an axis through a point, as a scene of spheres on its surface.
 pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneError> {
-    /// Directions in a half plane beside the axis.
+    /// Number of directions in a half plane beside the axis.
     const PROFILE: usize = 64;
-    /// Steps of a full turn.
+    /// Number of steps of a full turn.
     const STEPS: usize = 72;
     let spheres: Vec<[f64; 4]> =
         scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
@@ -111,7 +111,7 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
     body(&spheres[..spheres.len() - scene.added()], on_surface)
 }
 
-/// A scene of spheres on a surface, and some of the data's own for the mean radius.
+/// A scene of spheres on a surface, with some of the data's own for the mean radius.
 fn body(
     of_data: &[[f64; 4]],
     on_surface: impl Iterator<Item = [f64; 4]>,
@@ -141,7 +141,7 @@ pub(super) fn around(scene: &Scene) -> Result<Scene, SceneError> {
     body(&spheres[..spheres.len() - scene.added()], on_surface)
 }
 
-/// One of the directions of a spiral, which are about equally far from each other.
+/// One of the directions of a spiral, which are about equally spaced.
 fn of_spiral(index: usize, count: usize) -> DVec3 {
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     let z = 1.0 - (2 * index + 1) as f64 / count as f64;
@@ -208,7 +208,7 @@ mod tests {
         assert!((y - 1.5).abs() < 1e-6 && (down - 0.5).abs() < 1e-6, "{y} {down}");
     }
 
-    /// From any side, the ball is as wide as the farthest sphere reaches.
+    /// The ball has the same width from all sides: twice the reach of the farthest sphere.
     #[test]
     fn a_ball_is_as_wide_from_all_sides() {
         let rod = [[0.0, 0.0, 0.0, 0.5], [4.0, 0.0, 0.0, 0.5]];

@@ -1,4 +1,4 @@
-//! The flags of `pinhole job`, and what the flags of `split` mean again for parts and for `merge`.
+//! The flags of `pinhole job`, and the meaning of the flags of `split` for parts and for `merge`.
 
 use std::path::{Path, PathBuf};
 
@@ -139,7 +139,7 @@ enum OnlyJob {
     Job(JobArgs),
 }
 
-/// The flags of `split` that a job keeps.
+/// Parses the flags of `split` that a job stores.
 pub(crate) fn split_args(arguments: &[String]) -> Result<SplitArgs, Failure> {
     let parsed = JobLine::try_parse_from(arguments).ok().map(|parsed| parsed.command);
     match parsed {
@@ -153,14 +153,14 @@ pub(crate) fn split_args(arguments: &[String]) -> Result<SplitArgs, Failure> {
 /// The pictures of a job, as `render` would make them.
 pub(crate) struct Recipe {
     pub(crate) args: RenderArgs,
-    /// `None` for a single picture.
+    /// The request for several pictures; `None` for a single picture.
     pub(crate) wanted: Option<SeriesRequest>,
     pub(crate) job: Job,
 }
 
 impl Recipe {
-    /// The pictures without a place where they are written. `folder` is one that exists and in which files can be
-    /// created.
+    /// Makes the pictures without a destination. `folder` must exist, and it must be possible to create files in
+    /// it.
     pub(crate) fn of_parts(
         arguments: &[String],
         folder: &Path,
@@ -182,14 +182,14 @@ impl Recipe {
         Ok(Self { wanted, job, args })
     }
 
-    /// The same pictures, for work that needs no device.
+    /// Returns the same pictures for work that needs no device.
     pub(crate) fn without_device(mut self) -> Self {
         self.job.device = Device::Cpu;
         self
     }
 }
 
-/// Refuses input that makes other pictures than those that were split.
+/// Refuses input that would make other pictures than those that were split.
 pub(crate) fn check_same(
     manifest: &Manifest,
     numbers: Option<&[usize]>,

@@ -1,5 +1,5 @@
-//! The files of jobs: everything that jobs ask of the file system, except for what appears whole or not at all, which
-//! `output.rs` writes; and the digests by which files are known.
+//! The files of jobs: all access to the file system, except for files that appear whole or not at all, which
+//! `output.rs` writes; and the digests that identify files.
 
 use std::fs;
 pub(super) use std::fs::{File, create_dir, read, read_to_string, remove_dir_all, remove_file};
@@ -11,32 +11,32 @@ use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// The names of what is in a folder. Asking for them makes network file systems look for new files.
+/// Returns the names in a folder. Listing them makes network file systems look for new files.
 pub(super) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
 }
 
-/// When a file was written, by the clock of the file system.
+/// The time at which a file was written, by the clock of the file system.
 pub(super) fn modified(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).and_then(|file| file.modified()).ok()
 }
 
-/// Files of at most this many bytes have a digest of all bytes.
+/// The digest of files of at most this many bytes includes all bytes.
 const SMALL: u64 = 256 << 20;
 
-/// How many pieces of a larger file are in its digest, and how long each is.
+/// Number of pieces of a larger file that its digest includes, and their length.
 const PIECES: u64 = 64;
 const PIECE: u64 = 1 << 20;
 
-/// What identifies the contents of a file that a job reads.
+/// The identity of a file that a job reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InputFile {
     /// The path, relative to the folder in which the job was split.
     pub(super) path: String,
     pub(super) bytes: u64,
-    /// Of all bytes, or of some pieces of a large file, so that a part does not read it all.
+    /// Digest of all bytes, or of some pieces of a large file, so that a part need not read all of it.
     pub(super) sha256: String,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn digest(path: &Path) -> io::Result<(u64, String)> {
         }
     } else {
         for number in 0..PIECES {
-            // No file is so long that this overflows. The last piece ends with the file.
+            // Files are never so long that this overflows. The last piece ends with the file.
             let start = (length - PIECE) * number / (PIECES - 1);
             file.seek(SeekFrom::Start(start))?;
             file.read_exact(&mut piece)?;
@@ -78,7 +78,7 @@ mod tests {
     fn digests_are_those_of_sha256() {
         let mut file = tempfile::NamedTempFile::new().unwrap();
         file.write_all(b"abc").unwrap();
-        // From FIPS 180-2.
+        // The digest is from FIPS 180-2.
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(digest(file.path()).unwrap(), (3, abc.to_owned()));
         assert_eq!(hex(b"abc"), abc);
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn the_digest_of_a_large_file_has_both_ends_of_it() {
         let file = tempfile::NamedTempFile::new().unwrap();
-        // Without contents, it takes no room.
+        // The file has no contents, so it takes no space.
         file.as_file().set_len(SMALL + 5).unwrap();
         let digest = || digest(file.path()).unwrap();
         let empty = digest();

@@ -13,9 +13,9 @@ use crate::jobs::manifest::{Manifest, NAME, StoredOverview};
 use crate::terminal::failure::Failure;
 use pinhole_figure::color_by::JoinedKeys;
 
-/// A job and where it is.
+/// A job and its folder.
 pub(super) struct Folder {
-    /// Does not depend on the current folder.
+    /// The path of the folder, which is absolute.
     pub(super) path: PathBuf,
     pub(super) manifest: Manifest,
 }
@@ -24,7 +24,7 @@ pub(super) struct Folder {
 pub(super) const PARTS: &str = "parts";
 pub(super) const OVERVIEW: &str = "overview.bin";
 
-/// What a process that was killed leaves is removed after this time.
+/// Files that a killed process left behind are removed after this time.
 const LEFT: Duration = Duration::from_secs(3600);
 
 impl Folder {
@@ -39,7 +39,7 @@ impl Folder {
         self.path.join(PARTS).join(format!("{unit:06}.part"))
     }
 
-    /// Looks at the headers of all parts.
+    /// Reads the headers of all parts.
     pub(super) fn glance(&self) -> Vec<Result<Header, Problem>> {
         let all = (0..self.manifest.units).into_par_iter();
         all.map(|unit| part_file::glance(&self.part(unit), &self.manifest, unit)).collect()
@@ -51,7 +51,7 @@ impl Folder {
         all.map(|unit| part_file::check(&self.part(unit), &self.manifest, unit)).collect()
     }
 
-    /// Removes files that were never given their names, because the processes that wrote them were killed.
+    /// Removes temporary files of processes that were killed before they named them.
     pub(super) fn sweep(&self) {
         let parts = self.path.join(PARTS);
         let names = files::names(&parts);
@@ -59,7 +59,7 @@ impl Folder {
         if unnamed.is_empty() {
             return;
         }
-        // The time as the file system has it, which may be that of another machine whose clock is different.
+        // The file system's time is used, which may be that of a machine with another clock.
         let Ok(now) = tempfile::NamedTempFile::new_in(&parts) else { return };
         let Some(now) = files::modified(now.path()) else { return };
         for path in unnamed.into_iter().map(|name| parts.join(name)) {
@@ -70,7 +70,7 @@ impl Folder {
         }
     }
 
-    /// Makes the folder current in which the job was split, so that its relative paths mean the same files.
+    /// Enters the folder in which the job was split, so that its relative paths mean the same files.
     pub(super) fn enter(&self) -> Result<(), Failure> {
         let folder = &self.manifest.folder;
         Ok(std::env::set_current_dir(folder).with_context(|| {
@@ -78,7 +78,7 @@ impl Folder {
         })?)
     }
 
-    /// Refuses inputs that are not those that were split. The current folder must be that of [`Folder::enter`].
+    /// Refuses inputs other than those that were split. The current folder must be that of [`Folder::enter`].
     pub(super) fn check_inputs(&self) -> Result<(), Failure> {
         for file in &self.manifest.files {
             let found = files::digest(Path::new(&file.path));
@@ -93,7 +93,7 @@ impl Folder {
         Ok(())
     }
 
-    /// What all frames are together, if the pictures are frames.
+    /// Reads the facts about all frames, if the pictures are frames.
     pub(super) fn overview(&self) -> Result<Option<Overview>, Failure> {
         let Some(stored) = &self.manifest.overview else { return Ok(None) };
         let path = self.path.join(OVERVIEW);
@@ -105,7 +105,7 @@ impl Folder {
     }
 }
 
-/// The numbers of what all frames are together, and the description of the rest.
+/// Splits the facts about all frames into their numbers, as bytes, and the description of the rest.
 pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
     let range = overview.colors.range();
     let numbers = range.iter().flatten().chain(overview.spheres.as_flattened());

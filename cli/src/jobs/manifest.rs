@@ -1,4 +1,4 @@
-//! The description of a job, the file `job.json`, and its units: which tile of which picture an index means.
+//! The description of a job, the file `job.json`, and its units. A unit's index means a tile of a picture.
 
 use std::path::Path;
 
@@ -13,12 +13,12 @@ use pinhole::image::{Layer, LayerSet};
 /// The name of the file in the folder of a job.
 pub(crate) const NAME: &str = "job.json";
 
-/// The version of the format. Another one is refused, because bytes depend on it.
+/// The version of the format. Other versions are refused, because the bytes of parts depend on it.
 const FORMAT: u32 = 1;
 
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The most units of a job. Each is a file, and all of them are looked at together.
+/// The most units of a job. Each unit is a file, and all files are looked at together.
 pub(crate) const MOST_UNITS: usize = 1_000_000;
 
 /// A job. Each unit of work is a tile of a picture, or a group of bricks.
@@ -27,13 +27,13 @@ pub(crate) const MOST_UNITS: usize = 1_000_000;
 pub(crate) struct Manifest {
     pub(crate) pinhole_job: u32,
     pub(crate) version: String,
-    /// The digest of this file with an empty text here.
+    /// The digest of this file, computed with an empty text in this field.
     pub(crate) sha256: String,
     pub(crate) unit: UnitKind,
     pub(crate) units: usize,
     /// The arguments of the program that split the job.
     pub(crate) arguments: Vec<String>,
-    /// The folder in which relative paths begin.
+    /// The folder to which paths are relative.
     pub(crate) folder: String,
     /// The files that were read, the scene or the data first.
     pub(crate) files: Vec<InputFile>,
@@ -41,13 +41,13 @@ pub(crate) struct Manifest {
     pub(crate) pictures: Option<Vec<usize>>,
     /// Width and height of the picture of one eye.
     pub(crate) size: [u32; 2],
-    /// 2 for a camera with two eyes.
+    /// The number of eyes: 2 for a stereo camera, 1 for others.
     pub(crate) eyes: u32,
-    /// The bricks of each unit that is a group of them: the first, and the one after the last. Empty for tiles.
+    /// The bricks of each unit that is a group of bricks: the first, and the one after the last. Empty for tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) groups: Vec<[usize; 2]>,
     pub(crate) tiles: [u32; 2],
-    /// The layers of parts, which may be more than those of the pictures: outlines and denoising are guided by them.
+    /// The layers of parts, which may be more than those of the pictures, because outlines and denoising need some.
     pub(crate) layers: Vec<String>,
     pub(crate) merged_layers: Vec<String>,
     pub(crate) integrator: String,
@@ -55,7 +55,7 @@ pub(crate) struct Manifest {
     pub(crate) seed: u32,
     /// Whether noise is removed when parts are merged.
     pub(crate) denoised: bool,
-    /// What all frames are together.
+    /// Facts about all frames.
     pub(crate) overview: Option<StoredOverview>,
 }
 
@@ -64,19 +64,19 @@ pub(crate) struct Manifest {
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum UnitKind {
     Tile,
-    /// Some bricks, of which every part has what is nearest in all pixels.
+    /// Some bricks. Every part has the nearest hit in these bricks for all pixels.
     Depth,
 }
 
-/// What [`Overview`](crate::frames::Overview) holds; its numbers are in the file `overview.bin`.
+/// The contents of [`Overview`](crate::frames::Overview). Its numbers are in the file `overview.bin`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StoredOverview {
     pub(crate) sha256: String,
-    /// How many spheres there are, and how many of them were added to the data.
+    /// The number of spheres, and the number of those that were added to the data.
     pub(crate) spheres: usize,
     pub(crate) added: usize,
-    /// Whether two numbers before the spheres are the range of the colors.
+    /// Whether two numbers before the spheres are the range of colours.
     pub(crate) has_range: bool,
     pub(crate) categories: Vec<String>,
     pub(crate) missing: Option<[u8; 3]>,
@@ -153,7 +153,7 @@ impl Manifest {
         self.tiles[0] as usize * self.tiles[1] as usize
     }
 
-    /// The place among all pictures, and the tile, of a unit.
+    /// The index of a unit's picture among all pictures, and the unit's tile.
     pub(crate) fn unit(&self, index: usize) -> (usize, Rectangle) {
         if self.is_by_depth() {
             return (0, ([0, 0], self.size));
@@ -172,14 +172,14 @@ impl Manifest {
     }
 }
 
-/// How many units tiles of pictures are; `None` if that is more than [`MOST_UNITS`].
+/// The number of units for tiles of pictures; `None` if it is more than [`MOST_UNITS`].
 pub(crate) fn units_of_tiles(pictures: usize, tiles: [u32; 2]) -> Option<usize> {
     let [columns, rows] = tiles.map(|side| side as usize);
     let units = pictures.checked_mul(columns * rows)?;
     (units <= MOST_UNITS).then_some(units)
 }
 
-/// The layers with these names; others are left out.
+/// The layers with these names. Other names are ignored.
 pub(crate) fn layer_set(names: &[String]) -> LayerSet {
     names.iter().filter_map(|name| name.parse::<Layer>().ok()).collect()
 }
@@ -188,15 +188,15 @@ pub(crate) fn layer_names(layers: LayerSet) -> Vec<String> {
     layers.iter().map(|layer| layer.name().to_owned()).collect()
 }
 
-/// A rectangle of a picture: column and row of the first pixel, and width and height.
+/// A rectangle of a picture: column and row of the first pixel, then width and height.
 pub(crate) type Rectangle = ([u32; 2], [u32; 2]);
 
-/// The tile with a number, counted row by row, of a picture of `size` pixels that is divided into columns and rows.
+/// A tile by its number, counted row by row, of a picture of `size` pixels that is divided into columns and rows.
 pub(crate) fn tile(size: [u32; 2], tiles: [u32; 2], number: usize) -> Rectangle {
     let columns = tiles[0] as usize;
     let place = [number % columns, number / columns];
     let edge = |axis: usize, at: usize| {
-        // At most the side, which fits.
+        // The result is at most the side, so it fits.
         (u64::from(size[axis]) * at as u64 / u64::from(tiles[axis])) as u32
     };
     let origin = [0, 1].map(|axis| edge(axis, place[axis]));
@@ -223,7 +223,7 @@ pub(crate) fn parse_tiles(text: &str, size: [u32; 2]) -> Result<[u32; 2], Failur
     Ok(tiles)
 }
 
-/// Reads indices and ranges of indices, such as `0-15,20`, of which a job has `count`.
+/// Reads indices and ranges of indices below `count`, such as `0-15,20`.
 pub(crate) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure> {
     let wrong = || {
         Failure::usage(format!(
@@ -254,7 +254,7 @@ pub(crate) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure
     Ok(all)
 }
 
-/// Writes indices, which ascend, as `sbatch --array` and [`parse_list`] read them.
+/// Writes ascending indices in the form that `sbatch --array` and [`parse_list`] read.
 pub(crate) fn ranges(indices: &[usize]) -> String {
     let mut ranges: Vec<(usize, usize)> = Vec::new();
     for &index in indices {

@@ -1,4 +1,4 @@
-//! `pinhole job merge`: puts parts together and writes what `render` would have written.
+//! `pinhole job merge`: joins parts, and writes the files that `render` would have written.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,14 +22,14 @@ use crate::terminal::threads;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::Nearest;
 
-/// The time between two looks for parts that are not seen yet.
+/// The time between two looks for parts that are not visible yet.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// What the parts say about who rendered them.
+/// The devices that rendered the parts.
 struct Devices {
-    /// In words; there may be several if mixtures are allowed.
+    /// Descriptions of the devices; there may be several if mixtures are allowed.
     described: Vec<String>,
-    /// The name of the adapter, as files of pictures have it.
+    /// The name of the adapter for files of pictures.
     adapter: Option<String>,
     may_differ: bool,
 }
@@ -130,7 +130,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
 }
 
 impl Devices {
-    /// Refuses to remove noise by another device than that of the parts.
+    /// Refuses to remove noise with another device than that of the parts.
     fn check(&self, opened: &OpenDevice) -> Result<(), Failure> {
         let here = described(opened);
         let needs = self.adapter.is_some() && opened.adapter().is_some();
@@ -145,11 +145,11 @@ impl Devices {
     }
 }
 
-/// Checks every byte of every part, and returns their headers. Waits for parts that are missing.
+/// Checks every byte of every part, and returns their headers. Waits for missing parts.
 fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, Failure> {
     let end = Instant::now() + wait;
     loop {
-        // Reading the folder makes a network file system look for new files.
+        // Listing the folder makes a network file system look for new files.
         let _ = files::names(&folder.path.join(PARTS));
         let mut seen = folder.glance().into_iter();
         if Instant::now() >= end || !seen.any(|found| matches!(found, Err(Problem::Missing))) {
@@ -162,7 +162,7 @@ fn check_all(folder: &Folder, wait: Duration) -> Result<Vec<Header>, Failure> {
     Ok(found.into_iter().flatten().collect())
 }
 
-/// Refuses parts that are not there, damaged or foreign.
+/// Refuses missing, damaged or foreign parts.
 fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Failure> {
     let of = |problem: Problem| -> Vec<usize> {
         let has = |unit: &usize| found[*unit].as_ref().err() == Some(&problem);
@@ -198,7 +198,7 @@ fn refuse(folder: &Folder, found: &[Result<Header, Problem>]) -> Result<(), Fail
     )))
 }
 
-/// What rendered the parts, and which units each rendered. Refuses more than one unless mixtures are allowed.
+/// Returns the devices that rendered the parts, with their units. Several are refused unless mixtures are allowed.
 fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Failure> {
     let mut devices: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for header in headers {
@@ -216,7 +216,7 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
     Ok(devices.into_keys().map(str::to_owned).collect())
 }
 
-/// The pictures of all eyes at a place among all pictures, from their parts.
+/// Joins the parts of one picture, by its index among all pictures, for all eyes.
 fn picture(folder: &Folder, place: usize) -> Result<Vec<Image>, Failure> {
     let manifest = &folder.manifest;
     if manifest.is_by_depth() {
@@ -239,7 +239,7 @@ fn picture(folder: &Folder, place: usize) -> Result<Vec<Image>, Failure> {
     Ok(whole)
 }
 
-/// What is nearest in the parts of all groups of bricks, of which one is in memory at a time.
+/// The nearest hit of every pixel in the parts of all groups of bricks. One part is in memory at a time.
 fn nearest(folder: &Folder) -> Result<Vec<Nearest>, Failure> {
     let mut all: Vec<Nearest> = Vec::new();
     for unit in 0..folder.manifest.units {
@@ -257,7 +257,7 @@ fn nearest(folder: &Folder) -> Result<Vec<Nearest>, Failure> {
     Ok(all)
 }
 
-/// Reads a part, which was checked, but may have changed since.
+/// Reads a part, which was checked but may have changed since.
 fn read_part(folder: &Folder, unit: usize) -> Result<Pictures, Failure> {
     let part = part_file::read(&folder.part(unit), &folder.manifest, unit);
     part.map(|(_, pictures)| pictures).map_err(|problem| unusable(folder, unit, problem))
@@ -267,7 +267,7 @@ fn unusable(folder: &Folder, unit: usize, problem: Problem) -> Failure {
     Failure::Job(anyhow!("{}: this part is {}", folder.part(unit).display(), problem.words()))
 }
 
-/// Refuses layers that the parts have not.
+/// Refuses layers that the parts lack.
 fn check_layers(folder: &Folder, wanted: LayerSet) -> Result<(), Failure> {
     let there = layer_set(&folder.manifest.merged_layers);
     match wanted.iter().find(|layer| !there.contains(*layer)) {
@@ -278,7 +278,7 @@ fn check_layers(folder: &Folder, wanted: LayerSet) -> Result<(), Failure> {
     }
 }
 
-/// The path of an output, seen from the folder in which the job was split.
+/// Makes the path of an output absolute, before the folder in which the job was split is entered.
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     if path == Path::new("-") {
         return Ok(path.to_path_buf());
@@ -289,7 +289,7 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     Ok(if ends_with_separator { absolute.join("") } else { absolute })
 }
 
-/// The value of `--layer`, with an absolute path.
+/// Makes the path in a value of `--layer` absolute.
 fn absolute_layer(text: &str) -> Result<String, Failure> {
     let Some((layer, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
         return Ok(text.to_owned());

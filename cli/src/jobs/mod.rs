@@ -1,8 +1,8 @@
 //! Pictures that many machines render: `split` divides them into units, `part` renders units, `status` lists those that
 //! are missing, and `merge` joins the parts. Schedulers hand units to machines: `docs/how-to/clusters.md` has recipes.
 //!
-//! A folder is all that the machines share. `job.json` is written once; every part is a file that appears whole or not at
-//! all and knows its job by the digest of `job.json`. Nothing else coordinates them.
+//! The machines share only a folder. `job.json` is written once. Every part is a file that appears whole or not at all,
+//! and names its job by the digest of `job.json`. No other coordination is needed.
 
 use self::folder::Folder;
 pub(super) use crate::jobs::args::JobArgs;

@@ -27,7 +27,7 @@ use crate::terminal::threads;
 const STOPPED: &str =
     "stopped; the parts that were written are complete, and the others can be rendered again";
 
-/// The units of a job that are rendered now.
+/// The units of a job to render now.
 struct Work<'a> {
     folder: &'a Folder,
     units: Vec<usize>,
@@ -104,7 +104,7 @@ impl Work<'_> {
         let manifest = &self.folder.manifest;
         let started = Instant::now();
         let (_, (origin, size)) = manifest.unit(unit);
-        // The layers that guide outlines and denoising are in the job already.
+        // The job already has the layers that outlines and denoising need.
         let layers = manifest.layer_set();
         let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
@@ -129,18 +129,18 @@ impl Work<'_> {
     }
 }
 
-/// Writes the file of a part, whole or not at all.
+/// Writes the file of a part, which appears whole or not at all.
 fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
     let file = unnamed_with(path, |file| {
         let mut out = BufWriter::new(file);
         part_file::write(header, pictures, &mut out)?;
-        // Nothing waits for the disk: a part that a crash of the machine cut off is known by its digest.
+        // The data need not reach the disk: the digest shows whether a crash of the machine cut off a part.
         out.flush()
     })?;
     Ok(name_all(vec![(path, file)])?)
 }
 
-/// What rendered, such that equal words mean equal bits: an adapter with its driver, or the CPU.
+/// Describes the renderer such that equal texts mean equal bits: an adapter with its driver, or the CPU.
 pub(super) fn described(opened: &OpenDevice) -> String {
     match opened {
         #[cfg(feature = "gpu")]

@@ -16,7 +16,7 @@ const START: &[u8] = b"pinhole part 1\n";
 
 const DIGEST: usize = 32;
 
-/// No header is longer.
+/// Maximum header length in bytes.
 const LONGEST_HEADER: u64 = 1 << 16;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,29 +25,29 @@ pub(super) struct Header {
     pub(super) version: String,
     pub(super) job: String,
     pub(super) unit: usize,
-    /// What rendered: an adapter with its driver, or the CPU.
+    /// The renderer: an adapter with its driver, or the CPU.
     pub(super) device: String,
-    /// The name of the adapter, as files of pictures have it.
+    /// The name of the adapter for files of pictures.
     pub(super) adapter: Option<String>,
     pub(super) milliseconds: u64,
-    /// Bytes of the layers that follow.
+    /// Number of bytes of the layers after the header.
     pub(super) bytes: u64,
 }
 
-/// Why a file is not the part that is wanted.
+/// The reason why a file is not the wanted part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Problem {
     Missing,
-    /// It is not a part, or it was changed or cut off.
+    /// The file is not a part, or it was changed or cut off.
     Damaged,
-    /// It belongs to another job, another unit or another version.
+    /// The part belongs to another job, another unit or another version.
     Foreign,
-    /// It cannot be read, but may be whole.
+    /// The part cannot be read, but may be whole.
     Unreadable(io::ErrorKind),
 }
 
 impl Problem {
-    /// A part is this.
+    /// Completes the sentence "a part is …".
     pub(super) fn words(self) -> String {
         match self {
             Self::Missing => "missing".to_owned(),
@@ -57,7 +57,7 @@ impl Problem {
         }
     }
 
-    /// Why reading failed. A file that ends too early is damaged.
+    /// The reason why reading failed. A file that ends too early is damaged.
     fn of(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::Missing,
@@ -67,7 +67,7 @@ impl Problem {
     }
 }
 
-/// How many bytes the layers of a unit have.
+/// Number of bytes of the layers of a unit.
 pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
     let (_, (_, [width, height])) = manifest.unit(unit);
     let pixels = u64::from(width) * u64::from(height) * u64::from(manifest.eyes);
@@ -75,10 +75,10 @@ pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
     pixels * (manifest.layer_set().bytes_per_pixel() + more)
 }
 
-/// What a part shows, for each eye.
+/// The pictures of a part, one for each eye.
 pub(super) enum Pictures {
     Tile(Vec<Image>),
-    /// The whole film, with what is nearest of some bricks.
+    /// The whole film, with the nearest hits in some bricks.
     Depth(Vec<Nearest>),
 }
 
@@ -100,7 +100,7 @@ pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) 
     out.write_all(&digest.finalize())
 }
 
-/// Reads the header of a part, and checks that the file is the unit of this job and has its length, but not its bytes.
+/// Reads the header of a part, and checks unit, job and length of the file, but not its bytes.
 pub(super) fn glance(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
     let mut file = open(path)?;
     let (header, before) = read_header(&mut file)?;
@@ -110,7 +110,7 @@ pub(super) fn glance(path: &Path, manifest: &Manifest, unit: usize) -> Result<He
     if length == expected { Ok(header) } else { Err(Problem::Damaged) }
 }
 
-/// What is read from a file, with its digest.
+/// A reader of a file that computes the digest of the bytes read.
 struct DigestReader {
     file: files::File,
     digest: Sha256,
@@ -124,7 +124,7 @@ impl Read for DigestReader {
     }
 }
 
-/// Reads a part, and checks every byte of it. `contents` reads what is behind the header, which has so many bytes.
+/// Reads a part, and checks every byte. `contents` reads the data after the header, and gets their number of bytes.
 fn checked(
     path: &Path,
     manifest: &Manifest,
@@ -137,7 +137,7 @@ fn checked(
     contents(&mut Read::by_ref(&mut part).take(header.bytes)).map_err(problem)?;
     let DigestReader { file, digest } = part;
     let mut end = Vec::new();
-    // One byte more than there may be.
+    // One more byte than allowed is read, to notice a longer file.
     file.take(DIGEST as u64 + 1).read_to_end(&mut end).map_err(problem)?;
     if end != digest.finalize().as_slice() {
         return Err(Problem::Damaged);
@@ -146,7 +146,7 @@ fn checked(
     Ok(header)
 }
 
-/// Checks every byte of a part, in memory that does not depend on its size.
+/// Checks every byte of a part. The memory for this does not depend on the size of the part.
 pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Header, Problem> {
     let skip = |contents: &mut dyn Read| {
         let mut contents = BufReader::with_capacity(1 << 18, contents);
@@ -161,14 +161,14 @@ pub(super) fn read(
     unit: usize,
 ) -> Result<(Header, Pictures), Problem> {
     let (mut rest, payload) = (Vec::new(), payload(manifest, unit));
-    // A file that is longer than a part can be is not read to its end.
+    // A file that is too long is not read to its end.
     let keep = |contents: &mut dyn Read| contents.take(payload).read_to_end(&mut rest).map(drop);
     let header = checked(path, manifest, unit, keep)?;
     let (_, (_, size)) = manifest.unit(unit);
     let layers = manifest.layer_set();
     let of_eye = rest.len() / manifest.eyes.max(1) as usize;
     let eyes = rest.chunks_exact(of_eye.max(1));
-    // What has the right length and digest was written so; only memory can be missing.
+    // A file with the right length and digest was written in this way, so only memory can be missing.
     let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
     let pictures = if manifest.is_by_depth() {
         let nearest = |bytes: &[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(no_memory);
@@ -184,7 +184,7 @@ fn open(path: &Path) -> Result<files::File, Problem> {
     files::File::open(path).map_err(|error| Problem::of(&error))
 }
 
-/// Reads the header, and returns how many bytes it takes with what is before it.
+/// Reads the header, and returns the number of bytes up to its end.
 fn read_header(file: &mut impl Read) -> Result<(Header, u64), Problem> {
     let mut start = [0; START.len()];
     let mut length = [0; 8];

@@ -1,4 +1,4 @@
-//! `pinhole job split`: divides pictures into units and writes what describes them.
+//! `pinhole job split`: divides pictures into units, and writes the description of the job.
 
 use std::path::{Path, PathBuf};
 
@@ -20,10 +20,10 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::threads;
 use pinhole::image::{Layer, LayerSet};
 
-/// What is known of the pictures when the first was read.
+/// Facts that are known once the first picture was read.
 struct JobInput {
     input: Input,
-    /// The layers that a PNG or an EXR needs.
+    /// The layers that a PNG or an EXR file needs.
     layers: LayerSet,
     pictures: Option<Vec<usize>>,
     overview: Option<Overview>,
@@ -32,7 +32,7 @@ struct JobInput {
 pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     refuse(args)?;
     let asked = asked_layers(&args.render.layers)?;
-    // Without --print-scene, which is refused, clap requires it.
+    // clap requires it unless --print-scene is given, which is refused.
     let job = args.render.output.clone().unwrap_or_default();
     let job: PathBuf = job.components().collect();
     let above = check_new(&job)?;
@@ -127,7 +127,7 @@ fn refuse(args: &SplitArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The layers that the flags name; a file after `=` is left to `merge`.
+/// The layers that the flags name. A file after `=` is ignored here and left to `merge`.
 fn asked_layers(texts: &[String]) -> Result<LayerSet, Failure> {
     let parsed = texts.iter().map(|text| {
         let layer = text.parse::<Layer>();
@@ -136,7 +136,7 @@ fn asked_layers(texts: &[String]) -> Result<LayerSet, Failure> {
     parsed.collect()
 }
 
-/// Refuses a folder that exists, and returns the folder that it will be in.
+/// Refuses a folder that exists, and returns its parent.
 fn check_new(job: &Path) -> Result<PathBuf, Failure> {
     if job.symlink_metadata().is_ok() {
         return Err(Failure::usage(format!(
@@ -171,7 +171,7 @@ fn job_input(recipe: Recipe) -> Result<JobInput, Failure> {
     Ok(JobInput { input: series.input, layers: writing.layers, pictures: Some(all), overview })
 }
 
-/// The bricks of each unit; none if units are tiles.
+/// The bricks of each unit; empty if units are tiles.
 fn groups(
     by_depth: Option<u32>,
     input: &Input,
@@ -203,7 +203,7 @@ fn groups(
     Ok(bricks.groups(groups as usize))
 }
 
-/// The files that parts read, with their digests.
+/// The files that parts will read, with their digests.
 fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failure> {
     let mut paths: Vec<&Path> = input.files.iter().map(PathBuf::as_path).collect();
     paths.extend(args.render.frames.camera_path.as_deref());
@@ -220,7 +220,7 @@ fn input_files(input: &Input, args: &SplitArgs) -> Result<Vec<InputFile>, Failur
     Ok(files)
 }
 
-/// Creates the folder with all its files; the description comes last. If that fails, nothing is left.
+/// Creates the folder with all its files, the description last. If that fails, nothing is left behind.
 fn create(folder: &Folder, text: &str, overview: Option<&[u8]>) -> Result<(), Failure> {
     let path = &folder.path;
     let cannot = || format!("{}: cannot be created", path.display());

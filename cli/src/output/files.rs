@@ -49,7 +49,7 @@ pub(crate) struct NewFolder(PathBuf);
 impl NewFolder {
     /// Refuses a path that is not a folder and cannot become one, and a folder in which `file` cannot be written.
     pub(crate) fn new(path: &Path, file: &str) -> Result<Self, Failure> {
-        // This removes a separator at the end.
+        // Collecting the components removes a separator at the end.
         let path: PathBuf = path.components().collect();
         if path.is_dir() {
             check_writable(&path.join(file))?;
@@ -73,7 +73,7 @@ impl NewFolder {
         }
         write().inspect_err(|_| {
             if is_new {
-                // This fails if the folder is not empty, and then the folder stays.
+                // This fails if the folder is not empty, and the folder then stays.
                 let _ = std::fs::remove_dir(&self.0);
             }
         })
@@ -125,7 +125,7 @@ pub(crate) fn unnamed_with(
     Ok(file)
 }
 
-/// Gives complete files their final names. If one of them fails, those that did not exist before are removed again.
+/// Gives complete files their final names. If one cannot be named, those that did not exist before are removed again.
 pub(crate) fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let _phase = profile::phase("write");
     let any = !files.is_empty();
@@ -151,8 +151,8 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     Ok(())
 }
 
-/// Returns the canonical path of a file, whether it exists or not. For a link it is the path of the target, because the
-/// target is replaced and not the link.
+/// Returns the canonical path of a file, whether it exists or not. The path of a link is that of its target, because
+/// the target is replaced and not the link.
 fn canonical(path: &Path) -> PathBuf {
     if let Ok(target) = path.canonicalize() {
         return target;
@@ -190,7 +190,7 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
             folder.display()
         )));
     }
-    // A folder that cannot be written should be noticed before the work, not after it.
+    // A folder in which no file can be written should be noticed before the work, not after it.
     temporary(path).map(drop)?;
     Ok(())
 }

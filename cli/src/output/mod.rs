@@ -1,4 +1,4 @@
-//! What the program writes: files, pictures with their data layers, and what it says about them.
+//! The outputs of the program: files, pictures with their data layers, and the lines about them.
 
 pub(crate) mod files;
 pub(crate) mod picture;

@@ -29,12 +29,12 @@ pub(crate) struct Outputs {
     pub(crate) format: PictureFormat,
     /// Path of the picture; `None` is standard output.
     pub(crate) picture: Option<PathBuf>,
-    /// Layers in the file of the picture.
+    /// The layers in the file of the picture.
     pub(crate) inside: LayerSet,
     pub(crate) layers: Vec<(Layer, PathBuf)>,
-    /// What is drawn over a PNG.
+    /// Annotations to draw over a PNG.
     pub(crate) annotations: Annotations,
-    /// The certificate that the picture carries; a PNG then has no annotations.
+    /// The certificate of the picture. A PNG then has no annotations.
     pub(crate) certificate: Option<String>,
 }
 
@@ -63,7 +63,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// A picture of this format that is not written.
+    /// Outputs of a picture in this format that is not written.
     pub(crate) fn unwritten(format: PictureFormat) -> Self {
         Self {
             format,
@@ -104,7 +104,7 @@ impl Outputs {
     }
 
     pub(crate) fn layers(&self, encoding: &Encoding) -> LayerSet {
-        // The exposure and the tone curve of a PNG need what tells the background from the rest.
+        // The exposure and the tone curve of a PNG need the layers that separate the background from the rest.
         let encoded = if self.format == PictureFormat::Png || encoding.transparent {
             encoding.layers()
         } else {
@@ -114,8 +114,8 @@ impl Outputs {
         asked.chain(self.inside.iter()).chain(encoded.iter()).collect()
     }
 
-    /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them
-    /// are complete. `adapter` is the name of the adapter that rendered.
+    /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names after all of
+    /// them are complete. `adapter` is the name of the adapter that rendered.
     pub(crate) fn write(
         &self,
         image: &Image,
@@ -176,7 +176,7 @@ impl Outputs {
         Ok(files)
     }
 
-    /// Returns the outputs for the left and the right eye, whose names are made from those that the user gave.
+    /// Returns the outputs for the left and the right eye. Their names are made from the user's names.
     pub(crate) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
         if self.picture.is_none() {
             return Err(Failure::usage(

@@ -1,4 +1,4 @@
-//! What `render` says about a picture, beside the picture.
+//! The line that `render` prints about a picture.
 
 use std::time::Duration;
 
@@ -17,26 +17,26 @@ pub(crate) struct ReportArgs {
     pub(crate) quiet: bool,
 }
 
-/// What the line about a picture says.
+/// The facts in the line about a picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Report {
     /// The file that was rendered.
     pub(crate) path: String,
     /// The number of spheres in the scene, without those that were added to the data.
     pub(crate) spheres: usize,
-    /// The number of spheres from which a selection kept these.
+    /// The number of spheres before a selection.
     pub(crate) selected_from: Option<usize>,
     pub(crate) bonds: Option<usize>,
     pub(crate) has_atoms: bool,
     pub(crate) style: Option<Style>,
-    /// The flags for the view, if there are such.
+    /// The flags for the view, if any.
     pub(crate) view: Option<String>,
-    /// The column that colors the spheres without a flag that names it.
+    /// The column that colours the spheres without a flag.
     pub(crate) color_by: Option<String>,
 }
 
 impl Report {
-    /// Returns the line about a picture that took this time: what was read, and the flags for the same look.
+    /// Returns the line about a picture that took this time: the input, and the flags for the same look.
     pub(crate) fn line(&self, elapsed: Duration) -> String {
         self.line_with("", elapsed)
     }

@@ -1,4 +1,4 @@
-//! The certificate that a picture carries: `render --certify` makes it, and `verify PICTURE` checks it.
+//! The certificate in a picture: `render --certify` makes it, and `verify PICTURE` checks it.
 
 use anyhow::{Context, Result, anyhow};
 use clap::parser::ValueSource;
@@ -42,26 +42,26 @@ const NOT_OF_THE_PICTURE: [&str; 15] = [
     "dpi",
 ];
 
-/// What is added to the seed for the reference's picture, so that its noise is another.
+/// A number that is added to the seed for the reference's picture, so that its noise differs.
 const OTHER_SEED: u32 = 0x9e37_79b9;
 
-/// A picture as it stands, or will stand, in its file.
+/// A picture as its file stores it, or will store it.
 pub(crate) struct FilePicture {
     pub(crate) size: [u32; 2],
     pub(crate) samples: FileSamples,
     pub(crate) per_pixel: u32,
 }
 
-/// What was found about a picture.
+/// The result of judging a picture.
 pub(crate) enum Judgement {
-    /// About each sample.
+    /// A judgement of each sample.
     Intervals(WrittenCertificate),
-    /// About the means of its samples; or of light before it was denoised, and about what was made of it.
+    /// A judgement of the means of samples. For a denoised picture, it judges light before denoising, and the denoiser.
     Means(Means, Option<DenoiseCertificate>),
 }
 
 impl FilePicture {
-    /// The samples that a writer would store of an image.
+    /// Returns the samples of an image as a writer would store them.
     pub(crate) fn of(
         image: &Image,
         encoding: &Encoding,
@@ -104,13 +104,13 @@ impl FilePicture {
         WrittenPicture { size: self.size, samples, encoding }
     }
 
-    /// Red, green and blue of each pixel, such that white is 1.
+    /// Red, green and blue of each pixel, with white at 1.
     fn colors(&self, encoding: &Encoding) -> Result<Vec<[f64; 3]>> {
         Ok(self.picture(encoding).colors()?)
     }
 }
 
-/// Refuses what cannot be certified.
+/// Refuses pictures that cannot be certified.
 pub(crate) fn check(input: &Input, has_annotations: bool) -> Result<(), Failure> {
     let refusal = if has_annotations {
         "annotations are drawn over the picture; certify the picture without legends, scale bars and labels"
@@ -147,7 +147,7 @@ pub(crate) fn judge(
     Ok(Judgement::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
 }
 
-/// Judges the light of a picture that is neither denoised nor finished otherwise.
+/// Judges the light of a picture before denoising and other finishing.
 pub(crate) fn means_of_light(
     input: &mut Input,
     image: &Image,
@@ -165,7 +165,7 @@ pub(crate) fn means_of_light(
     means(input, (per_pixel, 0), &colors(image), &reference)
 }
 
-/// The reference's picture with other random numbers.
+/// Renders the reference's picture with other random numbers.
 fn other_estimate(
     input: &mut Input,
     per_pixel: u32,
@@ -209,7 +209,7 @@ impl Judgement {
         }
     }
 
-    /// The numbers of pixels, or of means, that are proved, undecided and violated.
+    /// The numbers of proved, undecided and violated pixels, or means.
     pub(crate) fn counts(&self) -> [u64; 3] {
         match self {
             Self::Intervals(certificate) => [
@@ -222,7 +222,7 @@ impl Judgement {
         }
     }
 
-    /// The first or the worst violation.
+    /// The first violation, or the worst.
     pub(crate) fn violation(&self) -> Option<String> {
         match self {
             Self::Intervals(certificate) => certificate.violations.first().map(ToString::to_string),
@@ -257,7 +257,7 @@ impl Judgement {
         table
     }
 
-    /// The failure, unless the picture is proved.
+    /// Returns a failure unless the picture is proved.
     pub(crate) fn verdict(&self) -> Result<(), Failure> {
         let [_, undecided, violated] = self.counts();
         let unit = self.unit();
@@ -300,7 +300,7 @@ pub(crate) fn certificate(
     }
 }
 
-/// Refuses a certificate of other samples.
+/// Refuses a certificate that belongs to other samples.
 pub(crate) fn check_samples(certificate: &PictureCertificate, written: &FilePicture) -> Result<()> {
     if certificate.samples == written.digest() {
         return Ok(());
@@ -310,7 +310,7 @@ pub(crate) fn check_samples(certificate: &PictureCertificate, written: &FilePict
     ))
 }
 
-/// Refuses a certificate of another scene.
+/// Refuses a certificate that belongs to another scene.
 pub(crate) fn check_scene(certificate: &PictureCertificate, input: &Input) -> Result<()> {
     if certificate.scene == scene_digest(&input.scene) {
         return Ok(());
@@ -321,7 +321,7 @@ pub(crate) fn check_scene(certificate: &PictureCertificate, input: &Input) -> Re
     ))
 }
 
-/// The arguments of this process from which the picture follows, apart from the scene.
+/// The arguments of this process that determine the picture, apart from the scene.
 pub(crate) fn arguments() -> Result<Vec<String>> {
     let command = RenderLine::command();
     let matches = command.clone().try_get_matches_from(std::env::args_os())?;

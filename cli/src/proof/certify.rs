@@ -1,4 +1,4 @@
-//! `pinhole certify`: judges the answers of any renderer by exact rays.
+//! `pinhole certify`: judges the answers of any renderer with exact rays.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -135,7 +135,7 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     verdict(&found)
 }
 
-/// Refuses what is wrong whatever the files hold.
+/// Refuses arguments that are wrong regardless of the files.
 fn check(args: &CertifyArgs) -> Result<(), Failure> {
     if let Some(limit) = args.at_most
         && !(limit > 0.0 && limit.is_finite())
@@ -190,7 +190,7 @@ fn certified(
     found.map_err(|error| explained(args, &error))
 }
 
-/// Names the file, or the flag, that an error is about.
+/// Adds the file or the flag to an error.
 fn explained(args: &CertifyArgs, error: &ConformanceError) -> Failure {
     let file = match error.field {
         Some(Field::Ids) => Some(&args.id),
@@ -221,7 +221,7 @@ fn verdict(found: &Conformance) -> Result<(), Failure> {
     }
 }
 
-/// The number of pixels that the text lists.
+/// The number of pixels that the text report lists.
 const LISTED: usize = 10;
 
 #[derive(Serialize)]
@@ -246,7 +246,7 @@ pub(crate) struct Report {
 struct Picture {
     width: u32,
     height: u32,
-    /// The camera, unless rays were given.
+    /// The kind of camera, unless rays were given.
     camera: Option<&'static str>,
 }
 
@@ -271,7 +271,7 @@ struct PixelReport {
     message: String,
 }
 
-/// A finite number, which JSON can hold.
+/// A number that JSON can hold, which must be finite.
 fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
@@ -352,7 +352,7 @@ impl Report {
 /// Returns the counts, the histogram, and the first of the worst pixels.
 fn table(found: &Conformance) -> String {
     let mut text = found.to_string();
-    // The first is there already.
+    // The first is already in the text.
     for finding in found.worst.iter().take(LISTED).skip(1) {
         text += &format!("\n       {finding}");
     }

@@ -1,4 +1,4 @@
-//! The proofs: of pictures of a device, of pictures that were written, of answers of other renderers, and of devices.
+//! Proofs for pictures from a device, for written pictures, for answers of other renderers, and for devices.
 
 pub(crate) mod certified;
 pub(crate) mod certify;

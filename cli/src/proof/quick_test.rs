@@ -12,7 +12,7 @@ pub(crate) fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> 
 /// Runs the quick part of the test. Returns a warning if the pictures of the adapter may be wrong.
 ///
 /// # Errors
-/// If the device was lost or does not answer, so that it cannot render either.
+/// Returns an error if the device was lost or does not answer, which means that it cannot render either.
 pub(crate) fn quick_warning(headless: &Headless) -> Result<Option<String>, Failure> {
     match headless.self_test(SelfTestExtent::Quick).wait() {
         Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => {

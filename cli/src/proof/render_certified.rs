@@ -17,17 +17,17 @@ use pinhole::image::{Image, Layer};
 use pinhole::render::RenderSettings;
 use pinhole::verify::denoised;
 
-/// Means are of as many samples as were taken.
+/// Means need the number of samples that were taken.
 const COUNTED: Layer = Layer::Samples;
 
-/// A picture and what was found about it.
+/// A picture and the result of judging it.
 struct JudgedPicture {
     image: Image,
     written: FilePicture,
     judged: Judgement,
 }
 
-/// How a picture is made.
+/// Everything that making a picture needs.
 struct Making<'a> {
     stop_rule: StopRule,
     outputs: &'a Outputs,
@@ -36,7 +36,7 @@ struct Making<'a> {
 }
 
 /// Renders, judges and writes a picture, and returns whether enough is decided. A picture that is not legal is an error
-/// and is not written; the certificate of one of which too much is undecided says so.
+/// and is not written. If too much is undecided, the certificate records that.
 pub(crate) fn run(
     input: &mut Input,
     stop_rule: StopRule,
@@ -74,7 +74,7 @@ impl Making<'_> {
         Ok(JudgedPicture { image, written, judged })
     }
 
-    /// Judges the light before the denoiser, and the denoiser by itself.
+    /// Judges the light before denoising, and the denoiser separately.
     fn denoised(&self, input: &mut Input) -> Result<JudgedPicture, Failure> {
         if let Some(flag) = self.stop_rule.open_end() {
             return Err(Failure::usage(format!(
@@ -95,7 +95,7 @@ impl Making<'_> {
         Ok(JudgedPicture { image, written, judged: Judgement::Means(means, Some(denoiser)) })
     }
 
-    /// The samples that are written of an image.
+    /// Returns the samples of an image as they are written.
     fn written(&self, image: &Image) -> Result<FilePicture> {
         let samples = image.samples().unwrap_or_default();
         let first = samples.first().copied().unwrap_or(1);

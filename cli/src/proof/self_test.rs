@@ -1,4 +1,4 @@
-//! `pinhole info`, beyond telling what there is: the self-test of a device, and the files of all kernels.
+//! Parts of `pinhole info`: the self-test of a device, and the files of all kernels.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub(crate) struct SelfTestResults {
     adapter: AdapterReport,
     passed: bool,
     properties: Vec<PropertyReport>,
-    /// The first property that failed.
+    /// The message about the first property that failed.
     #[serde(skip)]
     failure: Option<String>,
 }
@@ -59,7 +59,7 @@ impl SelfTestResults {
         text
     }
 
-    /// Returns a failure if a property failed.
+    /// Returns the failure if a property failed.
     pub(crate) fn verdict(&self) -> Result<(), Failure> {
         check_failed(self.failure.as_deref())
     }
@@ -101,7 +101,7 @@ impl PropertyReport {
 /// The list of pipelines: the file of the kernel, and the values of its `override` constants.
 const PIPELINES: &str = "pipelines.txt";
 
-/// Writes all kernels and the list of pipelines into a folder, or none.
+/// Writes all kernels and the list of pipelines into a folder, or nothing.
 pub(crate) fn dump(folder: &Path) -> Result<(), Failure> {
     let mut kernels: Vec<(PathBuf, String)> = Vec::new();
     let mut pipelines = String::new();
@@ -131,7 +131,7 @@ pub(crate) fn dump(folder: &Path) -> Result<(), Failure> {
     Ok(answer(text.as_bytes())?)
 }
 
-/// What distinguishes a kernel, as the name of a file.
+/// Makes the name of a file from the words that distinguish a kernel.
 fn file_name(kernel: &str) -> String {
     kernel.replace([' ', '#'], "-") + ".wgsl"
 }

@@ -1,4 +1,4 @@
-//! The device that renders: which adapter is asked for, and what is known of one.
+//! The device that renders: the adapter that the user wants, and facts about adapters.
 
 use std::panic::resume_unwind;
 use std::thread::{self, ScopedJoinHandle};
@@ -20,7 +20,7 @@ use pinhole::accel::AccelChoice;
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice, Wait, wgpu};
 use pinhole::verify::run_file::Provenance;
 
-/// What renders, as the flags ask for it.
+/// The renderer that the flags ask for.
 pub(crate) enum Device {
     Cpu,
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
@@ -32,7 +32,7 @@ pub(crate) enum Device {
     },
 }
 
-/// The adapter that the flags ask for; without a name, the best one.
+/// The adapter that the flags ask for. The default is the best one.
 #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
 pub(crate) struct WantedAdapter {
     name: Option<String>,
@@ -58,14 +58,14 @@ impl Device {
             (backend, given) => Ok(Self::Adapter {
                 wanted: WantedAdapter::new(&args.adapter).for_structures(accel),
                 choice: accel.unwrap_or_default(),
-                // A flag that only adapters have means that the user wants an adapter.
+                // A flag that applies only to adapters means that the user wants an adapter.
                 or_cpu: backend == Backend::Auto && given.is_none(),
             }),
         }
     }
 }
 
-/// What renders, opened and ready.
+/// The renderer, opened and ready.
 pub(crate) enum OpenDevice {
     Cpu,
     /// The CPU reference, used because there is no adapter.
@@ -115,7 +115,7 @@ impl Device {
         }
     }
 
-    /// Opens the device while `work` is done. If both fail, the failure is that of `work`.
+    /// Opens the device while `work` runs. If both fail, the failure is that of `work`.
     pub(crate) fn open_beside<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
@@ -123,7 +123,7 @@ impl Device {
         thread::scope(|scope| {
             let opening = match self {
                 Self::Cpu => None,
-                // If no other thread can be started, the device is opened afterwards.
+                // If no other thread can be started, the device is opened after the work.
                 Self::Adapter { .. } => {
                     thread::Builder::new().spawn_scoped(scope, || self.open()).ok()
                 }
@@ -144,7 +144,7 @@ impl WantedAdapter {
         Self { name: args.adapter.clone(), limits: args.limits, ray_query: false }
     }
 
-    /// The same adapter, opened for what these structures need.
+    /// The same adapter, opened with the features that these structures need.
     pub(crate) fn for_structures(self, structures: impl IntoIterator<Item = AccelChoice>) -> Self {
         let ray_query = structures.into_iter().any(|structure| structure == AccelChoice::RayQuery);
         Self { ray_query, ..self }
@@ -156,7 +156,7 @@ impl WantedAdapter {
         Self { name, limits: None, ray_query: false }
     }
 
-    /// Opens the adapter. The inner error means that there is no adapter, which is not a failure for every caller.
+    /// Opens the adapter. The inner error means that there is no adapter, which some callers accept.
     #[cfg(feature = "gpu")]
     pub(crate) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
         let options = HeadlessOptions {
@@ -192,7 +192,7 @@ impl WantedAdapter {
         Ok(Ok((headless, warning)))
     }
 
-    /// Opens the adapter; it is a failure if there is none.
+    /// Opens the adapter, or fails if there is none.
     #[cfg(feature = "gpu")]
     pub(crate) fn open_any(&self) -> Result<Headless, Failure> {
         self.open()?.map_err(|error| Failure::Job(error.into()))
@@ -203,7 +203,7 @@ impl WantedAdapter {
 #[cfg(feature = "gpu")]
 pub(crate) const DEVICE_CLOCK: &str = "device";
 
-/// Name of the host's clock. The clock of a software device measures when commands were queued, not when they ran.
+/// Name of the host's clock. A software device's own clock shows when commands were queued, not when they ran.
 #[cfg(feature = "gpu")]
 const HOST_CLOCK: &str = "host";
 

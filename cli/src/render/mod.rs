@@ -1,4 +1,4 @@
-//! A job of `pinhole render`, and the pictures that a device or the CPU renders for it.
+//! The job of `pinhole render`, and the pictures that a device or the CPU renders for it.
 
 use std::path::Path;
 #[cfg(feature = "gpu")]
@@ -85,8 +85,8 @@ impl Job {
         })
     }
 
-    /// Applies the flags for the picture's file to an input, and returns how the picture is encoded and what is drawn
-    /// over it. Notes are given to `note`.
+    /// Applies the flags for the picture's file to an input. Returns the encoding and the annotations of the picture.
+    /// Calls `note` with notes.
     pub(crate) fn finish(
         &self,
         input: &mut Input,
@@ -119,7 +119,7 @@ pub(crate) fn render_part(
     images
 }
 
-/// Completes the pictures of all eyes that were put together from parts, and puts them beside each other.
+/// Completes the pictures of all eyes that were joined from parts, and puts them side by side.
 pub(crate) fn finish_joined(
     images: Vec<Image>,
     settings: &RenderSettings,
@@ -130,7 +130,7 @@ pub(crate) fn finish_joined(
     joined(finished.collect::<Result<_, _>>()?)
 }
 
-/// Completes a picture that was put together from parts.
+/// Completes a picture that was joined from parts.
 pub(crate) fn finish(
     image: Image,
     settings: &RenderSettings,
@@ -147,7 +147,7 @@ pub(crate) fn finish(
     }
 }
 
-/// Renders the view of the camera, or of the middle between two eyes.
+/// Renders the view of the camera, or from the middle between two eyes.
 pub(crate) fn render(input: &Input, layers: LayerSet, on: &OpenDevice) -> Result<Image, Failure> {
     let (views, stop_rule) = (&[input.view()], StopRule::default());
     render_joined(&Shot { input, views, layers, stop_rule, opened: on })
@@ -166,7 +166,7 @@ fn joined(mut images: Vec<Image>) -> Result<Image, Failure> {
     Ok(images.pop().context("there is no picture")?)
 }
 
-/// Tells the user once, however many pictures are rendered, what the device is not.
+/// Prints one line if the device is not as expected, however many pictures are rendered.
 #[cfg(feature = "gpu")]
 fn tell_once(text: impl FnOnce() -> String) {
     static SAID: Once = Once::new();
@@ -186,7 +186,7 @@ pub(crate) fn render_views(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
     }
 }
 
-/// Refuses pictures of the CPU that do not fit into memory, and tells the user once if the device is not the expected one.
+/// Refuses pictures of the CPU that do not fit into memory, and prints one line if the device is not the expected one.
 pub(crate) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
     match shot.opened {
         OpenDevice::Cpu => check_on_cpu(shot),
@@ -241,7 +241,7 @@ fn on_cpu(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
         });
         pictures.collect::<Result<Vec<_>, cpu::RenderError>>()
     };
-    // Where nothing would be kept, a signal may end the program at any time.
+    // If nothing would be kept, a signal may end the program at any time.
     let (done, is_stopped) =
         if stop_rule.keeps_partial() { interrupt::keeping(render) } else { (render(), false) };
     if let Some(failure) = too_short {
@@ -308,7 +308,7 @@ fn on_gpu(
     Ok(judged(pictures, settings.sampling.samples, is_stopped))
 }
 
-/// Plans the memory for the pictures of an input.
+/// Plans the device memory for the pictures of an input.
 #[cfg(feature = "gpu")]
 pub(crate) fn plan(
     headless: &Headless,

@@ -1,4 +1,4 @@
-//! When rendering stops: after a time, at a level of noise, or at a signal.
+//! The rule that stops rendering: after a time, at a level of noise, or at a signal.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -26,7 +26,7 @@ pub(crate) struct StopArgs {
 }
 
 impl StopArgs {
-    /// A flag that was given, if there is one.
+    /// Returns a flag of the rule that was given, if there is one.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let open_end = open_end(self.time.as_ref(), self.noise);
         open_end.or(self.keep_partial.then_some("--keep-partial"))
@@ -107,19 +107,19 @@ fn parse_time(text: &str) -> Result<Duration, Failure> {
 pub(crate) struct Watching {
     stop_rule: StopRule,
     time: Option<Duration>,
-    /// Whether the noise is measured, which only lit pictures have.
+    /// Whether noise is measured, which needs a lit picture.
     measures_noise: bool,
     is_lit: bool,
     pixels: u64,
     started: Instant,
-    /// Whether the user was told that the program waits for the first sample.
+    /// Whether a line already said that the program waits for the first sample.
     has_said: Cell<bool>,
-    /// The approximate fraction of the pixels that had a sample when the time was up, if it was less than 1.
+    /// The approximate share of pixels that had a sample when the time was up, if it was less than 1.
     too_short: Cell<Option<f64>>,
 }
 
 impl Watching {
-    /// Starts the time of one picture. All `pictures` share the time equally.
+    /// Starts the clock for one picture. All `pictures` share the time equally.
     pub(crate) fn new(stop_rule: StopRule, pictures: usize, pixels: u64, is_lit: bool) -> Self {
         let time = stop_rule.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
         let measures_noise = is_lit && (stop_rule.noise.is_some() || progress::is_seen());
@@ -150,7 +150,7 @@ impl Watching {
         }
         if (is_interrupted || is_late) && !has_any {
             if !self.stop_rule.keep_partial {
-                // As a fraction of one sample for every pixel.
+                // This is the fraction of one sample for every pixel.
                 self.too_short.set(Some(progress.part * f64::from(progress.total)));
                 return Decision::Stop;
             }
@@ -178,7 +178,7 @@ impl Watching {
         )))
     }
 
-    /// Tells the user once that the program waits until every pixel has a sample, because a picture needs one.
+    /// Prints once that the program waits until every pixel has a sample, because a picture needs one.
     fn say_first_sample(&self, is_interrupted: bool) {
         if self.has_said.replace(true) {
             return;
@@ -201,7 +201,7 @@ impl Watching {
         }
         let seconds = elapsed.as_secs_f64();
         let by_time = self.time.map_or(0.0, |time| seconds / time.as_secs_f64());
-        // Noise falls with the root of the samples.
+        // Noise is inversely proportional to the square root of the number of samples.
         let by_noise = self
             .stop_rule
             .noise

@@ -1,4 +1,4 @@
-//! The view of one picture, or the two views of a stereo camera, and what is rendered of them.
+//! The view of one picture, or the two views of a stereo camera, with everything that rendering them needs.
 
 use crate::input::Input;
 use crate::render::device::OpenDevice;
@@ -8,7 +8,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
-/// A picture to render: its input and views, how long to take samples, and the device.
+/// A picture to render: its input and views, the rule that stops sampling, and the device.
 #[derive(Clone, Copy)]
 pub(crate) struct Shot<'a> {
     pub(crate) input: &'a Input,
@@ -31,12 +31,12 @@ pub(crate) fn views_of(input: &Input, film: Film) -> Vec<View<'_>> {
     cameras.iter().map(|camera| View::new(camera.as_ref(), film)).collect()
 }
 
-/// The bytes per pixel that are needed in addition to the layers of one picture.
+/// The bytes per pixel that are needed besides the layers of one picture.
 pub(crate) fn extra_bytes_per_pixel(views: &[View<'_>], layers: LayerSet) -> u64 {
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
     match views.len() {
         1 => encoding,
-        // The other picture, and a picture of twice the width that joins both.
+        // Memory for the other picture, and for a picture of twice the width that joins both.
         _ => 3 * layers.bytes_per_pixel() + 2 * encoding,
     }
 }

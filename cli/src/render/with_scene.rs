@@ -1,4 +1,4 @@
-//! Work with a scene on a device: other structures where one fails, uploads, and what errors of devices mean.
+//! Work with a scene on a device: other structures after one fails, uploads, and the meaning of device errors.
 
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
@@ -10,9 +10,9 @@ use pinhole::gpu::{
 };
 use pinhole::scene::Scene;
 
-/// Runs `work` with the plan of the structures for a choice, if they fit; the work begins with [`upload`]. If rays take too many
-/// steps in the structures and the choice was automatic, tells the user and tries again with others. Returns the result
-/// of `work` and the structure that was used. The inner errors are those of the device.
+/// Runs `work`, which must begin with [`upload`], with the planned structures for a choice, if they fit. If rays take
+/// too many steps and the choice was automatic, prints a line and tries others. Returns the result of `work` and the
+/// structure that was used. The inner errors are those of the device.
 pub(crate) fn with_structures<T>(
     headless: &Headless,
     choice: AccelChoice,
@@ -67,13 +67,13 @@ pub(crate) fn watch_upload(name: &str, progress: &UploadProgress) -> Decision {
     interrupt::decide()
 }
 
-/// What errors of the library call the table of emissive spheres.
+/// The library's name, in errors, for the table of emissive spheres.
 const EMITTERS: &str = "the table of emissive spheres";
 
-/// Turns an error of a device into a failure with the name of the adapter, and with what may help.
+/// Turns an error of a device into a failure with the name of the adapter and advice.
 pub(crate) fn explained(headless: &Headless, error: &GpuError) -> Failure {
     let remedy = match error {
-        // The reference would take hours for so many lights.
+        // The CPU reference would take hours for so many lights.
         GpuError::Limit { what: EMITTERS, .. } => {
             "; write light_sampling = \"chance\" into [path], which needs no table"
         }
@@ -97,7 +97,7 @@ fn named(headless: &Headless, error: &GpuError, remedy: &str) -> Failure {
     of_kind(error, anyhow::anyhow!("{adapter}: {error}{remedy}"))
 }
 
-/// The failure with a message that an error of a device is for the program.
+/// The failure with a message, of the kind that an error of a device is for the program.
 fn of_kind(error: &GpuError, message: anyhow::Error) -> Failure {
     match error {
         GpuError::Stopped => Failure::Stopped,

@@ -1,4 +1,4 @@
-//! Errors for arguments that the program does not understand: one line, with what was probably meant.
+//! Errors for wrong arguments, on one line, with a proposal.
 
 use std::process::ExitCode;
 
@@ -10,7 +10,7 @@ use crate::flags::data;
 use crate::terminal::failure;
 use crate::terminal::progress::{answer, tell, tell_all};
 
-/// Prints the help or the version as clap formats it, and an error on one line. `arguments` are those of the program,
+/// Prints the help or the version as clap formats it, or an error on one line. `arguments` are those of the program,
 /// without its name.
 pub(crate) fn explain(error: &clap::Error, arguments: &[String]) -> ExitCode {
     if let Some(message) = removed_message(error, arguments) {
@@ -44,8 +44,8 @@ pub(crate) fn one_message(text: &str) -> &str {
     message.split("\n\nFor more information").next().unwrap_or_default()
 }
 
-/// Flags, their values, and commands that are gone, with what to use instead. The words of a command before a flag say
-/// that only this command had it.
+/// Removed flags, values and commands, with their replacements. Words before the last one name the command, or the
+/// flag of a value, to which an entry applies.
 const REMOVED: &[(&str, &str)] = &[
     ("--samples-per-part", "divide pictures by `pinhole job split --tiles CxR`"),
     ("job join", "`pinhole job merge` puts all parts together in one pass"),
@@ -59,18 +59,18 @@ const REMOVED: &[(&str, &str)] = &[
 ];
 
 /// Returns the message about a flag or a command that was removed. `arguments` are those of the program, without its
-/// name. `None` if the error is about something else.
+/// name. `None` if the error has another cause.
 pub(crate) fn removed_message(error: &clap::Error, arguments: &[String]) -> Option<String> {
     let kinds =
         [ContextKind::InvalidArg, ContextKind::InvalidSubcommand, ContextKind::InvalidValue];
     let names = kinds.into_iter().filter_map(|kind| match error.get(kind) {
-        // A flag with a value is named as `--accel <ACCEL>`.
+        // clap names a flag with a value as `--accel <ACCEL>`.
         Some(ContextValue::String(name)) => name.split(' ').next(),
         _ => None,
     });
     let has_value = error.get(ContextKind::InvalidValue).is_some();
     let is_named = |removed: &str| {
-        // A flag that has no value any more.
+        // This flag has no value any more.
         if let Some(flag) = removed.strip_suffix('=') {
             return has_value && names.clone().any(|name| name == flag);
         }
@@ -89,11 +89,11 @@ pub(crate) fn removed_message(error: &clap::Error, arguments: &[String]) -> Opti
 /// Commands that take scene files and have no flags for columns of data.
 const SCENES: [&str; 3] = ["verify", "plan", "bench"];
 
-/// How alike a flag must be to be proposed, from 0 to 1.
+/// The similarity from which a flag is proposed, from 0 to 1.
 const ALIKE: f64 = 0.7;
 
-/// Returns the message about an unknown flag: a flag that is spelled alike, or where the flag belongs, or where all flags
-/// are listed. `arguments` are those of the program, without its name. `None` if the error is not about a flag.
+/// Returns the message about an unknown flag: a similar flag, or the command of the flag, or the place where flags are
+/// listed. `arguments` are those of the program, without its name. `None` if the error is not about a flag.
 pub(crate) fn unknown_message(error: &clap::Error, arguments: &[String]) -> Option<String> {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
     if !flag.starts_with('-') {
@@ -138,7 +138,7 @@ fn flags(command: &Command) -> impl Iterator<Item = String> {
     command.get_opts().filter_map(|flag| flag.get_long()).map(|name| format!("--{name}"))
 }
 
-/// The flag of a command that is spelled most alike, if one is.
+/// The most similar flag of a command, if one is similar enough.
 fn nearest(unknown: &str, command: &Command) -> Option<String> {
     let unknown = unknown.to_lowercase();
     let likeness = |flag: &String| {

@@ -36,9 +36,9 @@ pub(crate) enum Failure {
     /// The device was lost or did not answer in time.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "without a device there is none"))]
     Device(anyhow::Error),
-    /// The user stopped it while a device was at work.
+    /// The user stopped the job while a device was at work.
     Stopped,
-    /// The user stopped it after some of several files were complete, as the message says.
+    /// The user stopped the job after some of several files were complete, as the message says.
     StoppedBetween(&'static str),
 }
 

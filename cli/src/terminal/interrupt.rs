@@ -1,8 +1,8 @@
 //! Handles Ctrl-C and other signals that ask the program to end. No incomplete file is left behind.
 //!
-//! The program normally exits at once. While a driver is at work, or a picture of which a part will be kept, the first
-//! signal asks the work to stop and a second one exits. Files are written under temporary names, which are removed at a signal. They get their final names while
-//! the lock is held that the signal handler needs, so there are all of the files or none.
+//! The program normally exits at once. While a driver is at work, or on a picture that will be kept in part, the first
+//! signal asks the work to stop and a second one exits. Files have temporary names, and are removed at a signal. They
+//! get their final names under the lock of the signal handler, so either all files exist or none.
 
 use std::path::PathBuf;
 #[cfg(feature = "gpu")]
@@ -32,7 +32,7 @@ struct State {
     is_requested: bool,
     /// Temporary files to remove. The list may include files that were renamed or removed since.
     temporaries: Vec<PathBuf>,
-    /// The message if the program ends now.
+    /// The message if the program is ended now.
     message: &'static str,
 }
 
@@ -41,9 +41,9 @@ struct State {
 enum Phase {
     /// Work that can be interrupted at any time.
     Free,
-    /// Work of a driver, whose threads must not be stopped abruptly, or on a picture of which a part is kept.
+    /// Work of a driver, whose threads must not be stopped abruptly, or on a picture that will be kept in part.
     Device,
-    /// Work with a driver that has nothing to do for a while, which can be interrupted.
+    /// A pause during work with a driver, in which the driver has nothing to do and can be interrupted.
     #[cfg(feature = "gpu")]
     Rest,
 }
@@ -60,11 +60,11 @@ pub(crate) fn install() -> Result<(), Failure> {
 #[cfg(unix)]
 fn listen() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // With a handler for SIGXFSZ, a file that exceeds its size limit gives an ordinary error and does not end the
-    // program.
+    // With a handler for SIGXFSZ, a file that exceeds its size limit causes an ordinary error instead of ending
+    // the program.
     signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
     let mut signals = vec![SIGINT, SIGTERM];
-    // A handler for SIGHUP would undo what `nohup` did.
+    // A handler for SIGHUP would undo the effect of `nohup`.
     if !ignores_hang_up() {
         signals.push(SIGHUP);
     }
@@ -94,7 +94,7 @@ fn on_signal() {
     std::process::exit(STOPPED.into());
 }
 
-/// Runs work with a driver. The work should end soon after [`decide`] returns `Stop`.
+/// Runs work with a driver, which should end soon after [`decide`] returns `Stop`.
 #[cfg(feature = "gpu")]
 pub(crate) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     state().phase = Phase::Device;
@@ -104,7 +104,7 @@ pub(crate) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     if state.is_requested { Err(Failure::Stopped) } else { Ok(result) }
 }
 
-/// Says whether the driver has nothing to do during work with it, so that a signal may end the program.
+/// Records whether the driver has nothing to do during its work, so that a signal may end the program.
 #[cfg(feature = "gpu")]
 pub(crate) fn driver_rests(rests: bool) {
     let mut state = state();
@@ -125,7 +125,7 @@ pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     (result, std::mem::take(&mut state.is_requested))
 }
 
-/// Whether the program was asked to end, so that work which it awaits should stop.
+/// Whether the program was asked to end, so that work should stop.
 pub(crate) fn is_requested() -> bool {
     state().is_requested
 }
@@ -162,13 +162,13 @@ pub(crate) fn set_message(message: &'static str) {
     state().message = message;
 }
 
-/// Work that must end in time. Dropping it says that the work has ended.
+/// Work that must end in time. Dropping the value marks the end of the work.
 pub(crate) struct Deadline {
     _ended: Sender<()>,
 }
 
 impl Deadline {
-    /// Ends the program after this time, with the exit code for devices that do not answer and with what did not happen.
+    /// Ends the program after this time, with the exit code for unresponsive devices. `what` completes the message.
     pub(crate) fn new(limit: Duration, what: String) -> Self {
         let (ended, is_ended) = channel();
         let watch = move || {
@@ -195,7 +195,7 @@ pub(crate) fn limit_opening(limit: Duration) {
     let _ = OPENING.set(limit);
 }
 
-/// Opens a device, and ends the program if that takes longer than it may.
+/// Opens a device, and ends the program if that takes longer than allowed.
 #[cfg(feature = "gpu")]
 pub(crate) fn opening<T>(open: impl FnOnce() -> T) -> T {
     let limit = OPENING.get();
@@ -207,11 +207,11 @@ pub(crate) fn opening<T>(open: impl FnOnce() -> T) -> T {
 fn give_up(why: &str) -> ! {
     progress::close();
     tell(format_args!("error: {why}; the device may hang: try again"));
-    // What a driver does at the end of a process may hang as well.
+    // A driver may hang at the end of a process as well.
     let _ = std::thread::Builder::new().spawn(|| {
         std::thread::sleep(Duration::from_secs(5));
         std::process::abort();
     });
-    // The lock of signals is not held, so a file that is being renamed is renamed or not.
+    // The lock of signals is not held, so a file is either renamed completely or not at all.
     std::process::exit(DEVICE.into());
 }

@@ -1,4 +1,4 @@
-//! How much memory there is, and what this process takes of it.
+//! The memory of the machine, and the part that this process takes.
 
 use std::fs::read_to_string;
 use std::path::Path;
@@ -10,13 +10,13 @@ use crate::terminal::failure::Failure;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
-/// The most bytes per pixel that encoding needs in addition to the picture: 8 for the encoded pixels and 8 for the PNG
-/// made of them; or 8 for a PNG that waits for standard output and 12 for an array. EXR is written row by row.
+/// The most bytes per pixel that encoding needs besides the picture: 8 for the encoded pixels and 8 for the PNG made
+/// of them; or 8 for a PNG that waits for standard output and 12 for an array. EXR is written row by row.
 pub(crate) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
-/// Refuses a picture of the CPU reference for which the machine, or the control group that the program runs in, has not
-/// enough memory. Each pixel needs `extra_bytes_per_pixel` in addition to the layers. The memory that an adapter needs
-/// is in its plan.
+/// Refuses a picture of the CPU reference for which the machine, or the program's control group, has not enough memory.
+/// Each pixel needs `extra_bytes_per_pixel` in addition to the layers. The plan of an adapter has the memory that it
+/// needs.
 pub(crate) fn check(
     film: &Film,
     size_from: &str,
@@ -44,7 +44,7 @@ pub(crate) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<()> 
     Ok(())
 }
 
-/// Files of at most this many bytes are read without a check of the free memory, which takes time.
+/// Maximum bytes of a file that is read without a check of the free memory, because the check takes time.
 const SMALL: u64 = 1 << 24;
 
 /// Refuses a file of `size` bytes if there is not enough memory for it and for its spheres. `what` is the start of the
@@ -57,7 +57,7 @@ pub(crate) fn check_reading(what: &str, size: u64) -> Result<()> {
     check_bytes(what, size.saturating_mul(7) / 3, "a smaller file")
 }
 
-/// Returns the bytes that are free for this program; `None` if that is not known, so that only the allocation can fail.
+/// Returns the bytes that are free for this program; `None` if they are not known, so that only allocations can fail.
 pub(crate) fn available() -> Option<u64> {
     let what = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(what);
@@ -81,18 +81,18 @@ pub(crate) fn readable(bytes: u64) -> String {
     }
 }
 
-/// The bytes that the control groups of this process leave it; `None` if none has a limit.
+/// The bytes that the control groups of this process leave free; `None` if no group has a limit.
 fn free_of_groups() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").ok()?;
     free_in(Path::new("/sys/fs/cgroup"), &groups)
 }
 
-/// The same for groups as `/proc/self/cgroup` lists them, in a folder of control groups.
+/// Returns the same for the groups in a text like `/proc/self/cgroup`, in a folder of control groups.
 fn free_in(root: &Path, groups: &str) -> Option<u64> {
     groups.lines().filter_map(|line| free_of_line(root, line)).min()
 }
 
-/// A line is `0::/path` for version 2 of control groups, and `number:memory:/path` for version 1.
+/// Returns the same for a line, which is `0::/path` for version 2 and `number:memory:/path` for version 1.
 fn free_of_line(root: &Path, line: &str) -> Option<u64> {
     let mut fields = line.splitn(3, ':').skip(1);
     let (controllers, path) = (fields.next()?, fields.next()?);
@@ -108,7 +108,7 @@ fn free_of_line(root: &Path, line: &str) -> Option<u64> {
     all.filter_map(|folder| files.free(folder)).min()
 }
 
-/// What a version of control groups calls its files, and in the statistics what cannot be given back.
+/// Names in a version of control groups: the file of the limit, and statistics of memory that cannot be given back.
 struct Files {
     limit: &'static str,
     used: [&'static str; 2],
@@ -120,7 +120,7 @@ const VERSION_1: Files =
 const VERSION_2: Files = Files { limit: "memory.max", used: ["anon", "shmem"] };
 
 impl Files {
-    /// What a group leaves; `None` if it has no limit.
+    /// The bytes that a group leaves free; `None` if it has no limit.
     fn free(&self, folder: &Path) -> Option<u64> {
         let limit: u64 = read_to_string(folder.join(self.limit)).ok()?.trim().parse().ok()?;
         let statistics = read_to_string(folder.join("memory.stat")).ok()?;
@@ -140,7 +140,7 @@ pub(crate) fn peak_bytes() -> Option<u64> {
     kibibytes.strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)
 }
 
-/// Whether the process was started so that it outlives its terminal, as by `nohup`.
+/// Whether the process was started to outlive its terminal, as with `nohup`.
 #[cfg(unix)]
 pub(crate) fn ignores_hang_up() -> bool {
     /// The bit of SIGHUP in the mask, which is signal 1.

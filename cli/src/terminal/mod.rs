@@ -1,4 +1,4 @@
-//! The process and its terminal: words, failures, signals, threads, memory, time.
+//! The process and its terminal: output, failures, signals, threads, memory and time.
 
 pub(crate) mod explain;
 pub(crate) mod failure;
@@ -10,13 +10,13 @@ pub(crate) mod progress;
 pub(crate) mod text;
 pub(crate) mod threads;
 
-/// Without devices, no phase is measured.
+/// Without devices, phases are not measured.
 #[cfg(not(feature = "gpu"))]
 pub(crate) mod profile {
     pub(crate) struct NoPhase;
 
     impl Drop for NoPhase {
-        /// Ends the phase, like that of a profile.
+        /// Ends the phase, as the one of a profile does.
         fn drop(&mut self) {}
     }
 

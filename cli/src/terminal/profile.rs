@@ -1,6 +1,6 @@
-//! `render --profile`: measures where time goes, and prints a table.
+//! `render --profile`: measures the time of phases, and prints a table.
 //!
-//! There is one profile for the whole program, so that every part of it can name its phases.
+//! There is one profile for the whole program, so that all code can name its phases.
 
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -47,7 +47,7 @@ pub(crate) fn finish() {
     }
 }
 
-/// Formats the totals as a table: the thread that renders, threads beside it, and the device.
+/// Formats the totals as a table: the rendering thread, other threads, and the device.
 fn readable(totals: &[ProfileTotal], elapsed: Duration) -> String {
     let mut rows: Vec<[String; 4]> = Vec::new();
     for (title, track) in [

@@ -1,4 +1,4 @@
-//! The program's words on the terminal: lines, answers, and how far the work is.
+//! Output on the terminal: lines, results, and the progress of the work.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -21,8 +21,8 @@ pub(crate) fn stage(text: impl Into<Cow<'static, str>>) {
     }
 }
 
-/// Shows the progress of many pictures, in place of that of each of them from now on. Returns whether it is shown, which
-/// needs a terminal.
+/// Shows the progress of many pictures, which replaces that of single pictures from now on. Returns whether it is
+/// shown, which needs a terminal.
 pub(crate) fn frames(text: String) -> bool {
     let mut line = line();
     let is_seen = line.is_seen();
@@ -67,7 +67,7 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
         let now = Instant::now();
         let plain = line.plain.get_or_insert_with(|| Plain::new(now));
         let due = plain.line(now, part, message.as_deref());
-        // To tell it needs the lock.
+        // `tell` needs the lock.
         drop(line);
         due.iter().for_each(tell);
         return;
@@ -91,7 +91,7 @@ pub(crate) fn clear() {
     }
 }
 
-/// Removes the line, and shows no more progress.
+/// Removes the line, and stops showing progress.
 pub(crate) fn close() {
     clear();
     line().is_closed = true;
@@ -100,22 +100,22 @@ pub(crate) fn close() {
 static LINE: Mutex<Line> =
     Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
 
-/// The time between two lines where standard error is no terminal.
+/// The time between two lines if standard error is not a terminal.
 const PLAIN: Duration = Duration::from_secs(10);
 
-/// What the line shows, if anything.
+/// The contents of the line.
 pub(crate) struct Line {
     pub(crate) bar: Option<ProgressBar>,
     /// Number of steps of a bar; `None` for a stage whose length is not known.
     pub(crate) total: Option<u64>,
-    /// Whether the line shows the progress of all frames, and not that of one picture.
+    /// Whether the line shows the progress of all frames instead of one picture.
     pub(crate) is_held: bool,
     pub(crate) is_closed: bool,
-    /// The lines without a terminal, since the first part of a picture.
+    /// The state of the lines without a terminal, since the first part of a picture.
     pub(crate) plain: Option<Plain>,
 }
 
-/// When lines are due where standard error is no terminal.
+/// The times at which lines are due if standard error is not a terminal.
 pub(crate) struct Plain {
     start: Instant,
     next: Instant,
@@ -126,7 +126,7 @@ impl Plain {
         Self { start: now, next: now + PLAIN }
     }
 
-    /// The line about a part of the picture, if one is due.
+    /// Returns the line about the progress of a picture, if one is due.
     pub(crate) fn line(
         &mut self,
         now: Instant,
@@ -143,13 +143,13 @@ impl Plain {
     }
 }
 
-/// The line, which nobody else changes meanwhile.
+/// Locks the line, so that no other thread changes it meanwhile.
 pub(crate) fn line() -> MutexGuard<'static, Line> {
     LINE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Line {
-    /// Shows another bar in place of the one that is there.
+    /// Shows another bar in place of the current one.
     pub(crate) fn show(
         &mut self,
         bar: ProgressBar,
@@ -159,7 +159,7 @@ impl Line {
         if let Some(old) = self.bar.take() {
             old.finish_and_clear();
         }
-        // A wrong template is not a reason to fail.
+        // A wrong template should not make the program fail.
         let style = ProgressStyle::with_template(template);
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
         self.total = total;
@@ -203,7 +203,7 @@ pub(crate) fn notes(quiet: bool) -> impl Fn(&dyn fmt::Display) + Copy {
     }
 }
 
-/// Prints the result on standard output.
+/// Writes the result to standard output.
 pub(crate) fn answer(bytes: &[u8]) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {

@@ -1,4 +1,4 @@
-//! Tables for people, words of command lines for shells, so that people and scripts can give them again, and names of values.
+//! Tables for people, shell quoting, so that command lines can be repeated, and parsers for named values.
 
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -31,7 +31,7 @@ pub(crate) fn table<const N: usize>(heading: [&str; N], rows: &[[String; N]]) ->
     text
 }
 
-/// A parser of names, each with its help, or none if that is empty, and the value that it stands for.
+/// A parser of names. Each has its help, which is not shown if empty, and its value.
 pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
     all: &'static [(&'static str, &'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
@@ -45,7 +45,7 @@ pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
     })
 }
 
-/// A word for a shell, which is left as it is if no character has a meaning of its own there.
+/// Quotes a word for a shell. A word without special characters stays as it is.
 pub(crate) fn in_quotes(text: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-=+,%:@".contains(c);
     match !text.is_empty() && text.chars().all(is_plain) {

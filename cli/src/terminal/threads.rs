@@ -10,7 +10,7 @@ use crate::terminal::progress::tell;
 /// The environment variable for the number of threads, which rayon reads.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
-/// The most threads that are started for each processor. More make nothing quicker: to start thousands takes minutes.
+/// The most threads that are started for each processor. More are not faster, and starting thousands takes minutes.
 const MOST_PER_PROCESSOR: usize = 8;
 
 /// The most threads that are started on a machine with few processors.
@@ -39,12 +39,12 @@ pub(crate) fn start() -> Result<(), Failure> {
     })
 }
 
-/// Returns the number of threads to start in place of the number that was asked for, if that is far too large. What is
-/// not a number is left to rayon, which then chooses by itself.
+/// Returns the number of threads to start instead of the requested number, if that is far too large. Text that is not
+/// a number is left to rayon, which then chooses by itself.
 fn lowered(wanted: &str, processors: usize) -> Option<usize> {
     let most = (MOST_PER_PROCESSOR * processors).max(MOST_ON_FEW);
     let is_number = !wanted.is_empty() && wanted.bytes().all(|byte| byte.is_ascii_digit());
-    // A number that does not fit is larger than any other.
+    // A number that does not fit counts as the largest.
     let wanted = wanted.parse::<usize>().unwrap_or(usize::MAX);
     (is_number && wanted > most).then_some(most)
 }

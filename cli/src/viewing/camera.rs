@@ -9,18 +9,18 @@ use pinhole::camera::CameraParameters;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
 
-/// A camera of any kind, with its place in the world: the flags of the camera as a viewer changes them.
+/// A camera of any kind that has a position, stored as camera flags that a viewer changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewCamera(CameraTable);
 
 impl ViewCamera {
-    /// Takes the parameters of a camera that has its place, as [`crate::viewing::Facts::camera`] has. `None` if it has no place.
+    /// Takes the parameters of a camera, such as [`crate::viewing::Facts::camera`]; `None` if they have no position.
     pub fn new(parameters: &CameraParameters) -> Option<Self> {
         let camera = Self(CameraTable::new(parameters)?);
         camera.place().map(|_| camera)
     }
 
-    /// The eye, the direction of view, which is no unit vector, and the direction that is up.
+    /// The eye, the direction of view, which is not normalized, and the direction that is up.
     fn place(&self) -> Option<[DVec3; 3]> {
         let eye = self.0.vector("eye")?;
         let toward = self.0.vector("look_at").map(|point| point - eye);
@@ -49,12 +49,12 @@ impl ViewCamera {
         self.0.vector("look_at")
     }
 
-    /// Whether what is far is as large as what is near, so that the camera comes no nearer by moving.
+    /// Whether far spheres are as large as near ones, so that moving the camera does not enlarge them.
     pub fn is_orthographic(&self) -> bool {
         self.0.kind == "orthographic"
     }
 
-    /// Moves the camera. Numbers are rounded to what a picture can show, so that flags stay short.
+    /// Moves the camera. Numbers are rounded to the precision that a picture can show, so that flags stay short.
     pub fn set_place(&mut self, eye: DVec3, look_at: DVec3, up: DVec3) {
         let scale = eye.distance(look_at);
         let place = |point: DVec3| list(point.to_array().map(|x| rounded(x, 1e-6 * scale)));
@@ -72,8 +72,8 @@ impl ViewCamera {
         self.0.set("zoom", rounded(zoom, 1e-4 * zoom));
     }
 
-    /// Lets a camera with a given view plane fill a picture of this aspect ratio (width over height) without
-    /// stretching it: the height stays.
+    /// Changes the view plane of a camera, if it has one, to this aspect ratio (width over height), so that
+    /// the picture is not stretched. The height stays.
     pub fn set_aspect(&mut self, aspect: f64) {
         let plane = self.0.table.get("half_extent").and_then(Value::as_array);
         if let Some(height) = plane.and_then(|plane| plane.get(1)).and_then(Value::as_float) {
@@ -89,13 +89,13 @@ impl ViewCamera {
     }
 }
 
-/// Rounds to a power of ten of about this step.
+/// Rounds a number to a power of ten of about this step.
 fn rounded(number: f64, step: f64) -> f64 {
     let digits = -step.log10().floor();
     if !digits.is_finite() {
         return number;
     }
-    // The shortest text that is near enough, which is read back as the same number.
+    // The shortest text that is near enough is read back as the same number.
     let digits = digits.clamp(0.0, 17.0) as usize;
     let text = format!("{number:.digits$}");
     let number = text.parse::<f64>().unwrap_or(number);
@@ -103,7 +103,7 @@ fn rounded(number: f64, step: f64) -> f64 {
 }
 
 impl ViewCamera {
-    /// Writes the camera into flags, in place of all flags of the camera that were there.
+    /// Writes the camera into flags, and removes all other flags of the camera.
     pub fn write_to(&self, flags: &mut RenderFlags) {
         flags.remove_camera();
         if self.0.kind != "pinhole" {
@@ -125,7 +125,7 @@ impl ViewCamera {
         }
     }
 
-    /// Writes flags that let the camera keep its direction and frame the whole scene.
+    /// Writes flags that keep the direction of the camera and frame the whole scene.
     pub fn write_fit_to(&self, flags: &mut RenderFlags) {
         let round = |v: DVec3| list(v.to_array().map(|x| rounded(x, 1e-6)));
         let mut fit = self.clone();
@@ -139,21 +139,21 @@ impl ViewCamera {
 }
 
 impl RenderFlags {
-    /// The camera of the flags, if they say where it is.
+    /// Returns the camera of the flags, if they give its position.
     pub fn camera(&self) -> Result<Option<ViewCamera>, ViewError> {
         if self.get("eye").is_none() {
             return Ok(None);
         }
         let flags = self.render_args("-")?.input.view.camera.flags()?;
         let parameters = flags.parameters(None, DVec3::Y).map_err(ViewError::usage)?;
-        // A camera with an eye depends on no spheres, so that these are any.
+        // A camera with an eye does not depend on the spheres, so any bounds will do.
         let any = Bounds::of_sphere(DVec3::ZERO, 1.0);
         let placed = parameters.placed(1.0, &(&any).into());
         Ok(ViewCamera::new(&placed.map_err(|error| ViewError::usage(error.to_string()))?))
     }
 }
 
-/// The value of a flag. Numbers are written such that they are read back to the bit.
+/// Formats the value of a flag. Numbers are read back to the bit.
 fn text(value: &Value) -> Option<String> {
     match value {
         Value::Float(number) => Some(number.to_string()),
@@ -174,7 +174,7 @@ mod tests {
         toml::from_str(table).unwrap()
     }
 
-    /// Flags written by a camera make the same camera again, to the bit.
+    /// Flags written by a camera give the same camera again, to the bit.
     #[test]
     fn a_camera_survives_its_flags() {
         for table in [

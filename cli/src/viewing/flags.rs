@@ -1,4 +1,4 @@
-//! A file and flags of `pinhole render`, as text.
+//! A file and flags of `pinhole render`, as texts.
 
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -18,32 +18,31 @@ use crate::render::Job;
 use crate::terminal::explain::{explain, one_message};
 use crate::terminal::text::in_quotes;
 
-/// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
+/// A file and flags of `pinhole render`, which are the whole state of a view.
 ///
-/// Every flag is there once, except `--label`, in the order in which `pinhole render --help` lists them; flags that are
-/// set later follow.
+/// Every flag occurs once, except `--label`, in the order of `pinhole render --help`. Flags that are set later follow.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderFlags {
     path: String,
-    /// Names without dashes, and values, which are empty for flags without one.
+    /// Names without dashes, with values, which are empty for flags without a value.
     flags: Vec<(String, String)>,
 }
 
-/// What a flag decides.
+/// The effect of a flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decides {
-    /// Which spheres there are, and their colours.
+    /// The spheres and their colours.
     Data,
     Camera,
-    /// The light, which scene files give to their spheres as well.
+    /// The light, which scene files also give to their spheres.
     Light,
-    /// The film, the encoding, and what is drawn over the picture.
+    /// The film, the encoding, and annotations.
     Picture,
 }
 
 impl RenderFlags {
-    /// Parses the arguments of this process, which are those of `pinhole view`. Prints the help, the version, or what is
-    /// wrong, as `pinhole` does.
+    /// Parses the arguments of this process, which are those of `pinhole view`. Prints the help, the version, or an
+    /// error, as `pinhole` does.
     pub fn of_process() -> Result<Self, ExitCode> {
         let words = std::env::args_os().skip(1);
         let mut arguments: Vec<String> = words.map(|word| word.to_string_lossy().into()).collect();
@@ -57,7 +56,7 @@ impl RenderFlags {
         })
     }
 
-    /// Parses words: a file and flags, as they stand behind `pinhole view`.
+    /// Parses words: a file and flags, as they follow `pinhole view`.
     pub fn parse<W: Into<OsString>>(words: impl IntoIterator<Item = W>) -> Result<Self, ViewError> {
         Self::matched(words.into_iter().map(Into::into)).map_err(|error| match error {
             Refusal::Clap(error) => of_clap(&error),
@@ -102,7 +101,7 @@ impl RenderFlags {
                 "-: the viewer reads its file more than once, which standard input cannot give; name a file",
             )));
         }
-        // The same checks that `render` makes before it reads anything.
+        // `render` makes the same checks before it reads anything.
         found.job().map_err(Refusal::Other)?;
         Ok(found)
     }
@@ -112,12 +111,12 @@ impl RenderFlags {
         &self.path
     }
 
-    /// The value of a flag, which is named without dashes; empty for a flag without a value. `None` if it is not there.
+    /// The value of a flag, named without dashes. It is empty for flags without a value; `None` if the flag is absent.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.flags.iter().find(|(other, _)| other == name).map(|(_, value)| value.as_str())
     }
 
-    /// Gives a flag a value, or none if it is empty. The value is checked when the flags are used.
+    /// Sets the value of a flag, which is empty for a flag without one. It is checked when the flags are used.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.flags.iter_mut().find(|(other, _)| other == name) {
             Some((_, old)) => value.clone_into(old),
@@ -135,9 +134,9 @@ impl RenderFlags {
         self.flags.retain(|(name, _)| decides(name) != Decides::Camera);
     }
 
-    /// Whether the same spheres in the same colours belong to both, so that only camera, light or film differ.
+    /// Whether both have the same spheres in the same colours, so that only camera, light or film may differ.
     pub fn has_data_of(&self, other: &Self) -> bool {
-        // Scene files give light to spheres, too.
+        // Scene files also give light to spheres.
         let is_scene = self.path.to_ascii_lowercase().ends_with(".toml");
         let of_data = |flags: &Self| -> Vec<(String, String)> {
             let is_kept = |name: &str| match decides(name) {
@@ -153,13 +152,13 @@ impl RenderFlags {
         self.path == other.path && of_data(self) == of_data(other)
     }
 
-    /// Whether both read the same file in the same way, but perhaps other frames of it.
+    /// Whether both read the same file in the same way, though perhaps other frames of it.
     pub(super) fn has_file_of(&self, other: &Self) -> bool {
         let reading = ["format", "topology", "columns", "radius"];
         self.path == other.path && reading.iter().all(|name| self.get(name) == other.get(name))
     }
 
-    /// The words behind `pinhole render`, without the output.
+    /// The words after `pinhole render`, without the output.
     pub fn words(&self) -> Vec<String> {
         let path =
             if self.path.starts_with('-') { format!("./{}", self.path) } else { self.path.clone() };
@@ -170,7 +169,7 @@ impl RenderFlags {
         [path].into_iter().chain(self.flags.iter().map(flag)).collect()
     }
 
-    /// The command that renders what is seen, for a shell.
+    /// The command that renders this view, for a shell.
     pub fn command_line(&self, output: &str) -> String {
         let end = ["-o".to_owned(), output.to_owned()];
         let words: Vec<String> =
@@ -180,7 +179,7 @@ impl RenderFlags {
 
     /// Renders and writes the picture, as `pinhole render` does with the same flags.
     pub fn save(&self, output: &str) -> Result<(), ViewError> {
-        // A name that starts with a dash is a file here, not standard output.
+        // A name that starts with a dash is a file here, and `-` is not standard output.
         let output =
             if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
         Ok(render::run(&*self.render_args(&output)?)?)
@@ -227,7 +226,7 @@ fn text(word: &std::ffi::OsStr) -> Result<String, ViewError> {
     })
 }
 
-/// What a flag decides, by the heading under which the help shows it.
+/// The effect of a flag, by its heading in the help.
 fn decides(name: &str) -> Decides {
     static HEADINGS: OnceLock<HashMap<String, Decides>> = OnceLock::new();
     let headings = HEADINGS.get_or_init(|| {

@@ -1,8 +1,8 @@
-//! What the viewer shares with `pinhole render`, so that both make the same picture.
+//! The code that the viewer shares with `pinhole render`, so that both make the same picture.
 //!
-//! The state of a view is [`RenderFlags`]: a file, and flags of `pinhole render`. [`OpenView`] is what they mean:
-//! spheres, camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
-//! `pinhole render` itself.
+//! The state of a view is [`RenderFlags`]: a file, and flags of `pinhole render`. [`OpenView`] has the spheres, the
+//! camera and the settings that follow from them. [`StillRenderer`] renders the picture for a window, and
+//! [`RenderFlags::save`] runs `pinhole render` itself.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -19,7 +19,7 @@ mod flags;
 mod open_view;
 mod still;
 
-/// Why something cannot be shown: one line for the user, and the exit code of `pinhole`.
+/// The reason why something cannot be shown: one line for the user, and the exit code of `pinhole`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewError {
     message: String,
@@ -27,7 +27,7 @@ pub struct ViewError {
 }
 
 impl ViewError {
-    /// Something that failed; the exit code is 1.
+    /// A failure, with the exit code 1.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: FAILED }
     }
@@ -59,7 +59,7 @@ impl fmt::Display for ViewError {
 
 impl std::error::Error for ViewError {}
 
-/// Prepares the process for showing files: starts its threads, and shows no progress on the terminal.
+/// Prepares the process for showing files. It starts threads, and turns progress on the terminal off.
 pub fn prepare() -> Result<(), ViewError> {
     crate::terminal::progress::close();
     Ok(crate::terminal::threads::start()?)
@@ -82,6 +82,6 @@ pub fn grouped(number: usize) -> String {
 
 /// Prints a line on standard output.
 pub fn print_line(line: &str) {
-    // Nobody may be listening, which is no error of a window.
+    // A closed pipe is not an error here.
     let _ = crate::terminal::progress::answer(format!("{line}\n").as_bytes());
 }

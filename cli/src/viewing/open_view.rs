@@ -1,4 +1,4 @@
-//! What flags mean: spheres with a camera and settings.
+//! The spheres, the camera and the settings that follow from flags.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::input::read_file::Format;
 use crate::input::{FramedScene, Input, OpenFrames, Source};
 use crate::terminal::failure::Failure;
 
-/// What [`RenderFlags`] mean: the spheres of a file, seen by a camera with a film, and the settings of the picture.
+/// The meaning of [`RenderFlags`]: the spheres of a file, a camera with a film, and the settings of the picture.
 pub struct OpenView {
     flags: RenderFlags,
     pub(super) input: Input,
@@ -36,22 +36,22 @@ pub struct OpenView {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Facts {
-    /// The flags that are shown.
+    /// The current flags.
     pub flags: RenderFlags,
     /// The spheres.
     pub scene: Arc<Scene>,
-    /// The columns of the data, with a value for each of its spheres, which are the last ones of the scene apart from
-    /// [`Scene::added`]; empty if the data has none.
+    /// The columns of the data, with a value for each sphere of the data. These are the last spheres of the scene
+    /// apart from [`Scene::added`]. Empty if the data has no columns.
     pub columns: Arc<Vec<Column>>,
-    /// The parameters of the camera, with its place.
+    /// The parameters of the camera, with its position.
     pub camera: CameraParameters,
     /// The settings.
     pub settings: RenderSettings,
     /// The name of the style, if there is one.
     pub style: Option<&'static str>,
-    /// The column that colours the spheres although no flag asks for it.
+    /// The column that colours the spheres without a flag.
     pub own_color_by: Option<String>,
-    /// The frames; `None` for a file that has one picture.
+    /// The frames; `None` for a file with one picture.
     pub time_line: Option<TimeLine>,
     /// Notes for the user about the file.
     pub notes: Vec<String>,
@@ -62,7 +62,7 @@ pub struct Facts {
 pub struct TimeLine {
     /// The number of frames, at least one.
     pub count: usize,
-    /// The frame that is shown, counted from 0.
+    /// The current frame, counted from 0.
     pub frame: usize,
 }
 
@@ -74,7 +74,7 @@ struct FileFrames {
 }
 
 impl OpenView {
-    /// Reads the file. Frames that were found before in the same file, for `before`, are not searched again.
+    /// Reads the file. Frames that `before` found in the same file are not searched again.
     pub fn open(flags: &RenderFlags, before: Option<&Self>) -> Result<Self, ViewError> {
         let job = flags.job()?;
         let before = before.filter(|before| flags.has_file_of(&before.flags));
@@ -106,7 +106,7 @@ impl OpenView {
         Ok(shown)
     }
 
-    /// Changes camera, light and film to those of flags, whose data must be the same; see [`RenderFlags::has_data_of`].
+    /// Changes camera, light and film to those of flags with the same data; see [`RenderFlags::has_data_of`].
     pub fn see(&mut self, flags: &RenderFlags) -> Result<(), ViewError> {
         let job = flags.job()?;
         let source = &job.source;
@@ -130,7 +130,7 @@ impl OpenView {
         Ok(())
     }
 
-    /// Returns what a window shows beside the picture.
+    /// Returns the data that a window shows beside the picture.
     pub fn facts(&self) -> Facts {
         let Self { flags, input, columns, notes, .. } = self;
         Facts {
@@ -146,7 +146,7 @@ impl OpenView {
         }
     }
 
-    /// The flags that are shown.
+    /// The current flags.
     pub fn flags(&self) -> &RenderFlags {
         &self.flags
     }
@@ -156,7 +156,7 @@ impl OpenView {
         &self.input.scene
     }
 
-    /// The camera; for two eyes, that of the middle between them.
+    /// The camera; for two eyes, the one in the middle between them.
     pub fn camera(&self) -> &dyn Camera {
         self.input.camera.as_ref()
     }
@@ -174,14 +174,14 @@ impl OpenView {
     }
 }
 
-/// Finds the frames of a file, if its format has such.
+/// Finds the frames of the file, if its format has frames.
 fn found_frames(source: &mut Source) -> Result<FileFrames, Failure> {
     Ok(match source.open_frames()? {
         Ok(found) => {
             let (count, note) = (Some(found.count), found.note);
             FileFrames { file: source.frames.clone(), count, note }
         }
-        // A file without frames.
+        // The file has no frames.
         Err(_) => FileFrames::default(),
     })
 }

@@ -1,4 +1,4 @@
-//! Pictures for a window, as `pinhole render` makes them, with more and more samples.
+//! Pictures for a window, as `pinhole render` makes them, with increasing numbers of samples.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole_figure::write::png;
 
-/// Renders what is shown, on a device of its own.
+/// Renders a view on a device of its own.
 pub struct StillRenderer {
     opened: OpenDevice,
     uploaded: Option<DeviceScene>,
@@ -29,20 +29,20 @@ pub struct StillRenderer {
 /// A scene on the device.
 struct DeviceScene {
     scene: Arc<Scene>,
-    /// What the structures were planned for.
+    /// The integrator for which the structures were planned.
     integrator: std::mem::Discriminant<pinhole::render::Integrator>,
     buffers: SceneBuffers,
 }
 
-/// A picture with some of its samples, encoded with its annotations.
+/// A picture with some of its samples, encoded and with annotations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StillPicture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha of every pixel in sRGB, row by row from the top; not multiplied by alpha.
+    /// Red, green, blue and alpha of every pixel in sRGB, row by row from the top. Colours are not premultiplied.
     pub rgba: Vec<u8>,
-    /// The number of samples of each pixel. If it is the total, these are the pixels that `pinhole render` writes.
+    /// The number of samples of each pixel. If it equals `total`, `pinhole render` writes the same pixels.
     pub samples: u32,
     /// The number of samples that each pixel will have.
     pub total: u32,
@@ -54,7 +54,7 @@ impl StillRenderer {
         Ok(Self { opened: flags.job()?.device.open()?, uploaded: None })
     }
 
-    /// What is wrong with the device, if something is.
+    /// A warning about the device, if there is one.
     pub fn warning(&self) -> Option<&str> {
         match &self.opened {
             OpenDevice::Device { warning, .. } => warning.as_deref(),
@@ -65,8 +65,8 @@ impl StillRenderer {
         }
     }
 
-    /// Renders the picture, first with few samples and at last with all, and gives each to `show`. Ends early, and
-    /// returns false, when `is_wanted` says that the picture is not wanted any more.
+    /// Renders the picture, first with few samples and at last with all, and calls `show` with each stage. Ends
+    /// early, and returns false, once `is_wanted` returns false.
     pub fn render(
         &mut self,
         shown: &OpenView,
@@ -95,7 +95,7 @@ impl StillRenderer {
         Ok(true)
     }
 
-    /// Renders the view; `None` if it is not wanted any more.
+    /// Renders the view; `None` if it is no longer wanted.
     fn image(
         &mut self,
         shown: &OpenView,
@@ -119,7 +119,7 @@ impl StillRenderer {
         let rendered = uploaded.map(|uploaded| render(&uploaded.buffers));
         let rendered = match rendered {
             Some(done @ (Ok(_) | Err(GpuError::Stopped))) => done,
-            // The structure may not suit this view, so that others are tried.
+            // The structure may not suit this view, so others are tried.
             Some(Err(_)) | None => {
                 self.uploaded = None;
                 let first = first_render(headless, shown, layers, *choice, &render)?;
@@ -138,7 +138,7 @@ impl StillRenderer {
     }
 }
 
-/// Copies the scene to the device and renders, with another structure if the first one does not suit.
+/// Copies the scene to the device and renders. Tries another structure if the first one does not suit.
 fn first_render(
     headless: &Headless,
     shown: &OpenView,
@@ -177,10 +177,10 @@ fn on_cpu(
     }
 }
 
-/// The numbers of samples of the pictures that are shown, up to all.
+/// The numbers of samples of the pictures to show, up to all.
 fn steps(total: u32) -> impl Iterator<Item = u32> {
     let fewer = std::iter::successors(Some(1_u32), |samples| samples.checked_mul(4));
-    // A picture with almost all samples would cost more than it shows.
+    // A picture with almost all samples would cost more than it is worth.
     fewer.take_while(move |samples| *samples <= total / 2).chain([total])
 }
 

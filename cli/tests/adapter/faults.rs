@@ -1,5 +1,5 @@
-//! Devices that are lost, hang or have little memory: the Vulkan layer of `cli/tests/faults` stands between the program
-//! and the driver.
+//! Devices that are lost, hang or have little memory: the Vulkan layer of `cli/tests/faults` is placed between the
+//! program and the driver.
 
 use std::fs;
 use std::path::Path;
@@ -57,7 +57,7 @@ fn prepared(headless: &Headless) -> TempDir {
     folder
 }
 
-/// Puts the layer between a program and its driver.
+/// Places the layer between a program and its driver.
 fn with_fault(command: &mut Command, fault: &str) -> TempDir {
     let program = std::env::current_exe().unwrap();
     let name = format!(
@@ -80,7 +80,7 @@ fn with_fault(command: &mut Command, fault: &str) -> TempDir {
     layers
 }
 
-/// Runs a command with a fault. One that does not end in a minute fails.
+/// Runs a command with a fault. A command that takes longer than a minute fails the test.
 fn run(mut command: Command, fault: &str) -> Output {
     let _layers = with_fault(&mut command, fault);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -95,7 +95,7 @@ fn run(mut command: Command, fault: &str) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// A failure with one line.
+/// Checks that the run failed with one line.
 #[track_caller]
 fn assert_fails(output: &Output, code: i32, fault: &str, line: &str) {
     let said = String::from_utf8_lossy(&output.stderr);
@@ -119,7 +119,7 @@ fn assert_same(folder: &TempDir, made: &str, good: &str) {
 
 const LOST: &str = "the device was lost: Device is lost; try again";
 
-/// The submission at which the device is lost is any, from the first to the last.
+/// The device is lost at any submission, from the first to the last.
 fn lost_part(headless: &'static Headless) {
     let folder = prepared(headless);
     let at = |path: &str| folder.path().join(path);
@@ -139,13 +139,13 @@ fn lost_part(headless: &'static Headless) {
             assert!(parts.is_empty() || parts == ["000000.part"], "{fault}: {parts:?}");
             parts_left.push(parts.len());
         }
-        // Some are lost in each of the two units.
+        // Some devices are lost in each of the two units.
         let lost_in = |unit| parts_left.iter().filter(|left| **left == unit).count();
         assert!(lost_in(0) > 2 && lost_in(1) > 2, "{kind}: {parts_left:?}");
 
-        // The first part is there, and the second was lost: only that is rendered again.
+        // The first part exists, and the second was lost, so only the second is rendered again.
         fs::remove_file(at("job/parts/000001.part")).unwrap();
-        // How many submissions a unit takes depends on its speed, so it is lost well before the last.
+        // The number of submissions of a unit depends on its speed, so the device is lost well before the last.
         let fault = format!("{kind}={}", lost_in(0) / 2);
         let output = run(command(&folder, "job part job 1 -q"), &fault);
         assert_fails(&output, 5, &fault, LOST);
@@ -181,7 +181,7 @@ fn lost_picture(headless: &'static Headless) {
     }
 }
 
-/// From next to no memory to enough: nothing is written, and then all of it.
+/// Memory goes from almost none to enough: first nothing is written, and then everything.
 fn little_memory(headless: &'static Headless) {
     let folder = prepared(headless);
     let split = format!("job split a.toml -o whole -q {LIGHT}");
@@ -206,7 +206,7 @@ fn little_memory(headless: &'static Headless) {
     assert_same(&folder, "m.png", "good.png");
 }
 
-/// The driver hangs while the self-test runs, which is the first submission, and within a unit.
+/// The driver hangs in the self-test, which is the first submission, and within a unit.
 fn hangs(headless: &'static Headless) {
     let folder = prepared(headless);
     let lines = [
@@ -222,10 +222,10 @@ fn hangs(headless: &'static Headless) {
     }
 }
 
-/// Names the form of the call that a child process makes: `blocking` or `async`.
+/// The environment variable with the form of call in a child process: `blocking` or `async`.
 const CHILD: &str = "PINHOLE_TEST_CHILD";
 
-/// This program again, with the layer: it drops its device after the error.
+/// Runs this program again with the layer. It drops its device after the error.
 fn library(_: &'static Headless) {
     for form in ["blocking", "async"] {
         for (fault, error) in [
@@ -242,7 +242,7 @@ fn library(_: &'static Headless) {
     }
 }
 
-/// Whether this process is a child that has printed an error of the library.
+/// Whether this process is a child of this kind, which has then printed an error of the library.
 pub(crate) fn is_child() -> bool {
     let Ok(form) = std::env::var(CHILD) else {
         return false;

@@ -1,4 +1,4 @@
-//! Tests of jobs and of files of bricks on an adapter: what is put together from parts are the bytes that it writes alone.
+//! Tests of jobs and of files of bricks on an adapter. Joined parts give the same bytes as rendering without parts.
 
 use std::fs;
 
@@ -21,7 +21,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 const SCENE: &str = "[film]\nwidth = 61\nheight = 45\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'red'\n\
                      [[spheres]]\ncenter = [1, 0.5, -1]\nradius = 0.7\n";
 
-/// Renders a scene on the adapter, alone and by parts, and compares all files.
+/// Renders a scene on the adapter, at once and in parts, and compares all files.
 fn assert_same(headless: &Headless, scene: &str, flags: &str, layers: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.toml"), scene).unwrap();
@@ -118,7 +118,7 @@ fn pictures_of_bricks(headless: &'static Headless) {
         }
     }
     succeed(&mut command_on(headless, &folder, "plan a.bricks --style fast"));
-    // More pixels than the hits of one buffer.
+    // The picture has more pixels than one buffer has hits.
     for (input, out) in [("a.bin --format raw-f32x4", "whole"), ("a.bricks", "parts")] {
         let arguments = format!("render {input} -o {out}.png -q --style fast --size 2300x2000");
         succeed(&mut command_on(headless, &folder, &arguments));

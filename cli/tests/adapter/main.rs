@@ -43,7 +43,7 @@ fn succeed(command: &mut Command) -> Output {
     output
 }
 
-/// A trial that sends signals; elsewhere than on Unix it counts as ignored.
+/// A trial that sends signals. It counts as ignored on systems other than Unix.
 fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
     let lacking = |_: &_| (!cfg!(unix)).then(|| "this system has no signals".to_owned());
     trial_unless(name, lacking, move |headless| {

@@ -60,7 +60,7 @@ fn printed(headless: &'static Headless) {
     assert!(buffers.iter().any(|buffer| buffer["name"] == "depth read-back"));
 }
 
-/// Replaces the free bytes in a message, which change from run to run.
+/// Replaces the number of free bytes in a message, which changes from run to run.
 fn without_free_bytes(stderr: &[u8]) -> String {
     let line = String::from_utf8(stderr.to_vec()).unwrap();
     let (start, rest) = line.split_once(", but ").unwrap();
@@ -120,7 +120,7 @@ fn bench(headless: &'static Headless) {
     assert!(text.contains("list: list") && text.contains("Mrays/s"), "{text}");
 }
 
-/// Every one of 16 million rays tests 30,000 spheres. The eye is among the spheres, so that no ray ends early.
+/// Each of 16 million rays tests 30,000 spheres. The eye is among the spheres, so no ray ends early.
 fn stopped(_: &'static Headless) {
     let folder = folder_with(30_000);
     let render = "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
@@ -197,7 +197,7 @@ fn signal(headless: &'static Headless) {
         let said = String::from_utf8(output.stderr).unwrap();
         if output.status.code() == Some(0) {
             let count = samples(folder.path());
-            // Before every pixel has a sample, the program says that it goes on until then.
+            // Before every pixel has a sample, the program says that it continues until then.
             let last = format!("stopped; the picture has {count} samples per pixel");
             assert_eq!(said.lines().last(), Some(&*last), "{said}");
             assert!((1..10_000_000).contains(&count));

@@ -106,7 +106,7 @@ fn info(headless: &'static Headless) {
     assert!(text.contains(&expected.name) && text.contains("used by `render`"), "{text}");
 }
 
-/// `--profile` changes no picture, and its table holds the passes of the device.
+/// `--profile` changes no picture, and its table has the passes of the device.
 fn table_of_a_profile(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("scene.toml"), include_str!("../../../examples/studio.toml"))

@@ -139,7 +139,7 @@ fn studio(_: &'static Headless) {
     assert_eq!(page_of(&folder, "page")["report"], json);
 }
 
-/// What a replay says of light is what the recording said, with the same page.
+/// A replay reports the same about light as the recording, with the same page.
 fn saved_light(_: &'static Headless) {
     let folder = folder();
     let studio = PATHS.replace("'path'", "'studio'") + "opacity = 0.5\n[studio.occlusion]\n";
@@ -162,7 +162,7 @@ fn saved_light(_: &'static Headless) {
         assert!(read("a.json") == read("b.json"), "the documents differ");
         assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
         assert!(page_of(&folder, "page")["pictures"]["light"].is_string());
-        // A byte of a state that is another, and a file that is cut off.
+        // A byte of a state is changed, and the file is cut off.
         let mut bytes = read("run");
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
@@ -182,7 +182,7 @@ fn saved_light(_: &'static Headless) {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-/// Of a large picture, a part beside the middle is checked, and the page says what is not.
+/// Light in a large picture is checked in the middle and in another part, and the page says which part was not checked.
 fn another_part(_: &'static Headless) {
     let folder = folder();
     let large = PATHS.replace("width = 40\nheight = 30", "width = 300\nheight = 8");
@@ -213,7 +213,7 @@ fn another_part(_: &'static Headless) {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-/// A state that is not what the kernel may have made of the one before is shown with the pixels around it.
+/// A state that does not follow from the one before is shown with the pixels around it.
 fn planted(_: &'static Headless) {
     let folder = folder();
     std::fs::write(folder.path().join("paths.toml"), PATHS).unwrap();
@@ -223,7 +223,7 @@ fn planted(_: &'static Headless) {
     let length = u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
     let header: serde_json::Value = serde_json::from_slice(&bytes[8..8 + length]).unwrap();
     let offset = header["sample_0_states"]["data_offsets"][0].as_u64().unwrap();
-    // The radiance of the pixel at (20, 15), the red of its fifth slot, is another.
+    // The radiance of the pixel at (20, 15), the red of its fifth slot, is changed.
     let at = 8 + length + offset as usize;
     let at = at + (15 * 40 + 20) * 9 * 16 + 4 * 16;
     let mut number = [0; 4];
@@ -241,8 +241,8 @@ fn planted(_: &'static Headless) {
     assert_eq!((&violation["sample"], &violation["surface"]), (&15.into(), &0.into()));
 }
 
-/// Two spheres whose surfaces are the same but for rounding, and a lamp on the surface of another: the checker says which
-/// of them may be seen, and which may hide the lamp.
+/// Two spheres have the same surface apart from rounding, and a lamp lies on the surface of another. The checker says
+/// which of the spheres may be seen, and which may hide the lamp.
 fn open_searches(_: &'static Headless) {
     let folder = folder();
     let ties = "[[spheres]]\ncenter = [0, 0, 0]\nradius = 1.0000001\n";
@@ -250,7 +250,7 @@ fn open_searches(_: &'static Headless) {
                 position = [0, 3, 0]\nintensity = 9\n";
     let hidden = "hidden or not: sphere 1, which ends where the search does";
     for (kind, more, stage, words, code) in [
-        // The picture by one ray has too many ties.
+        // The picture with one ray per pixel has too many ties.
         ("path", ties, "extend", ["sphere 0 at ", "sphere 1 at "], 4),
         ("studio", ties, "extend", ["sphere 0 at ", "sphere 1 at "], 4),
         ("path", lamp, "occlude", [hidden; 2], 0),
@@ -280,7 +280,7 @@ fn open_searches(_: &'static Headless) {
     }
 }
 
-/// A run file with the digest that it needs.
+/// Adds the digest that a run file needs.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let before = b"\"sha256\":\"";
     let place = bytes.windows(before.len()).position(|window| window == before).unwrap();

@@ -1,9 +1,9 @@
-//! Tests of files of bricks: pictures of them are those of the data, to the byte, and no damaged file is used.
+//! Tests of files of bricks. Pictures have the same bytes as those of the data, and damaged files are not used.
 
 use crate::npy_files::npy;
 use crate::support::{Folder, Run};
 
-/// Spheres of which some are equal, and some lie around others, so that rays hit several at one distance.
+/// Spheres for rays that hit several at one distance: some are equal, and some lie around others.
 pub(crate) fn spheres(count: usize, origin: [f64; 3]) -> Vec<[f64; 4]> {
     let mut random = fastrand::Rng::with_seed(count as u64);
     let mut all: Vec<[f64; 4]> = Vec::new();
@@ -30,7 +30,7 @@ fn f64_array(spheres: &[[f64; 4]]) -> Vec<u8> {
     npy("<f8", false, &format!("({}, 4)", spheres.len()), &bytes.collect::<Vec<_>>())
 }
 
-/// A folder with data, and the same sorted into bricks.
+/// A folder with data, and the same data sorted into bricks.
 fn sorted(name: &str, data: &[u8], flags: &str) -> Folder {
     let folder = Folder::new();
     std::fs::write(folder.path(name), data).unwrap();
@@ -64,7 +64,7 @@ fn assert_same(folder: &Folder, name: &str, flags: &str) {
 #[test]
 fn pictures_of_bricks_are_those_of_the_data() {
     let near = spheres(3000, [-0.5; 3]);
-    // A frame away from the world's origin, whose offsets were rounded from f64.
+    // The frame is far from the world's origin, so offsets were rounded from f64.
     let far = spheres(2000, [3e5, -7.25, 1e4]);
     for (data, bricks) in [(f32_array(&near), 7), (f64_array(&far), 13), (f32_array(&far), 64)] {
         let folder = sorted("a.npy", &data, &format!("--bricks {bricks}"));
@@ -123,7 +123,7 @@ fn few_spheres_make_few_bricks_and_a_color_may_be_chosen() {
     );
 }
 
-/// One line that has these words, with this exit code and no file.
+/// Checks for this exit code, one line with these words, and no file.
 #[track_caller]
 fn assert_refused(folder: &Folder, run: &Run, code: i32, says: &str) {
     run.refused(code, says);
@@ -163,7 +163,7 @@ fn no_changed_file_of_bricks_is_used() {
         std::fs::write(folder.path("b.bricks"), bytes).unwrap();
         folder.run("render b.bricks -o out.png --backend cpu --size 9x9")
     };
-    // Bricks that are not seen are not read, so changes are looked for in all that are.
+    // Bricks that are not visible are not read, so only changes in others must be noticed.
     for place in (0..good.len()).step_by(37).chain([good.len() - 1]) {
         let mut bytes = good.clone();
         bytes[place] ^= 4;
@@ -188,7 +188,7 @@ fn no_changed_file_of_bricks_is_used() {
     assert_refused(&folder, &folder.run("render c.bricks -o out.png"), 1, "c.bricks");
 }
 
-/// A header that is signed correctly, but does not tell the truth.
+/// A header with a valid digest, but with false contents.
 #[test]
 fn a_table_that_lies_is_refused() {
     let folder = sorted("a.npy", &f32_array(&spheres(60, [0.0; 3])), "--bricks 3");
@@ -211,7 +211,7 @@ fn a_table_that_lies_is_refused() {
     std::fs::remove_file(folder.path("out.png")).unwrap();
     type Lie = fn(&mut serde_json::Value);
     let lies: [Lie; 9] = [
-        // Bricks that overlap, leave a gap, or have too many spheres.
+        // Bricks overlap, leave a gap, or have too many spheres.
         |header| header["bricks"][1]["section"]["offset"] = 40.into(),
         |header| header["bricks"][0]["section"]["count"] = 21.into(),
         |header| header["bricks"][2]["section"]["count"] = u64::MAX.into(),

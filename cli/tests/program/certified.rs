@@ -1,4 +1,4 @@
-//! Pictures that carry a certificate: `render --certify` and `verify PICTURE --scene SCENE`.
+//! Pictures with a certificate in their file: `render --certify` and `verify PICTURE --scene SCENE`.
 
 use crate::support::Folder;
 
@@ -55,7 +55,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
         assert!(line(&run, "violated").contains(" 0 "), "{picture}");
         let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
         assert_eq!((&json["outcome"], &json["violated"]), (&"proved".into(), &0.into()));
-        // The picture is the one without a certificate.
+        // The picture is the same as without a certificate.
         folder.run(&format!("render {scene} -o plain.{} {flags}", &picture[2..])).succeeded();
         if picture.ends_with("png") {
             let decode = |name: &str| image::open(folder.path(name)).unwrap().to_rgba16();
@@ -68,7 +68,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
 fn a_lit_picture_is_checked_by_means() {
     let folder = folder();
     let flags = "--style default --samples 24 --size 64x48 --backend cpu --quiet";
-    // Before it is written, light and denoiser are judged one after the other; of the file, the mean of all pixels is.
+    // Before writing, light and denoiser are judged one after the other. In the file, the mean of all pixels is judged.
     folder.run(&format!("render data.csv -o a.png --certify {flags}")).succeeded();
     let run = folder.run("verify a.png --scene data.csv").succeeded();
     assert!(line(&run, "proved").contains(" 6 "), "{run:?}");
@@ -79,14 +79,14 @@ fn a_lit_picture_is_checked_by_means() {
     let run = folder.run("verify a.png --scene data.csv").succeeded();
     assert!(line(&run, "judged by").ends_with("means"));
     assert!(line(&run, "rendered by").contains("--samples=24"));
-    // Samples that are changed, with a certificate that knows of it, are found by their means.
+    // Changed samples with a certificate to match are found by their means.
     folder.run(&format!("render data.csv -o b.png --certify {flags} --exposure 0.4")).succeeded();
     let forged = with_text(&folder.read("b.png"), |text| forged(text, "--exposure=0.4"));
     std::fs::write(folder.path("b.png"), forged).unwrap();
     folder.refuses("verify b.png --scene data.csv", 3, "the picture is not legal: ");
 }
 
-/// A certificate without an argument, and with a digest that fits again.
+/// A certificate that lacks an argument, with a digest that matches again.
 fn forged(text: &str, argument: &str) -> String {
     use sha2::{Digest, Sha256};
     let line = format!("argument {argument}\n");
@@ -138,7 +138,7 @@ fn what_was_changed_is_refused() {
         let error = format!("error: {picture}: {error}");
         folder.refuses(&format!("verify {picture} --scene {scene}"), 1, &error);
     }
-    // A certificate that was made to fit says another exposure, with which samples are others.
+    // A forged certificate names another exposure, with which the samples would differ.
     std::fs::write(folder.path("forged.png"), unknown).unwrap();
     folder.refuses("verify forged.png --scene scene.toml", 3, "the picture is not legal: ");
 }

@@ -1,4 +1,4 @@
-//! `pinhole certify`: answers of the CPU reference, as they are and spoilt.
+//! `pinhole certify`: answers of the CPU reference, unchanged and spoilt.
 
 use npyz::NpyFile;
 
@@ -12,7 +12,7 @@ const SCENE: &str = "[film]\nwidth = 40\nheight = 30\n\
 
 const ANSWERS: &str = "--id id.npy --depth depth.npy --normal normal.npy";
 
-/// A picture of the reference, with its layers.
+/// A folder with a picture of the reference and its layers.
 fn folder() -> Folder {
     let folder = Folder::with(&[("scene.toml", SCENE)]);
     let layers = "--layer id=id.npy --layer depth=depth.npy --layer normal=normal.npy";
@@ -57,7 +57,7 @@ fn the_reference_is_proved() {
     assert_eq!(counted, 1200);
 }
 
-/// Types, byte orders and orders of axes in which the same answers are given.
+/// The same answers in several types, byte orders and orders of axes.
 #[test]
 fn arrays_may_be_of_several_types() {
     let folder = folder();
@@ -98,7 +98,7 @@ fn what_is_wrong_gives_exit_code_3() {
     assert_eq!((&json["worst"][0]["id"], &json["worst"][0]["exact_id"]), (&1.into(), &0.into()));
     assert!(json["worst"][0]["k"].as_f64().unwrap() > 1e3);
 
-    // The depth of a z-buffer.
+    // The depth is that of a z-buffer.
     folder.refuses("certify scene.toml --id id.npy --depth depth.npy --depth-is z", 3, "");
 }
 
@@ -115,7 +115,7 @@ fn what_is_undecided_gives_exit_code_4() {
 #[test]
 fn rays_may_be_given() {
     let folder = folder();
-    // Parallel rays towards -z, of which the middle one meets the first sphere.
+    // The rays are parallel, towards -z. The middle one meets the first sphere.
     let direction = [0_f32, 0.0, -1.0].map(f32::to_le_bytes).concat();
     let directions = npy("<f4", false, "(30, 40, 3)", &direction.repeat(1200));
     let origins: Vec<u8> = (0..1200_u32)

@@ -1,4 +1,4 @@
-//! Tests of what follows from the data: its description, selections, bonds, colours, and what is drawn over pictures.
+//! Tests of results that depend on the data: its description, selections, bonds, colours, and annotations.
 
 use std::io::Write as _;
 
@@ -112,7 +112,7 @@ fn a_scene_file_is_described_with_its_data() {
     );
 }
 
-/// Four atoms in a row, with a number each, and a cell.
+/// Four atoms in a row, each with a number, in a cell.
 const ATOMS: &str = "4\nLattice=\"8 0 0 0 2 0 0 0 2\" Origin=\"-1 -1 -1\" Properties=species:S:1:pos:R:3:q:R:1\n\
                    O 0 0 0 -1\nH 0.9 0 0 0\nC 4 0 0 0.5\nC 5.5 0 0 3\n";
 
@@ -140,7 +140,7 @@ fn a_selection_decides_what_is_seen_and_counted() {
     let (notes, line) = said(&folder, "row.xyz; --select; q >= 0 and species == C; --color-by; q");
     assert_eq!(notes, "note: colors show `q` from 0.5 to 3");
     assert!(line.starts_with("row.xyz: kept 2 of 4 atoms; --style fast"), "{line}");
-    // The camera frames what is kept, so this is the picture of a file that has nothing else.
+    // The camera frames the kept spheres, so this is the picture of a file with no others.
     let kept = decode(&folder.read("out.png"));
     let alone = Folder::with(&[(
         "row.xyz",
@@ -200,7 +200,7 @@ fn frames_are_selected_one_by_one() {
     assert_eq!(run.said.unwrap().split(';').next(), Some("a.xyz: 3 pictures of kept 1 of 2 atoms"));
     let pictures: Vec<_> = (0..3).map(|i| decode(&folder.read(&format!("f{i}.png")))).collect();
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
-    // The cell stays where it is, because the camera does.
+    // The cell keeps its place, because the camera does.
     let run = folder.run(&format!("render a.xyz -o f%d.png --frames : --select x<3 {flags}"));
     assert!(
         run.stderr.contains("frame 2: a.xyz: --select: `x<3` selects none of the 2 spheres"),
@@ -220,7 +220,7 @@ fn info_tells_where_the_cell_starts() {
     assert_eq!(json["cell_origin"], serde_json::json!([-1.0, -1.0, -1.0]));
 }
 
-/// Four spheres in a row, with a number and a text each.
+/// Four spheres in a row, each with a number and a text.
 const ROW: &str = "4\nProperties=species:S:1:pos:R:3:radius:R:1:charge:R:1:site:S:1:v:R:3\n\
                    C 0 0 0 1 -1 a 3 4 0\nC 2 0 0 1 0 b 0 0 1\nC 4 0 0 1 0.5 a 0 0 2\nC 6 0 0 1 3 c 0 0 0\n";
 
@@ -229,7 +229,7 @@ const ROW_SCENE: &str = "data = 'row.xyz'\nshading = 'flat'\ncolor_by = 'site'\n
                      [camera.orthographic]\neye = [3, 0, 9]\nlook_at = [3, 0, 0]\nhalf_extent = [4, 1]\n\
                      [legend]\ntitle = 'Site'\n";
 
-/// The colours of the middles of the four spheres, and what the program says.
+/// The colours in the middles of the four spheres, and the program's messages.
 #[track_caller]
 fn colors_of(arguments: &str) -> (Vec<[u8; 3]>, String) {
     let folder = Folder::with(&[("row.xyz", ROW), ("scene.toml", ROW_SCENE)]);
@@ -289,14 +289,14 @@ fn pixels_of(folder: &Folder, size: &str, flags: &str) -> (usize, Vec<bool>, Vec
     let ids = folder.read("id.npy");
     let ids = &ids[ids.len() - 4 * (width * height) as usize..];
     let is_sphere: Vec<bool> = ids.chunks_exact(4).map(|id| id != [0xff; 4]).collect();
-    // The corner between the sides that legends lie on is background.
+    // The corner between the two sides with legends is background.
     let corner = &rgb[3 * (width as usize * (height as usize - 1))..][..3];
     let pixels = rgb.chunks_exact(3).zip(&is_sphere);
     let is_legend = pixels.map(|(pixel, is_sphere)| !is_sphere && pixel != corner).collect();
     (width as usize, is_sphere, is_legend)
 }
 
-/// The rows and the columns of the pixels, each from the first to the last.
+/// The first and the last row and column of the pixels.
 fn extent(width: usize, pixels: &[bool]) -> [[usize; 2]; 2] {
     let found = || (0..pixels.len()).filter(|pixel| pixels[*pixel]);
     let ends = |place: &dyn Fn(usize) -> usize| {
@@ -326,7 +326,7 @@ fn no_sphere_lies_under_the_legend() {
     }
 }
 
-/// Without a legend, and with one that takes too much of the picture, the spheres are in the middle.
+/// The spheres are in the middle without a legend, and with a legend that takes too much of the picture.
 #[test]
 fn without_room_the_spheres_stay_in_the_middle() {
     let folder = Folder::with(&[("a.xyz", &cube())]);

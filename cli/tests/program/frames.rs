@@ -1,5 +1,5 @@
-//! Tests of several pictures at once: frames of a file, turntables, cameras that move, movies, and the colours that all
-//! have in common.
+//! Tests of several pictures at once: frames of a file, turntables, moving cameras, movies, and the colours common to
+//! all pictures.
 
 use crate::support::{Folder, decode};
 
@@ -43,7 +43,7 @@ fn frames_have_numbers_and_one_camera() {
     assert_eq!(folder.files(), ["a.xyz", "f000.png", "f002.png", "f004.png"]);
     let [first, middle, last] =
         ["f000.png", "f002.png", "f004.png"].map(|name| columns(&folder.read(name)));
-    // The camera stands still: the sphere goes from the left margin through the middle to the right margin.
+    // The camera does not move, so the sphere goes from the left margin through the middle to the right margin.
     let width = |columns: &[usize]| columns.len();
     assert!(width(&first).abs_diff(width(&middle)) <= 1, "{first:?} {middle:?}");
     assert!(first[0] >= 1 && first[0] <= 6, "{first:?}");
@@ -83,12 +83,12 @@ fn resume_leaves_out_what_is_there() {
     assert_eq!(folder.files(), ["a.xyz", "f0.png", "f1.png", "f2.png"]);
     let run = folder.run(&command).succeeded();
     assert_eq!(run.stderr, "note: 3 of 3 frames are there already and are not rendered again\n");
-    // The rest is framed as if all were rendered.
+    // The other frames are framed as if all were rendered.
     folder.run(&format!("render a.xyz -o all%d.png --frames :3 {SMALL}")).succeeded();
     assert_same(&folder, ["f2.png", "all2.png"]);
 }
 
-/// A frame that cannot be read ends the job; those before it stay, and a movie does not.
+/// A frame that cannot be read ends the job. Earlier frames stay, but a movie does not.
 #[test]
 fn what_was_written_stays_when_a_later_frame_fails() {
     let text = moving().replace("O 4 0 0", "O 4 x 0");
@@ -183,7 +183,7 @@ mod with_a_program {
     use super::*;
     use crate::support::send;
 
-    /// Runs with a program `ffmpeg` that is this script.
+    /// Runs the program with a script in the place of `ffmpeg`.
     fn run_with(folder: &Folder, script: &str, arguments: &str) -> (i32, String) {
         let tools = tempfile::tempdir().unwrap();
         let program = tools.path().join("ffmpeg");
@@ -195,7 +195,7 @@ mod with_a_program {
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     }
 
-    /// Writes all that it reads to the file that its last argument names.
+    /// Copies the input to the file that the last argument names.
     const COPY: &str = "[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > \"$last\"";
 
     #[test]
@@ -203,7 +203,7 @@ mod with_a_program {
         let folder = folder();
         let arguments = format!("render a.xyz -o m.mp4 {SMALL}").replace("40x20", "39x19");
         assert_eq!(run_with(&folder, COPY, &arguments), (0, String::new()));
-        // Odd sides get a pixel.
+        // Odd sides are one pixel longer.
         assert_eq!(folder.read("m.mp4").len(), 5 * 3 * 40 * 20);
         assert_eq!(folder.files(), ["a.xyz", "m.mp4"]);
     }
@@ -235,7 +235,7 @@ mod with_a_program {
         assert_eq!(folder.files(), ["a.xyz"]);
     }
 
-    /// After Ctrl-C there are whole files only, and `--resume` makes the rest.
+    /// After Ctrl-C there are only whole files, and `--resume` makes the others.
     #[test]
     fn a_signal_keeps_the_frames_that_are_complete() {
         let text: String =
@@ -281,14 +281,14 @@ fn one_scene_has_the_pictures_up_to_the_last_key() {
     folder.run(&format!("render s.toml -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
     assert_eq!(folder.files(), ["f0.png", "f1.png", "f2.png", "p.toml", "s.toml"]);
     let [a, b, c] = ["f0.png", "f1.png", "f2.png"].map(|name| ends(&folder.read(name)));
-    // The camera goes to the right, so the sphere goes to the left, through the middle of the picture.
+    // The camera moves to the right, so the sphere moves to the left through the middle of the picture.
     assert!(a[0] > b[1] && b[0] > c[1], "{a:?} {b:?} {c:?}");
     assert_eq!([b[0] + b[1], a[0] + c[1]], [39; 2]);
-    // At a key, the camera is the one that flags give.
+    // At a key, the camera is the same as from flags.
     let flags = "--eye 4,0,20 --look-at 4,0,0";
     folder.run(&format!("render s.toml -o one.png {flags} {MOVED}")).succeeded();
     assert!(decode(&folder.read("one.png")) == decode(&folder.read("f2.png")));
-    // --frames chooses some pictures, which stay as they are.
+    // --frames chooses some pictures, which do not change.
     folder
         .run(&format!("render s.toml -o g%d.png --camera-path p.toml --frames 1: {MOVED}"))
         .succeeded();
@@ -315,23 +315,23 @@ fn a_scene_file_has_its_own_path() {
     }
 }
 
-/// Each frame of a trajectory is seen from its place on the path.
+/// Each frame of a trajectory is seen from its own position on the path.
 #[test]
 fn a_trajectory_is_seen_from_a_moving_camera() {
-    // The atom goes with the camera.
+    // The atom moves with the camera.
     let frames: String = (0..3).map(|i| format!("1\n\nO {} 0 0\n", 4 * i - 4)).collect();
     let folder = Folder::with(&[("a.xyz", &frames), ("p.toml", PATH)]);
     folder.run(&format!("render a.xyz -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
     let all = ["f0.png", "f1.png", "f2.png"].map(|name| ends(&folder.read(name)));
     assert!(all.iter().all(|[first, last]| first + last == 39), "{all:?}");
-    // Of one frame, the camera sees a sphere that stands still.
+    // With one frame, the camera sees a sphere that does not move.
     let rest = format!("--camera-path p.toml --frame 1 {MOVED}");
     folder.run(&format!("render a.xyz -o g%d.png {rest}")).succeeded();
     let [a, b, c] = ["g0.png", "g1.png", "g2.png"].map(|name| ends(&folder.read(name)));
     assert!(a[0] > b[1] && b[0] > c[1], "{a:?} {b:?} {c:?}");
 }
 
-/// Seconds are multiplied by the pictures of each second.
+/// Seconds are multiplied by the number of pictures for each second.
 #[test]
 fn times_are_seconds_of_the_movie() {
     let path = PATH.replace("frame = 2", "time = 0.5").replace("frame", "time");
@@ -346,7 +346,7 @@ fn times_are_seconds_of_the_movie() {
     assert!(!folder.files().contains(&"f3.png".to_owned()));
 }
 
-/// Two atoms at the ends of a rod: from the side the rod is long, from its end short, and it always fits.
+/// Two atoms at the ends of a rod. The rod is long from its side and short from its end, and it always fits.
 #[test]
 fn views_go_around_the_scene() {
     let path = "[[keys]]\nframe = 0\nview = '0,0'\nzoom = 1\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
@@ -372,7 +372,7 @@ fn frame(kind: char, values: &[&str]) -> String {
     head + &rows.collect::<String>()
 }
 
-/// Renders frames; returns the colours of the middles of the spheres, and what lies above them.
+/// Renders frames. Returns the colours in the middles of the spheres, and the pixels above the spheres.
 fn colors_of(kind: char, frames: &[&[&str]], flags: &str) -> (Vec<Vec<[u8; 3]>>, Vec<Vec<u8>>) {
     let text: String = frames.iter().map(|values| frame(kind, values)).collect();
     let folder = Folder::with(&[("a.xyz", &text), ("scene.toml", FLAT)]);
@@ -405,7 +405,7 @@ fn a_category_has_the_same_color_in_all_frames() {
 
 #[test]
 fn numbers_have_one_scale_in_all_frames() {
-    // The first and the last frame alone have so few whole numbers that these are categories.
+    // The first and the last frame alone have so few whole numbers that they would be categories.
     let (colors, legends) = colors_of('R', &[&["0", "7"], &["0.5", "3", "0"], &["7"]], "");
     assert_eq!(colors[0][0], [0x44, 0x01, 0x54]);
     assert_eq!(colors[0][1], [0xfd, 0xe7, 0x25]);
@@ -421,7 +421,7 @@ fn what_the_frame_of_the_camera_lacks_has_the_color_of_missing_values() {
     assert!(legends.iter().all(|legend| *legend == legends[0]));
 }
 
-/// Types of a dump color the spheres without a flag, also in a frame with one type.
+/// Types of a dump colour the spheres without a flag, even in a frame with one type.
 #[test]
 fn colors_by_kind_are_those_of_all_frames() {
     let frame = |types: &[u8]| {

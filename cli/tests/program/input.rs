@@ -1,4 +1,4 @@
-//! Tests of what the program reads, good and bad, beyond the cases in `snapshots/`.
+//! Tests of good and bad input, beyond the cases in `snapshots/`.
 
 use crate::npy_files::{npy, zip};
 use crate::support::{Folder, SCENE, WATER, decode};
@@ -81,7 +81,7 @@ fn the_same_spheres_in_every_format() {
     ] {
         std::fs::write(folder.path(name), scene).unwrap();
     }
-    // A scene file has the light and the view of its own.
+    // A scene file has its own light and view.
     let expected = picture(&folder, "a.npy --style fast --direction 0,0,-1");
     let second = npy("<f4", false, "(1, 4)", &ROWS[1].map(f32::to_le_bytes).concat());
     std::fs::write(folder.path("b.npz"), zip(&[("x.npy", &second)], false)).unwrap();
@@ -129,11 +129,11 @@ fn the_demo_writes_a_scene_and_its_picture() {
     let (width, height, pixels) = decode(&folder.read("demo.png"));
     assert_eq!((width, height), (90, 45));
     assert_eq!(pixels[..3], [0xf3, 0xf4, 0xf6], "the background");
-    // Both strands: red and blue.
+    // Both strands are visible: red and blue.
     assert!(pixels.chunks(3).any(|p| p[0] > 150 && p[2] < 90), "nothing is red");
     assert!(pixels.chunks(3).any(|p| p[2] > 120 && p[0] < 70), "nothing is blue");
 
-    // The scene that it wrote gives the same picture, and a second demo changes nothing.
+    // The scene file that the demo wrote gives the same picture, and a second demo changes nothing.
     folder.run("render demo.toml -o again.png --backend cpu --size 90x45").succeeded();
     assert_eq!(folder.read("again.png"), folder.read("demo.png"));
     folder.run("demo --backend cpu --size 90x45").succeeded();
@@ -169,7 +169,7 @@ fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
     assert!(text.contains("mesa-vulkan-drivers") && text.contains("CPU reference"), "{text}");
 }
 
-/// A name in the environment chooses among adapters. It has no effect if there are none.
+/// A name in the environment chooses among adapters. Without adapters it has no effect.
 #[test]
 fn without_a_driver_a_name_in_the_environment_does_not_matter() {
     if !cfg!(target_os = "linux") {
@@ -236,7 +236,7 @@ fn a_link_and_permissions_stay() {
     assert_eq!(mode & 0o777, 0o600);
 }
 
-/// Where no species is an element, names say nothing about radii.
+/// If no species is an element, names say nothing about radii.
 #[test]
 fn kinds_that_are_no_elements_have_one_radius() {
     let folder = Folder::with(&[("kinds.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
@@ -293,7 +293,7 @@ fn the_content_shows_the_format_where_the_name_does_not() {
     }
 }
 
-/// How much memory is free depends on the machine. These pictures have 16 million million pixels.
+/// The free memory depends on the machine. These pictures have 16 million million pixels.
 #[test]
 fn pictures_beyond_the_memory() {
     let large = ("large.toml", "[film]\nwidth = 4000000\nheight = 4000000\n");
@@ -303,7 +303,7 @@ fn pictures_beyond_the_memory() {
     folder.refuses(&format!("render large.toml {flags}"), 1, "large.toml");
 }
 
-/// A layer cannot be written after everything was rendered, because its name is longer than file systems allow.
+/// The layer's name is longer than file systems allow, so writing it fails after everything was rendered.
 #[test]
 fn a_failed_layer_leaves_no_picture() {
     let layer = format!("--layer depth={}.npy", "a".repeat(300));
@@ -322,7 +322,7 @@ fn a_folder_that_cannot_be_written() {
     folder.refuses(arguments, 1, "/proc/out.png: cannot be written");
 }
 
-/// The folder of the snapshots has a scene of the demo that was changed.
+/// The folder has a changed scene of the demo.
 #[test]
 #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
 fn a_demo_on_an_unknown_adapter() {

@@ -1,4 +1,4 @@
-//! Tests of what ends the program early, or is told while it is at work: signals, a time, a level of noise, profiles.
+//! Tests of events during rendering: signals, the end of a time, a level of noise, and the report of profiles.
 
 use std::process::Stdio;
 #[cfg(unix)]
@@ -9,7 +9,7 @@ use std::time::Duration;
 use crate::support::send;
 use crate::support::{Folder, SCENE};
 
-/// A delay after which the program is at work, even on a slow machine.
+/// A delay after which the program is working, even on a slow machine.
 #[cfg(unix)]
 const LATER: Duration = Duration::from_millis(700);
 
@@ -42,7 +42,7 @@ fn the_reference_is_stopped() {
     }
 }
 
-/// Whenever the signal comes, there is the complete file or none, and never a temporary file.
+/// After a signal at any moment, the file is complete or absent, and no temporary file is left.
 #[test]
 #[cfg(unix)]
 fn files_are_complete_or_absent_after_a_signal() {
@@ -60,7 +60,7 @@ fn files_are_complete_or_absent_after_a_signal() {
                 assert_eq!(std::fs::metadata(folder.path("big.bin")).unwrap().len(), 48_000_000);
                 std::fs::remove_file(folder.path("big.bin")).unwrap();
             }
-            // The signal itself ends the program if it does not listen yet.
+            // The signal itself ends the program if it is not handled yet.
             None => assert!(files.is_empty(), "{files:?}"),
             Some(code) => {
                 let stderr = String::from_utf8(output.stderr).unwrap();
@@ -105,7 +105,7 @@ fn folder() -> Folder {
     Folder::with(&[("scene.toml", LIT)])
 }
 
-/// The least and the greatest number of samples of a pixel.
+/// The least and the greatest number of samples in a pixel.
 fn samples(folder: &Folder) -> [u32; 2] {
     let bytes = folder.read("s.npy");
     let samples: Vec<u32> = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
@@ -132,7 +132,7 @@ fn noise_decides_how_many_samples_there_are() {
     assert_eq!(most, 20);
     let is_told = said.starts_with("note: the noise is 0.") && said.contains("after 20 samples");
     assert!(is_told, "{said}");
-    // The picture has the pixels of so many samples.
+    // The pixels of the picture are those for this number of samples.
     let noisy = folder.read("out.png");
     folder.run(&format!("{LIT_RENDER} --integrator path --samples 20")).succeeded();
     assert!(folder.read("out.png") == noisy);
@@ -206,7 +206,7 @@ fn a_signal_keeps_the_partial_picture_if_asked() {
     panic!("whenever it is stopped, nothing is kept");
 }
 
-/// The rows of the table of `--profile`: name, share in percent.
+/// The rows of the table of `--profile`: name, and share in percent.
 #[cfg(feature = "gpu")]
 fn rows(stderr: &str) -> Vec<(String, f64)> {
     let lines = stderr.lines().filter_map(|line| line.trim().strip_suffix('%'));
@@ -238,7 +238,7 @@ fn a_table_says_where_the_time_went() {
     assert!((sum - 100.0).abs() < 1.0, "the shares of the host sum to {sum} %: {text}");
 }
 
-/// Frames are read and written by threads of their own.
+/// Frames are read and written on separate threads.
 #[test]
 #[cfg(feature = "gpu")]
 fn a_movie_has_threads_beside_the_one_that_renders() {

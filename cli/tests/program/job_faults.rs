@@ -1,4 +1,4 @@
-//! Jobs survive what happens to processes, disks and clocks: submitted again they are completed, with the same bytes.
+//! Jobs survive faults of processes, disks and clocks. Submitted again, they complete with the same bytes.
 
 use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
@@ -12,7 +12,7 @@ use crate::support::{Folder, send};
 
 const SPLIT: &str = "a.xyz --frames :4 --tiles 2x2 --size 120x90 --samples 6";
 
-/// The bytes of the pictures of one machine.
+/// The bytes of the pictures that one machine renders.
 fn rendered(folder: &Folder) -> Vec<Vec<u8>> {
     let flags = SPLIT.replace("--tiles 2x2", "");
     folder.run(&format!("render {flags} --backend cpu -o r%d.png -q")).succeeded();
@@ -23,7 +23,7 @@ fn split_frames(folder: &Folder) {
     folder.run(&format!("job split {SPLIT} --backend cpu -o job -q")).succeeded();
 }
 
-/// Renders what is left, merges, and compares.
+/// Renders the remaining parts, merges, and compares.
 #[track_caller]
 fn assert_completed(folder: &Folder, wanted: &[Vec<u8>]) {
     folder.run("job part job 0-15 -q").succeeded();
@@ -33,7 +33,7 @@ fn assert_completed(folder: &Folder, wanted: &[Vec<u8>]) {
     }
 }
 
-/// Killed at 100 random moments, a job never has a part that is not whole.
+/// A job that is killed at 100 random moments never has an incomplete part.
 #[test]
 fn killed_parts_are_rendered_again() {
     let folder = folder();
@@ -41,7 +41,7 @@ fn killed_parts_are_rendered_again() {
     split_frames(&folder);
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..100 {
-        // Two parts, so that the first may be whole when the second is not.
+        // There are two parts, so that the first may be whole when the second is not.
         let first = random.usize(..15);
         let mut command = folder.command(&format!("job part job {first}-{} -q", first + 1));
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
@@ -49,7 +49,7 @@ fn killed_parts_are_rendered_again() {
         child.kill().unwrap();
         child.wait().unwrap();
         if random.u8(..4) == 0 {
-            // Some are lost again, so that there is always something to do.
+            // Some parts are removed, so that there is always something to do.
             let _ = fs::remove_file(part(&folder, first));
         }
     }
@@ -59,7 +59,7 @@ fn killed_parts_are_rendered_again() {
     assert_completed(&folder, &wanted);
 }
 
-/// Wherever the disk is full, there is one line, exit code 1, and no part.
+/// Wherever the disk becomes full, there is one line, exit code 1, and no part.
 #[test]
 fn a_full_disk_leaves_no_part() {
     let folder = folder();
@@ -94,7 +94,7 @@ fn two_at_once_write_the_same_part() {
     assert_completed(&folder, &wanted);
 }
 
-/// As on a network file system, a part is seen only after a while.
+/// A part becomes visible only after a while, as on a network file system.
 #[test]
 fn merge_waits_for_parts_that_are_not_seen_yet() {
     let folder = folder();
@@ -118,13 +118,13 @@ fn clocks_that_differ_do_no_harm() {
     let folder = folder();
     split_frames(&folder);
     let day = Duration::from_secs(86_400);
-    // What a process left that was killed long ago is removed.
+    // Files that a killed process left long ago are removed.
     let [old, new] = ["old", "new"].map(|name| folder.path(&format!("job/parts/.pinhole-{name}")));
     File::create(&old).unwrap().set_modified(SystemTime::now() - day).unwrap();
     File::create(&new).unwrap();
     folder.run("job part job 0-15 -q").succeeded();
     assert!(!old.exists() && new.exists());
-    // Parts of any age are parts.
+    // Parts are kept, whatever their age.
     let old = File::options().write(true).open(part(&folder, 0)).unwrap();
     old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
     assert_eq!(missing(&folder), [0_usize; 0]);
@@ -190,7 +190,7 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     assert!(folder.read("m0.png") == folder.read("good0.png"));
 }
 
-/// An `sbatch` that notes its arguments and runs the script at once, for an array every task of it.
+/// A stand-in for `sbatch` that logs its arguments and runs the script at once, once for each task of an array.
 const SBATCH: &str = r#"#!/bin/bash
 echo "$@" >>log
 array=
@@ -225,7 +225,7 @@ fn with_scripts() -> Folder {
     folder
 }
 
-/// Runs the script, and returns the lines of arguments that `sbatch` had.
+/// Runs the script, and returns the lines of arguments that `sbatch` received.
 fn submit(folder: &Folder) -> Vec<String> {
     let _ = fs::remove_file(folder.path("log"));
     let program = std::path::Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
@@ -248,14 +248,14 @@ fn an_array_and_a_merge_are_submitted_and_again_for_what_is_missing() {
     assert_eq!(missing(&folder), [0_usize; 0]);
     folder.run("render a.xyz --frames : --backend cpu --size 40x30 -o r.apng -q").succeeded();
     assert!(folder.read("movie.apng") == folder.read("r.apng"));
-    // Only what is missing is submitted again.
+    // Only missing units are submitted again.
     fs::remove_file(part(&folder, 4)).unwrap();
     fs::write(part(&folder, 7), "x").unwrap();
     let lines = submit(&folder);
     assert!(lines[0].contains("--array=1-1%") && lines.len() == 2, "{lines:?}");
     assert_eq!(folder.read("job/units.txt"), b"4,7\n");
     assert_eq!(missing(&folder), [0_usize; 0]);
-    // Only the merge is left.
+    // Only the merge remains.
     let lines = submit(&folder);
     assert!(lines.len() == 1 && !lines[0].contains("--dependency"), "{lines:?}");
 }

@@ -1,4 +1,4 @@
-//! Tests of jobs: what is merged from parts is what one machine writes, to the byte, and no bad file is used.
+//! Tests of jobs. Merged parts have the same bytes as the picture of one machine, and bad files are not used.
 
 use std::fs;
 use std::path::PathBuf;
@@ -34,7 +34,7 @@ pub(crate) fn folder() -> Folder {
     ])
 }
 
-/// Splits, renders all parts in two processes and merges. The folder of the job is `job`.
+/// Splits, renders all parts in two processes, and merges. The folder of the job is `job`.
 #[track_caller]
 pub(crate) fn through_parts(folder: &Folder, split: &str, merge: &str) -> Run {
     if folder.path("job").exists() {
@@ -49,7 +49,7 @@ pub(crate) fn through_parts(folder: &Folder, split: &str, merge: &str) -> Run {
     folder.run(&format!("job merge job {merge} -q")).succeeded()
 }
 
-/// The units that have no part, or one that is not whole.
+/// The units without a whole part.
 pub(crate) fn missing(folder: &Folder) -> Vec<usize> {
     let run = folder.run("job status job --missing --check").succeeded();
     assert_eq!(run.stderr, "");
@@ -66,7 +66,7 @@ pub(crate) fn part(folder: &Folder, unit: usize) -> PathBuf {
     folder.path(&format!("job/parts/{unit:06}.part"))
 }
 
-/// Renders with the same flags on one machine and compares all files, whose names begin with `m` and `r`.
+/// Renders with the same flags on one machine, and compares all files. Their names begin with `m` and `r`.
 #[track_caller]
 fn assert_same(flags: &str, tiles: &str, outputs: &str) {
     let folder = folder();
@@ -161,7 +161,7 @@ fn status_lists_what_is_missing() {
     run.refused(1, "3 of 6 parts cannot be merged: missing 0,2,5;");
     run.refused(1, "--array=0,2,5\n");
     assert!(!folder.path("m0.png").exists());
-    // Without --check, only the headers and lengths of parts are looked at.
+    // Without --check, only the headers and lengths of parts are checked.
     std::fs::write(part(&folder, 4), "x").unwrap();
     let run = folder.run("job status job --missing").succeeded();
     assert_eq!(run.stdout, b"0\n2\n4\n5\n");
@@ -192,7 +192,7 @@ const LAYERS: [&str; 4] = ["depth", "normal", "position", "id"];
 
 const FLAGS: &str = "--style fast --size 61x47";
 
-/// A folder with data, the same in 13 bricks, and its picture.
+/// A folder with data, the same data in 13 bricks, and its picture.
 fn bricks() -> Folder {
     let folder = Folder::new();
     fs::write(folder.path("a.npy"), f32_array(&spheres(4000, [-0.5; 3]))).unwrap();
@@ -232,7 +232,7 @@ fn merged_groups_are_the_same_bytes() {
         assert_merged(&folder);
         fs::remove_dir_all(folder.path("job")).unwrap();
     }
-    // Tiles of bricks have all bricks in each unit.
+    // Each unit for tiles of bricks has all bricks.
     let run = format!("job split a.bricks --tiles 3x2 -o job -q {FLAGS} --backend cpu");
     folder.run(&run).succeeded();
     folder.run("job part job 0-5 -q").succeeded();
@@ -254,7 +254,7 @@ fn missing_damaged_and_foreign_groups_are_named() {
     merge().refused(1, "damaged 2, of another job 1");
     folder.run("job part job 0-3 -q").succeeded();
     assert_merged(&folder);
-    // A part of the same groups of another file.
+    // The part belongs to the same groups of another file.
     let other = Folder::new();
     fs::write(other.path("a.npy"), f32_array(&spheres(4000, [-0.25; 3]))).unwrap();
     other.run("sort a.npy -o a.bricks -q --bricks 13").succeeded();
@@ -266,7 +266,7 @@ fn missing_damaged_and_foreign_groups_are_named() {
     folder.refuses("job part job 0", 1, "this file has changed since the job was split");
 }
 
-/// A job of four parts that is complete.
+/// A complete job of four parts.
 fn complete() -> Folder {
     let folder = folder();
     through_parts(
@@ -277,7 +277,7 @@ fn complete() -> Folder {
     folder
 }
 
-/// Each file of a job missing, cut off, altered, or of another job or version.
+/// Each file of a job is missing, cut off, changed, or from another job or version.
 #[test]
 fn damaged_files_of_a_job_are_refused() {
     let folder = complete();
@@ -307,7 +307,7 @@ fn damaged_files_of_a_job_are_refused() {
     std::fs::remove_file(folder.path("job/job.json")).unwrap();
     all.iter().for_each(|arguments| folder.refuses(arguments, 1, "not the folder of a job"));
     write("job/job.json", &good);
-    // What all frames are together is needed only by parts that are not there.
+    // Only missing parts need the facts about all frames.
     let overview = read("job/overview.bin");
     std::fs::remove_file(part(&folder, 0)).unwrap();
     for bytes in [&overview[8..], &[]] {
@@ -317,7 +317,7 @@ fn damaged_files_of_a_job_are_refused() {
     std::fs::remove_file(folder.path("job/overview.bin")).unwrap();
     folder.refuses("job part job 0", 1, "overview.bin: cannot be read");
     write("job/overview.bin", &overview);
-    // The data has changed, and is as long as before.
+    // The data has changed, but has the same length.
     let data = read("a.xyz");
     let mut other = data.clone();
     let last = other.iter().rposition(u8::is_ascii_digit).unwrap();
@@ -342,7 +342,7 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
         bytes
     };
     let end = good[0].len();
-    // Any byte: of the start, the header's length, the header, the pixels, the digest.
+    // One byte is changed: of the start, the header's length, the header, the pixels, or the digest.
     let mut damaged: Vec<Vec<u8>> =
         [0, 16, 20, 60, 200, end / 2, end - 33, end - 32, end - 1].map(flipped).to_vec();
     damaged.extend([vec![], good[0][..end / 2].to_vec(), good[0][..end - 1].to_vec()]);
@@ -358,7 +358,7 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
         folder.run("job part job 0 -q").succeeded();
         assert_eq!(missing(&folder), [0_usize; 0]);
     }
-    // A part of another unit, and one of another job.
+    // The part belongs to another unit, and then to another job.
     put(2, &good[1]);
     folder.refuses("job merge job -o m%d.png", 1, "of another job 2; ");
     put(2, &good[2]);

@@ -1,4 +1,4 @@
-//! Tests of pictures: how they are lit and framed, their styles, their files, and pairs of them for two eyes.
+//! Tests of pictures: light and framing, styles, files, and pairs of pictures for two eyes.
 
 use std::io::Cursor;
 
@@ -80,7 +80,7 @@ fn scenes_say_how_they_are_written_and_flags_come_first() {
 fn a_full_disk_leaves_one_line_and_no_file() {
     let folder = folder();
     for output in ["out.exr", "out.png"] {
-        // The limit is 4 KiB, so that the empty file that is tried before the work can be created.
+        // The limit is 4 KiB, so that the empty file can be created that is tried before the work.
         let run =
             folder.run_with_blocks(8, &format!("render three.toml -o {output} --backend cpu"));
         run.refused(1, &format!("{output}: cannot be written: File too large"));
@@ -91,7 +91,7 @@ fn a_full_disk_leaves_one_line_and_no_file() {
 const LIT: &str = "[film]\nwidth = 24\nheight = 18\n[camera.pinhole]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n\
                      [[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
 
-/// The scene with more keys or tables at its top.
+/// The scene with more keys or tables before the others.
 fn scene(top: &str) -> String {
     format!("{top}{LIT}")
 }
@@ -236,7 +236,7 @@ fn a_printed_scene_gives_the_same_bytes() {
             picture(&folder, arguments) == picture(&folder, "printed.toml"),
             "{arguments}\n{text}"
         );
-        // What is printed of a printed scene is the same again, but for its name.
+        // Printing a printed scene gives the same text again, apart from its name.
         let again = folder.run("render printed.toml --print-scene --quiet").succeeded();
         let again = String::from_utf8(again.stdout).unwrap();
         let body = |text: &str| text.split_once("\n\n").unwrap().1.to_owned();
@@ -265,7 +265,7 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
     assert_eq!(said("water.xyz --quiet"), None);
 }
 
-/// A grey background keeps its bytes, whatever the exposure and the tone curve do to the spheres before it.
+/// A grey background keeps its bytes, whatever exposure and tone curve do to the spheres in front of it.
 #[test]
 fn the_background_survives_every_tone_curve() {
     let folder = Folder::with(&DATA);
@@ -273,7 +273,7 @@ fn the_background_survives_every_tone_curve() {
         let small =
             format!("water.xyz --size 24x18 --style {style} --background #808080 --zoom 0.5");
         let small = if style == "fast" { small } else { format!("{small} --samples 1") };
-        // The ground of paths hides the background.
+        // With path tracing, the ground hides the background.
         let small = format!("{small} --view z");
         let plain = decode(&picture(&folder, &small)).2;
         for flags in ["--tone filmic", "--tone agx", "--exposure 2", "--exposure -1 --tone agx"] {
@@ -285,7 +285,7 @@ fn the_background_survives_every_tone_curve() {
     }
 }
 
-/// Opacities of a file itself are not lost where no scene file asks for them.
+/// The opacities in a data file are used if no scene file overrides them.
 #[test]
 fn a_file_may_say_how_clear_its_spheres_are() {
     let folder = Folder::with(&DATA);
@@ -296,7 +296,7 @@ fn a_file_may_say_how_clear_its_spheres_are() {
     assert!(own != picture(&folder, &format!("{small} --opacity-by q")));
 }
 
-/// Kinds that are no elements are told apart, unless a flag says otherwise.
+/// Kinds that are not elements have different colours, unless a flag says otherwise.
 #[test]
 fn kinds_are_colored_where_nothing_else_gives_colors() {
     let folder = Folder::with(&DATA);
@@ -312,7 +312,7 @@ fn kinds_are_colored_where_nothing_else_gives_colors() {
     assert!(is([0x12, 0x34, 0x56]) && !is([0xe6, 0x9f, 0x00]));
 }
 
-/// What a scene file says about names that are no elements is not asked for again.
+/// Notes do not mention names that are not elements if a scene file describes them.
 #[test]
 fn a_note_leaves_out_what_a_scene_file_gives() {
     let folder = Folder::with(&[("beads.xyz", "3\n\nC 0 0 0\nXa 2 0 0\nXb 4 0 0\n")]);
@@ -358,7 +358,7 @@ const TWO_EYES: &str = "[film]\nwidth = 40\nheight = 30\n\
                      stereo = { separation = 1, convergence = 5 }\n\
                      [[spheres]]\ncenter = [0, 0, 2]\nradius = 0.4\ncolor = 'red'\n";
 
-/// Width, height, and for every row the columns that are red.
+/// Width, height, and the red columns of every row.
 fn red(png: &[u8]) -> (u32, u32, Vec<Vec<usize>>) {
     let (width, height, pixels) = decode(png);
     let rows = pixels.chunks(3 * width as usize).map(|row| {

@@ -1,4 +1,4 @@
-//! What users read, word for word: the help of every command, and the error line for every kind of wrong input.
+//! Texts that users read, word for word: the help of every command, and the error line for every kind of wrong input.
 //!
 //! The files in `snapshots/` are the list of cases: a help file is named after its command, and the others hold command
 //! lines, the files that they read, and the expected text. After an intended change, or after you added a command line
@@ -24,8 +24,8 @@ const SNAPSHOTS: &str = "tests/program/snapshots";
 
 const UPDATE: &str = "PINHOLE_UPDATE_SNAPSHOTS";
 
-/// Compares the files in a folder that a test is about with what `find` returns for their names and texts, or writes
-/// them.
+/// Compares the files in a folder that a test concerns with the results of `find` for their names and texts, or
+/// writes them.
 #[track_caller]
 fn compare(
     folder: &str,
@@ -91,7 +91,7 @@ fn errors() {
     );
 }
 
-/// Files that readers refuse; the tests of their packages read them too.
+/// Files that readers refuse. The tests of the readers' packages read them too.
 #[test]
 fn refused_files() {
     for package in ["data", "figure"] {
@@ -116,7 +116,7 @@ fn refused(Case { files, arguments }: &Case<'_>) -> String {
     format!("exit code {}\n{stderr}", run.code)
 }
 
-/// Without an adapter.
+/// No adapter is needed.
 #[test]
 #[cfg(feature = "gpu")]
 fn every_kernel_is_written() {
@@ -141,6 +141,6 @@ fn every_kernel_is_written() {
         assert!(source.contains(&format!("fn {entry_point}(")), "{name}");
         assert!(source.starts_with("//// "), "{name}");
     }
-    // Once more into the folder that is there now.
+    // The kernels are written again into the existing folder.
     folder.run("info --dump-shaders kernels").succeeded();
 }

@@ -10,7 +10,7 @@ pub(crate) const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0
 pub(crate) const SCENE: &str = "[film]\nwidth = 40\nheight = 30\n\
                                 [[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'red'\n";
 
-/// A folder of its own for each test, removed at the end.
+/// A separate folder for each test, which is removed at the end.
 pub(crate) struct Folder {
     folder: TempDir,
 }
@@ -22,7 +22,7 @@ pub(crate) struct Run {
     pub(crate) stdout: Vec<u8>,
     /// Standard error without the line about the picture.
     pub(crate) stderr: String,
-    /// The line about the picture: what was rendered, with which look, and how long it took.
+    /// The line about the picture: input, look and time.
     pub(crate) said: Option<String>,
 }
 
@@ -63,7 +63,7 @@ impl Folder {
         Run::new(output)
     }
 
-    /// Runs `pinhole`, which ends with this exit code and one line that has these words, and changes no file.
+    /// Runs `pinhole`, which must end with this exit code and one line that has these words, and change no file.
     #[track_caller]
     pub(crate) fn refuses(&self, arguments: &str, code: i32, words: &str) {
         let before = self.files();
@@ -92,7 +92,7 @@ impl Folder {
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
-        // These may be set to run the tests of adapters on another adapter.
+        // These variables may be set so that the tests of adapters run on another one.
         for variable in ["WGPU_ADAPTER_NAME", "WGPU_BACKEND", "WGPU_POWER_PREF"] {
             command.env_remove(variable);
         }

@@ -7,7 +7,7 @@ use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 use crate::support::{Folder, SCENE};
 
-/// A recording of an empty scene, which is the same to the bit on every device.
+/// A recording of an empty scene, which has the same bits on every device.
 fn nothing([width, height]: [u32; 2]) -> Run {
     let scene = Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap();
     let pose = Pose::looking_along([0.0, 0.0, 4.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
@@ -118,7 +118,7 @@ fn the_page_needs_no_other_files_and_escapes_foreign_text() {
     assert_eq!(data["report"]["command"], "pinhole verify <b>.toml");
     assert_eq!(data["run_file"], "run");
     assert_eq!(page.matches("data:image/png;base64,").count(), 3);
-    // Two scripts, the data and what shows them, and no foreign text outside of the data.
+    // The page has two scripts, the data and the code that shows it, and foreign text only in the data.
     assert_eq!(page.matches("<script").count(), 2);
     assert_eq!(page.matches("</script").count(), 2);
     for outside in ["http:", "https:", "src=", "url(", "@import", "<link", "innerHTML", "<i>"] {

@@ -33,12 +33,12 @@ mod seeds;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Maximum memory for reading a file: bytes for each of its bytes, and additional bytes. Zlib expands a byte to 1032 at
-/// most. A digit of text becomes a number of eight bytes in a list that has doubled.
+/// Maximum memory for reading a file: bytes for each byte of the file, and additional bytes. Zlib expands a byte to at
+/// most 1032. A digit of text becomes a number of eight bytes in a list that has doubled.
 const BYTES_PER_BYTE: usize = 64;
 const MORE_BYTES: usize = 1 << 22;
 
-/// Number of failures of each format that are written.
+/// Maximum number of failing files of each format that are written.
 const SHOWN: u64 = 3;
 
 fn main() {

@@ -19,7 +19,7 @@ pub struct NamedColumn<'a> {
     pub values: Cow<'a, ColumnValues>,
 }
 
-/// Why there is no such column.
+/// The reason why there is no such column.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColumnError {
@@ -56,9 +56,9 @@ pub enum ColumnError {
     },
 }
 
-/// Finds a column by its name, in upper or lower case: one of `columns`; or else one of [`BUILT_IN`], which are the
-/// index in input order, the radius and the coordinates of the centre; or `|v|`, the length of a vector whose components
-/// are the columns `v.x`, `v.y` and `v.z`, or `vx`, `vy` and `vz`, or `v_x`, `v_y` and `v_z`.
+/// Finds a column by its name, in upper or lower case. It is one of `columns`, or else one of [`BUILT_IN`]: the index
+/// in input order, the radius and the coordinates of the centre. The name `|v|` gives the length of a vector whose
+/// components are the columns `v.x`, `v.y` and `v.z`, or `vx`, `vy` and `vz`, or `v_x`, `v_y` and `v_z`.
 ///
 /// # Errors
 /// Returns an error if there is no such column, or if it does not have one value for each sphere.

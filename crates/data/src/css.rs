@@ -20,7 +20,7 @@ pub fn color(text: &str) -> Result<LinearRgb, CssError> {
     Ok(LinearRgb::from_srgb8([r, g, b]))
 }
 
-/// Why a text is not an opaque CSS colour.
+/// The reason why a text is not an opaque CSS colour.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct CssError(String);

@@ -7,7 +7,7 @@ use npyz::WriterBuilder;
 /// Writes spheres as an `.npy` file of shape (n, 4): x, y, z, radius in float32 and C order.
 ///
 /// # Errors
-/// If the sink fails.
+/// Returns an error if the sink fails.
 pub fn npy(spheres: &[[f32; 4]], sink: impl Write) -> io::Result<()> {
     let mut sink = BufWriter::new(sink);
     let shape = [spheres.len() as u64, 4];
@@ -21,7 +21,7 @@ pub fn npy(spheres: &[[f32; 4]], sink: impl Write) -> io::Result<()> {
 /// Writes spheres without a header, as 16 bytes each: x, y, z and radius in little-endian f32.
 ///
 /// # Errors
-/// If the sink fails.
+/// Returns an error if the sink fails.
 pub fn raw(spheres: &[[f32; 4]], mut sink: impl Write) -> io::Result<()> {
     let mut bytes = Vec::new();
     for chunk in spheres.chunks(1 << 12) {

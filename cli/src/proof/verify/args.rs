@@ -46,12 +46,12 @@ pub(crate) struct VerifyArgs {
     pub(crate) replay: Option<PathBuf>,
 }
 
-/// Arguments of `verify` that say nothing about a picture that was written.
+/// Arguments of `verify` that do not apply to written pictures.
 fn not_of_pictures() -> impl Iterator<Item = Id> {
     not_of_recordings().filter(|id| *id != "path" && *id != "scene").chain(["report".into()])
 }
 
-/// Arguments of `verify` that a recording contains, or that do not concern it.
+/// Arguments of `verify` that a recording contains, or that do not apply to it.
 fn not_of_recordings() -> impl Iterator<Item = Id> {
     let own = ["path", "paths", "save", "tile_seed", "scene"].map(Id::from);
     ids::<ViewArgs>().chain(ids::<AdapterArgs>()).chain(ids::<AccelArgs>()).chain(own)

@@ -1,4 +1,4 @@
-//! `pinhole verify`: checks whether a picture is legal that an adapter renders now, or that was recorded before.
+//! `pinhole verify`: checks whether a picture is legal. An adapter renders it now, or it was recorded before.
 
 use std::fmt::Display;
 
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     worse(worse(verdict(&certificate), of_light), of_denoiser)
 }
 
-/// The first failure, but a violation says more than what is undecided.
+/// Returns the first failure, except that a violation takes precedence over an undecided check.
 fn worse(first: Result<(), Failure>, second: Result<(), Failure>) -> Result<(), Failure> {
     match (first, second) {
         (Err(Failure::Undecided(_)), Err(worse @ Failure::CheckFailed(_))) => Err(worse),
@@ -75,13 +75,13 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     none_illegal("the picture is", &count, certificate.violations.first())
 }
 
-/// The failure of a check that found something illegal, if it did.
+/// Returns the failure of a check that found something illegal.
 fn none_illegal(what: &str, count: &str, first: Option<&impl Display>) -> Result<(), Failure> {
     let Some(first) = first else { return Ok(()) };
     Err(Failure::CheckFailed(anyhow!("{what} not legal: {count}; the first is {first}")))
 }
 
-/// The failure of a check that says too little.
+/// The failure of a check that left too much undecided.
 fn undecided(what: &str) -> Failure {
     let percent = 100.0 * MOST_UNDECIDED;
     Failure::Undecided(anyhow!("no violation was found, but {what}; at most {percent} % may"))

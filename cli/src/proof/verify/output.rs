@@ -1,4 +1,4 @@
-//! The checks of `pinhole verify`, and its files: all of them, or none.
+//! The checks of `pinhole verify`, and its output files, which are written all or none.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{self, Extras, LitSamples, Run, RunFile, ShownPicture};
 use pinhole::verify::{Certificate, Checker, LitCertificate};
 
-/// What is to be checked and written.
+/// A recording to check, and the outputs to write.
 pub(crate) struct VerifyJob {
     pub(crate) run: Run,
     pub(crate) outputs: VerifyOutputs,
@@ -27,18 +27,18 @@ pub(crate) struct VerifyJob {
     pub(crate) light: Option<LitCertificate>,
     /// The certificate of the denoiser, if the scene asks for it.
     pub(crate) denoiser: Option<DenoiseCertificate>,
-    /// What is kept of the light, for a run file and the page.
+    /// Data about the light, for a run file and the page.
     pub(crate) kept: KeptLight,
 }
 
-/// What is kept of a lit picture.
+/// Data of a lit picture that are kept.
 #[derive(Default)]
 pub(crate) struct KeptLight {
-    /// The samples that were recorded, if a run file is written.
+    /// The recorded samples, if a run file is written.
     pub(crate) samples: Option<LitSamples>,
     /// The noisy picture and the denoised one.
     pub(crate) denoised: Option<[Image; 2]>,
-    /// The lit picture for people.
+    /// The lit picture to show.
     pub(crate) shown: Option<ShownPicture>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct VerifyOutputs {
     save: Option<PathBuf>,
     folder: Option<NewFolder>,
     page: Option<PathBuf>,
-    /// The run file that holds the checked recording, if there is one.
+    /// The run file of the checked recording, if there is one.
     run: Option<PathBuf>,
 }
 
@@ -92,7 +92,7 @@ impl VerifyOutputs {
             run: args.replay.clone().or(args.save.clone()),
         };
         check_distinct(outputs.paths())?;
-        // The name of a folder that does not exist yet must also differ from the others.
+        // A folder that does not exist yet must also have a name that differs from the others.
         check_distinct(args.json.iter().chain(&args.save).chain(&args.report))?;
         Ok(outputs)
     }

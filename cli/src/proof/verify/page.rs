@@ -1,5 +1,5 @@
-//! Makes the page of `pinhole verify --report`: one file that needs no other files. Its script shows the JSON document and
-//! the pictures, which are in it.
+//! Makes the page of `pinhole verify --report`: one file that needs no other files. Its script shows the JSON document
+//! and the pictures that the page contains.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -18,23 +18,23 @@ use pinhole_figure::write::png;
 
 const TEMPLATE: &str = include_str!("page.html");
 
-/// What the script of the page reads.
+/// The data that the script of the page reads.
 #[derive(Serialize)]
 struct Page<'a> {
     report: &'a Report<'a>,
     verdict: String,
-    /// Version of the program that checks.
+    /// Version of the program that made the check.
     checked_by: &'static str,
-    /// The run file that holds the checked recording, if there is one.
+    /// The run file of the checked recording, if there is one.
     run_file: Option<String>,
     pictures: PagePictures,
-    /// The colours of the verdicts in their picture.
+    /// The colour of each verdict in its picture.
     colors: BTreeMap<&'static str, String>,
-    /// The nearest and the farthest depth, if a sphere is hit.
+    /// The nearest and the farthest depth, if any sphere is hit.
     depths: Option<[f32; 2]>,
     /// The number of samples of the lit picture.
     shown_samples: Option<u32>,
-    /// One pixel of the pictures stands for `step` × `step` pixels.
+    /// The factor by which pictures are reduced: a pixel stands for `step` × `step` pixels.
     step: u32,
 }
 
@@ -48,7 +48,7 @@ struct PagePictures {
     light: Option<String>,
 }
 
-/// Makes the page. `lit` is the picture with light, if there is one. `run_file` is the file that holds the checked recording, if there is one.
+/// Makes the page. `lit` is the picture with light, and `run_file` the file of the checked recording, if they exist.
 pub(crate) fn page(
     run: &Run,
     certificate: &Certificate,
@@ -75,7 +75,7 @@ pub(crate) fn page(
         run_file: run_file.map(|path| path.to_string()),
         pictures: PagePictures {
             color: blocks.drawn(|block| mean(block.map(|i| color[i])))?,
-            // The smallest depth of each block.
+            // Each block shows its smallest depth.
             depth: blocks.drawn(|block| {
                 depth_color(block.map(|i| depth[i]).fold(f32::INFINITY, f32::min), depths)
             })?,
@@ -93,7 +93,7 @@ pub(crate) fn page(
     Ok(TEMPLATE.replacen("{{data}}", &in_a_script(&json), 1))
 }
 
-/// The same JSON without any `<`, so that no text in it can end the element `script`.
+/// Escapes every `<` in JSON, so that no text in it can end the element `script`.
 fn in_a_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
@@ -104,10 +104,10 @@ const LONGEST: u32 = 2048;
 /// Colour of misses in the picture of depths.
 const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
 
-/// Colour of pixels in which the hit of a sphere is the only legal answer.
+/// Colour of pixels in which only a hit of a sphere is legal.
 const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
-/// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in
+/// Returns the colour of a verdict. Cold colours are legal, and the warm one is not. The colours also differ in
 /// greyscale and for people with red-green colour blindness (after Okabe and Ito).
 const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     match verdict {
@@ -133,7 +133,7 @@ impl Blocks {
         self.size.map(|side| side.div_ceil(self.step))
     }
 
-    /// Draws a picture, as the data URI of a PNG. `color` gets the indices of the film's pixels in a block.
+    /// Draws a picture, as the data URI of a PNG. `color` gets the indices of the film's pixels in each block.
     fn drawn(
         &self,
         color: impl Fn(&mut dyn Iterator<Item = usize>) -> [u8; 3] + Sync,
@@ -154,7 +154,7 @@ impl Blocks {
     }
 }
 
-/// The mean of linear colours.
+/// Returns the mean of linear colours.
 fn mean(colors: impl Iterator<Item = [f32; 3]>) -> [u8; 3] {
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for color in colors {
@@ -164,8 +164,8 @@ fn mean(colors: impl Iterator<Item = [f32; 3]>) -> [u8; 3] {
     to_srgb8(sum.map(|sum| (sum / count) as f32))
 }
 
-/// The smallest and the largest depth, if any sphere is hit. Wrong depths are left out, because they would spoil the
-/// scale.
+/// The smallest and the largest depth, if any sphere is hit. Wrong depths are left out, because they would distort
+/// the scale.
 fn depths(depth: &[f32], verdicts: &[Verdict]) -> Option<[f32; 2]> {
     let is_wrong = |i: usize| verdicts.get(i) == Some(&Verdict::Violation);
     let depths = depth.iter().enumerate();
@@ -176,7 +176,7 @@ fn depths(depth: &[f32], verdicts: &[Verdict]) -> Option<[f32; 2]> {
     })
 }
 
-/// The colour of a depth, from the nearest, which is bright, to the farthest, which is dark.
+/// The colour of a depth, bright for the nearest and dark for the farthest.
 fn depth_color(depth: f32, depths: Option<[f32; 2]>) -> [u8; 3] {
     if !depth.is_finite() {
         return MISS;
@@ -187,7 +187,7 @@ fn depth_color(depth: f32, depths: Option<[f32; 2]>) -> [u8; 3] {
     [color.r, color.g, color.b]
 }
 
-/// The colour of the worst verdict of a block, so that no violation is lost where the size is reduced.
+/// The colour of the worst verdict of a block, so that violations remain visible at the reduced size.
 fn mask_color(
     block: &mut dyn Iterator<Item = usize>,
     verdicts: &[Verdict],

@@ -22,7 +22,7 @@ use pinhole::verify::Outcome;
 use pinhole::verify::picture_certificate::PictureCertificate;
 use pinhole_figure::read::picture::{self, FileSamples};
 
-/// The file of `--json`.
+/// The JSON document of `--json`.
 #[derive(Serialize)]
 struct Report<'a> {
     version: &'static str,
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     judged.verdict()
 }
 
-/// The job that the certificate says, for this scene, and its command line.
+/// Makes the job from the certificate's arguments for this scene, with its command line.
 fn job(
     path: &Path,
     scene: &Path,
@@ -127,7 +127,7 @@ fn job(
     Ok((job, format!("pinhole render {} {flags}", scene.display()).trim_end().to_owned()))
 }
 
-/// Refuses a picture whose samples are of another kind than the arguments ask for.
+/// Refuses a picture whose samples have another kind than the arguments imply.
 fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result<()> {
     let FileSamples::Encoded { bits, has_alpha, .. } = samples else { return Ok(()) };
     if (*bits, *has_alpha) == (encoding.bits, encoding.transparent) {

@@ -1,4 +1,4 @@
-//! Recordings of `pinhole verify` on a device: the picture by one ray, samples of light, and what the denoiser makes.
+//! Recordings of a device for `pinhole verify`: a picture with one ray per pixel, samples of light, and denoising.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -56,7 +56,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
             )));
         }
     }
-    // Of each sample the middle is recorded, and a part elsewhere.
+    // Each sample is recorded in the middle, and again in a part elsewhere.
     let most = run_file::MAX_SAMPLES / 2;
     if args.save.is_some() && args.paths.is_some_and(|paths| paths > most) {
         return Err(Failure::usage(format!(
@@ -123,8 +123,8 @@ fn provenance(headless: &Headless, structure: Structure) -> Provenance {
     }
 }
 
-/// Records this number of samples on an adapter, one after the other, in the middle of the film and in a part at
-/// random, and checks them. If they will be saved, `kept` keeps them.
+/// Records this number of samples on an adapter, one after the other, in the middle of the film and in a random
+/// part, and checks them. `kept` stores them if they will be saved.
 pub(crate) fn certify_light(
     headless: &Headless,
     input: &Input,
@@ -146,7 +146,7 @@ pub(crate) fn certify_light(
         };
         let checker = Checker::new(scene).context("the checker cannot be prepared")?;
         let mut certificate = LitCertificate::default();
-        // With another structure, recording begins anew.
+        // Recording starts again with another structure.
         kept.borrow_mut().iter_mut().for_each(|kept| kept.clear());
         let failed = RefCell::new(None);
         let recording = "recording light";
@@ -187,14 +187,14 @@ pub(crate) fn certify_light(
     Ok(certificate)
 }
 
-/// Another number in each run.
+/// A number that differs in each run.
 fn any_seed() -> u32 {
     use std::hash::{BuildHasher, RandomState};
     RandomState::new().hash_one(0) as u32
 }
 
-/// The indices of the samples that are checked: `count` of those of a picture, among them the last and, if there are
-/// several, the first; the others are chosen at random. More than the picture has are the first ones.
+/// The indices of the samples to check: `count` of those of a picture, including the last and, if there are several,
+/// the first. Others are random. If the picture has fewer samples, the first `count` are chosen.
 fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
     let all = all.max(1);
     if count >= all {
@@ -206,18 +206,18 @@ fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
     }
     let mut random = seed;
     while chosen.len() < count as usize {
-        // A linear congruential generator, of which the upper bits are used (Numerical Recipes, section 7.1).
+        // A linear congruential generator, whose upper bits are used (Numerical Recipes, section 7.1).
         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         chosen.insert(((u64::from(random) * u64::from(all)) >> 32) as u32);
     }
     chosen.into_iter().collect()
 }
 
-/// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
+/// The longer side of the picture that is denoised, and its samples. A noisier picture tests the denoiser more.
 const DENOISED_SIDE: u32 = 160;
 const DENOISED_SAMPLES: u32 = 4;
 
-/// Renders a small noisy picture, and what the device makes of it.
+/// Renders a small noisy picture, and denoises it on the device.
 pub(crate) fn render_denoised(
     headless: &Headless,
     input: &Input,
@@ -245,7 +245,7 @@ pub(crate) fn render_denoised(
     Ok(pictures)
 }
 
-/// The same picture with a longer side of at most this many pixels.
+/// The same film with a longer side of at most this many pixels.
 fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
     let (width, height) = (film.width(), film.height());
     let shrink = |side: u32| {
@@ -255,7 +255,7 @@ fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
     Ok(Film::new(shrink(width), shrink(height))?.with_y_axis(film.y_axis()))
 }
 
-/// More samples would take long, and change little at the size that a page has.
+/// Number of samples. More would take long, and change little at the size of the picture on the page.
 const SHOWN_SAMPLES: u32 = 16;
 
 /// Renders the scene with its light and few samples, in the view that is checked.
@@ -287,7 +287,7 @@ pub(crate) fn render_lit(
     Ok(shown(&picture.image, &encoding, samples, wanted))
 }
 
-/// Encodes the picture as the scene asks for it, but with its background.
+/// Encodes the picture as the scene specifies, but with its background.
 fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> ShownPicture {
     let (color, alpha) = (image.color(), image.alpha());
     let srgb = (0..color.len()).map(|i| {

@@ -27,7 +27,7 @@ pub(crate) struct Report<'a> {
     pub(crate) decided_fraction: f64,
     pub(crate) worst_depth: f64,
     pub(crate) worst_normal: f64,
-    /// Number of pixels in which `render` gives other values than the recording; `None` if that is not known.
+    /// Number of pixels in which `render` gives other values than the recording; `None` if it is not known.
     pub(crate) rendered_otherwise: Option<usize>,
     pub(crate) upload: &'a Option<UploadError>,
     pub(crate) violations: &'a [Violation],
@@ -125,7 +125,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// The check of light, if there was one.
+    /// The check of light, if there is one.
     pub(crate) fn light(&self) -> Option<&LightReport<'a>> {
         self.paths.as_ref().or(self.studio.as_ref())
     }
@@ -157,7 +157,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Returns the report as text. Each entry that comes from a run file has a line of its own.
+    /// Returns the report as text. Entries from a run file are on lines of their own.
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
@@ -182,7 +182,7 @@ pub(crate) fn command_line() -> String {
     std::iter::once("pinhole".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// The largest number of open searches in the table.
+/// Maximum number of open searches in the table.
 const LINES: usize = 3;
 
 /// The object `paths` or `studio` of the JSON document.
@@ -204,7 +204,7 @@ pub(crate) struct LightReport<'a> {
     legal: bool,
     #[serde(skip)]
     certificate: &'a LitCertificate,
-    /// The first stages with several legal results, and those of which the check says little.
+    /// The first stages with several legal results, and stages for which the check is weak.
     open: &'a [LitOpen],
 }
 
@@ -228,20 +228,20 @@ impl<'a> LightReport<'a> {
         }
     }
 
-    /// Lines of text about the counts, and about the first open searches.
+    /// Lines about the counts, and about the first open searches.
     fn lines(&self) -> String {
         let open = self.open.iter().filter(|open| !open.legal.is_empty());
         let lines = open.take(LINES).map(|open| format!("open: {open}\n"));
         std::iter::once(format!("{}\n", self.certificate)).chain(lines).collect()
     }
 
-    /// Whether nothing is known to be wrong.
+    /// Whether no fault is known.
     fn is_without_fault(&self) -> bool {
         self.violation_count == 0 && self.upload.is_none()
     }
 }
 
-/// How much of the picture was judged.
+/// The share of the picture that was judged.
 #[derive(Serialize)]
 struct JudgedShare {
     #[serde(flatten)]
@@ -252,7 +252,7 @@ struct JudgedShare {
 impl JudgedShare {
     fn words(&self) -> String {
         let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
-        // Rounded down, so that nothing but all of them is called 100 %.
+        // The share is rounded down, so that 100 % means all pixels.
         let percent = (self.fraction * 1e6).floor() / 1e4;
         format!(
             "{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)"
@@ -260,14 +260,14 @@ impl JudgedShare {
     }
 }
 
-/// The largest number of violations in the JSON document.
+/// Maximum number of violations in the JSON document.
 const LISTED: usize = 100;
 
 fn listed<T>(violations: &[T]) -> &[T] {
     &violations[..violations.len().min(LISTED)]
 }
 
-/// The largest number of pixels with each verdict.
+/// Maximum number of pixels with each verdict.
 const SHOWN: usize = 3;
 
 /// A pixel with several legal answers.
@@ -275,7 +275,7 @@ const SHOWN: usize = 3;
 pub(crate) struct OpenPixel {
     pub(crate) pixel: [u32; 2],
     pub(crate) verdict: Verdict,
-    /// The answer that was found, and the legal ones.
+    /// Description of the answer found and of the legal ones.
     pub(crate) message: String,
 }
 
@@ -320,7 +320,7 @@ impl DenoiserReport<'_> {
     }
 }
 
-/// Judges what the device made of a noisy picture.
+/// Judges the device's denoised version of a noisy picture.
 pub(crate) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
     denoised::certify(noisy, quiet).context("the denoiser cannot be checked")
 }

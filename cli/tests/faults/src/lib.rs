@@ -1,9 +1,9 @@
-//! A Vulkan layer for tests, which makes a driver fail in one of the ways that real ones do.
+//! A Vulkan layer for tests that makes a driver fail in one of the ways of real drivers.
 //!
-//! Vulkan's loader puts it between the program and the driver. The environment variable `PINHOLE_TEST_FAULT` says what fails:
+//! Vulkan's loader puts it between the program and the driver. The variable `PINHOLE_TEST_FAULT` chooses the fault:
 //!
-//! * `lost-submit=N`: the N-th submission and everything after it says that the device is lost.
-//! * `lost-wait=N`: the N-th submission is accepted and never done; everything after it says that the device is lost.
+//! * `lost-submit=N`: the N-th submission and everything after it reports a lost device.
+//! * `lost-wait=N`: the N-th submission is accepted and never done; everything after it reports a lost device.
 //! * `hang=N`: the N-th submission and those after it are accepted and never done.
 //! * `memory=BYTES`: allocations that would exceed this sum are refused.
 //!
@@ -57,12 +57,12 @@ static STATE: Mutex<State> = Mutex::new(State {
 
 struct State {
     fault: Fault,
-    /// Finds functions of what lies below this layer.
+    /// Finds functions of the driver, or of the next layer below this one.
     next_of_instance: Option<(vk::PFN_vkGetInstanceProcAddr, vk::Instance)>,
     next_of_device: Option<(vk::PFN_vkGetDeviceProcAddr, vk::Device)>,
     submissions: u64,
     is_lost: bool,
-    /// Bytes of each allocation.
+    /// Number of bytes of each allocation.
     allocated: Option<HashMap<u64, u64>>,
 }
 
@@ -70,7 +70,7 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The driver's function of this name. Its type must be that of the name.
+/// Returns the driver's function of this name. `F` must be the type of the function.
 unsafe fn next<F: Copy>(name: &CStr) -> F {
     let next = state().next_of_device;
     let found = next.and_then(|(find, device)| unsafe { find(device, name.as_ptr()) });
@@ -78,12 +78,12 @@ unsafe fn next<F: Copy>(name: &CStr) -> F {
     unsafe { std::mem::transmute_copy(&found) }
 }
 
-/// What happens to a call other than a submission.
+/// Returns the result of a call that is not a submission, if the device is lost.
 fn lost() -> Option<vk::Result> {
     state().is_lost.then_some(vk::Result::ERROR_DEVICE_LOST)
 }
 
-/// Waiting for all work never ends while some of it is never done.
+/// Waits forever if some work is never done.
 fn hang(for_all: bool) {
     let state = state();
     if for_all && matches!(state.fault, Fault::Hang(first) if state.submissions >= first) {
@@ -106,7 +106,7 @@ unsafe extern "system" fn queue_submit(
     match fault {
         Fault::LostSubmit(first) | Fault::LostWait(first) if number >= first => {
             if number == first {
-                // The work of a lost device is over, so that what it used may be destroyed.
+                // The work of a lost device is over, so that its resources may be destroyed.
                 let _ = unsafe { next::<vk::PFN_vkQueueWaitIdle>(c"vkQueueWaitIdle")(queue) };
             }
             state().is_lost = true;
@@ -152,7 +152,7 @@ unsafe extern "system" fn free_memory(
     unsafe { next::<vk::PFN_vkFreeMemory>(c"vkFreeMemory")(device, memory, callbacks) }
 }
 
-/// Functions that ask for the state of work, or wait for it.
+/// Functions that query the state of work, or wait for it.
 macro_rules! asking {
     ($($function:ident: $type:ident, $name:literal, $for_all:literal, ($($argument:ident: $kind:ty),*);)*) => {$(
         unsafe extern "system" fn $function($($argument: $kind),*) -> vk::Result {
@@ -177,7 +177,7 @@ asking! {
     device_wait_idle: PFN_vkDeviceWaitIdle, c"vkDeviceWaitIdle", true, (device: vk::Device);
 }
 
-/// Structures of the loader, by which a layer learns what lies below it (`vulkan/vk_layer.h`).
+/// Structures of the loader through which a layer finds the next one below (`vulkan/vk_layer.h`).
 #[repr(C)]
 struct Link<T> {
     kind: vk::StructureType,
@@ -191,11 +191,11 @@ struct Link<T> {
 struct Layer<T> {
     next: *mut Self,
     of_instance: vk::PFN_vkGetInstanceProcAddr,
-    /// For a device, the function that finds its functions.
+    /// The function that finds a device's functions, in the link for a device.
     other: T,
 }
 
-/// Finds the link in a chain of structures, and takes this layer from it.
+/// Finds the link in a chain of structures, and removes this layer from it.
 unsafe fn take_link<T: Copy>(
     mut chain: *const c_void,
     kind: vk::StructureType,
@@ -257,7 +257,7 @@ unsafe extern "system" fn create_device(
     result
 }
 
-/// The layer's own function of a name.
+/// Returns the layer's own function of a name.
 unsafe fn own(name: *const c_char) -> vk::PFN_vkVoidFunction {
     let pointer = match unsafe { CStr::from_ptr(name) }.to_bytes() {
         b"vkGetInstanceProcAddr" => get_instance_proc_addr as *const c_void,
@@ -296,7 +296,7 @@ unsafe extern "system" fn get_device_proc_addr(
     unsafe { own(name).or_else(|| next.and_then(|(find, _)| find(device, name))) }
 }
 
-/// What the loader and a layer tell each other at first.
+/// The structure in which the loader and a layer agree on a version.
 #[repr(C)]
 #[derive(Debug)]
 pub struct Negotiation {
@@ -308,10 +308,10 @@ pub struct Negotiation {
     of_physical_device: *const c_void,
 }
 
-/// What the loader calls first.
+/// The first function that the loader calls.
 ///
 /// # Safety
-/// The loader gives a pointer to its structure.
+/// The pointer must be that of the loader to its structure.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn vkNegotiateLoaderLayerInterfaceVersion(
     negotiation: *mut Negotiation,

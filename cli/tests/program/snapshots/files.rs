@@ -1,4 +1,4 @@
-//! The files that the commands of several cases name.
+//! The files that are inputs of several cases.
 
 use crate::npy_files::{npy, zip};
 use crate::support::{Folder, SCENE, WATER};
@@ -6,11 +6,11 @@ use crate::support::{Folder, SCENE, WATER};
 /// A file of one sphere in each frame.
 const MOVING: &str = "1\n\nO 0 0 0\n1\n\nO 2 0 0\n1\n\nO 4 0 0\n1\n\nO 6 0 0\n1\n\nO 8 0 0\n";
 
-/// Spheres in a row, with a number and a text each, and a cell.
+/// Spheres in a row, each with a number and a text, in a cell.
 const ROW: &str = "4\nLattice=\"8 0 0 0 2 0 0 0 2\" Properties=species:S:1:pos:R:3:radius:R:1:charge:R:1:site:S:1\n\
                    C 0 0 0 1 -1 a\nC 2 0 0 1 0 b\nC 4 0 0 1 0.5 a\nC 6 0 0 1 3 c\n";
 
-/// One sphere is seen from the right, from the front and from the left.
+/// A camera path that shows one sphere from the right, from the front and from the left.
 const PATH: &str = "[[keys]]\nframe = 0\neye = [-4, 0, 20]\nlook_at = [-4, 0, 0]\n\
                     [[keys]]\nframe = 2\neye = [4, 0, 20]\nlook_at = [4, 0, 0]\n";
 
@@ -116,7 +116,7 @@ fn vectors(value: [f32; 3], other: [f32; 3]) -> Vec<u8> {
     (0..PIXELS).flat_map(|i| bytes(if i == 42 { other } else { value })).collect()
 }
 
-/// The arrays that the command lines name. Those of good ones are of one sphere that fills the picture.
+/// The arrays that the command lines name. Good arrays are those of one sphere that fills the picture.
 fn arrays_to_certify() -> Vec<(&'static str, Vec<u8>)> {
     let (size, of_vectors) = ("(30, 40)", "(30, 40, 3)");
     let id = |dtype: &str, bytes: &[u8]| npy(dtype, false, size, bytes);

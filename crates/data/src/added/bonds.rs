@@ -9,15 +9,15 @@ use crate::load::{Covalent, covalent};
 use pinhole::internals::text::{listed, shortened};
 use pinhole::scene::sphere_array::SphereArray;
 
-/// Which atoms are bonded. Bonds are drawn as sticks, each half in the colour of its atom.
+/// The choice of bonded atoms. Bonds are drawn as sticks, each half in the colour of its atom.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bonds {
-    /// How close bonded atoms are.
+    /// The greatest distance of bonded atoms.
     pub length: BondLength,
 }
 
-/// How close bonded atoms are.
+/// The greatest distance of bonded atoms, or spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondLength {
     /// Two atoms are bonded if they are closer than this factor times the sum of their covalent radii (Cordero et al.
@@ -28,8 +28,8 @@ pub enum BondLength {
 }
 
 impl Bonds {
-    /// The factor of covalent radii by which bonds are found unless another is chosen: bonds may be a fifth longer than
-    /// usual, as `CovalentBond.is_bonded` of pymatgen allows. Psi4 uses 1.3.
+    /// The factor of covalent radii by default: bonds may be a fifth longer than usual, as `CovalentBond.is_bonded` of
+    /// pymatgen allows. Psi4 uses 1.3.
     pub const FACTOR: f64 = 1.2;
 
     /// Bonds of this length.
@@ -45,11 +45,11 @@ impl Default for Bonds {
     }
 }
 
-/// The factor of the van der Waals radius that atoms with bonds have.
+/// The factor by which bonded atoms are smaller than their van der Waals radius.
 const BALL: f64 = 0.25;
 
-/// The factor of the radius that spheres with bonds have that are not atoms of an element. Their radius is often such
-/// that neighbours touch.
+/// The factor by which bonded spheres are smaller that are not atoms of an element. Neighbours among them often
+/// touch.
 const OTHER_BALL: f64 = 0.5;
 
 /// The radius of a stick, in radii of the smaller of the spheres that it joins.
@@ -59,7 +59,7 @@ const STICK: f64 = 0.45;
 /// cylinder, and its normals lean by at most 11.5°.
 const SPACING: f64 = 0.4;
 
-/// The most spheres that are added for each sphere, on average, and however few there are.
+/// Maximum number of added spheres: so many for each sphere on average, and so many more in any case.
 const MOST_ADDED: [usize; 2] = [256, 1 << 16];
 
 /// The factor by which bonds make a sphere of a species smaller.
@@ -94,7 +94,7 @@ impl Bonds {
             let radius = STICK * ball_a.min(ball_b);
             let (length, middle) = ((to - from).length(), 0.5 * (from + to));
             let along = (to - from) / length;
-            // Where the stick comes out of a ball. What lies deeper cannot be seen.
+            // The stick leaves a ball at this distance from its centre. Deeper parts of the stick cannot be seen.
             let [out_a, out_b] =
                 [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
             let halves = [
@@ -142,7 +142,7 @@ fn no_elements() -> AddError {
     )
 }
 
-/// Finds pairs that are closer than `factor` times the sum of their covalent radii.
+/// Finds pairs of spheres that are closer than `factor` times the sum of their covalent radii.
 fn covalent_bonds(
     factor: f64,
     base: &Base<'_>,
@@ -174,16 +174,16 @@ fn covalent_bonds(
     })
 }
 
-/// The most pairs for each point, on average. In the densest packing of equal spheres there are 6 of neighbours.
+/// The most pairs for each point, on average. The densest packing of equal spheres has 6 pairs of neighbours for each.
 pub(super) const MOST_PAIRS: usize = 16;
 
-/// How many distances are computed for each point, on average, before the search is given up.
+/// The most distances that are computed for each point, on average, before the search is given up.
 const MOST_TESTS: usize = 4096;
 
-/// How many more distances are computed however few points there are.
+/// The number of distances that are computed in addition, so that few points are never too many.
 const MORE_TESTS: usize = 1 << 22;
 
-/// Half of the cells around a cell: each pair of neighbours is met once.
+/// Half of the cells around a cell, so that each pair of neighbours is met once.
 const FORWARD: [[i64; 3]; 13] = [
     [1, 0, 0],
     [-1, 1, 0],
@@ -200,8 +200,8 @@ const FORWARD: [[i64; 3]; 13] = [
     [1, 1, 1],
 ];
 
-/// Returns pairs of indices, the smaller first and in ascending order, of points at most `reach` apart for which
-/// `is_pair` is true; it is given two indices and the squared distance. Points that are not finite have no pairs.
+/// Returns pairs of indices, sorted and the smaller first, of finite points at most `reach` apart for which
+/// `is_pair` is true. `is_pair` gets two indices and the squared distance.
 pub(super) fn pairs(
     points: &[DVec3],
     reach: f64,
@@ -210,7 +210,7 @@ pub(super) fn pairs(
     let mut cells: HashMap<I64Vec3, Vec<u32>> = HashMap::new();
     let finite = points.iter().enumerate().filter(|(_, point)| point.is_finite());
     for (index, point) in finite.clone() {
-        // Cells that are too far for an i64 are all one, which takes time but changes nothing.
+        // Cells that are too far away for an i64 become the same cell, which takes time but changes no result.
         cells.entry((point / reach).floor().as_i64vec3()).or_default().push(index as u32);
     }
     let most_tests = points.len().saturating_mul(MOST_TESTS).saturating_add(MORE_TESTS);
@@ -248,7 +248,7 @@ pub(super) fn pairs(
         }
         for offset in FORWARD {
             let next = cell.wrapping_add(I64Vec3::from(offset));
-            // A cell at the end of the numbers is not its own neighbour.
+            // A cell at the end of the range of i64 is not its own neighbour.
             if let Some(others) = cells.get(&next).filter(|_| next != *cell) {
                 test(inside, others)?;
             }
@@ -280,7 +280,7 @@ mod tests {
             let mut points: Vec<DVec3> = (0..600).map(|_| point()).collect();
             points.push(DVec3::splat(1e300));
             points.push(DVec3::NAN);
-            // On the borders of cells, and in one place.
+            // Points on the borders of cells, and several in one place.
             points.extend([DVec3::ZERO, DVec3::X * reach, DVec3::ZERO]);
             let found = pairs(&points, reach, |_, _, _| true).unwrap();
             assert_eq!(found, all_pairs(&points, reach));

@@ -1,8 +1,8 @@
 //! Spheres that are added to those of data: the edges of the periodic cell, and bonds between atoms.
 //!
-//! An edge or a bond is a string of spheres that overlap so far that it looks like a stick. They come after the spheres
-//! of the data, whose indices stay as they are, and do not count for what follows from the data, such as the range of
-//! colours. [`Additions`] says what is wanted.
+//! An edge or a bond is a string of spheres: a row that overlaps so far that it looks like a stick. Added spheres come
+//! after the spheres of the data, whose indices stay as they are, and do not affect properties of the data, such as the
+//! range of colours. [`Additions`] holds the choices.
 
 mod bonds;
 mod spheres;
@@ -17,15 +17,15 @@ use pinhole::image::color::LinearRgb;
 use pinhole::scene::sphere_array::SphereArray;
 use spheres::{Look, string_between, string_count};
 
-/// What is added to the spheres of data.
+/// The shapes to add to the spheres of data.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Additions {
     /// The edges of the periodic cell.
     pub cell: Option<CellEdges>,
     /// Bonds between atoms.
     pub bonds: Option<Bonds>,
-    /// Whether spheres keep their radii with bonds, because the user chose them. Others become smaller: atoms of elements
-    /// by the factor 0.25, others by 0.5, so that the sticks between them can be seen.
+    /// Whether spheres keep their radii when bonds are drawn, because the user chose the radii. Otherwise atoms of
+    /// elements shrink by the factor 0.25, and other spheres by 0.5, so that the sticks between them can be seen.
     pub keeps_radii: bool,
 }
 
@@ -64,7 +64,7 @@ impl Additions {
         }
     }
 
-    /// The spheres that are added to these spheres of data.
+    /// Returns the spheres to add to these spheres of data.
     ///
     /// # Errors
     /// Returns an error if there is no cell to draw, if no bonds can be found, or if a length is out of range.
@@ -80,7 +80,7 @@ impl Additions {
     }
 }
 
-/// How the twelve edges of the periodic cell are drawn.
+/// The twelve edges of the periodic cell, drawn as sticks.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CellEdges {
@@ -88,13 +88,13 @@ pub struct CellEdges {
     pub width: Option<f64>,
 }
 
-/// The part of the diagonal that the width is.
+/// The default width of edges, as a share of the longest diagonal.
 const WIDTH: f64 = 1.0 / 300.0;
 
-/// The least such part, so that there are at most some hundred thousand spheres.
+/// The least width of edges, as a share of the diagonal: it keeps the number of spheres below some hundred thousand.
 const LEAST_WIDTH: f64 = 1.0 / 20_000.0;
 
-/// The distance of centres on an edge, in radii. Edges are a few pixels wide, where no one sees the spheres.
+/// The distance of centres on an edge, in radii. Edges are a few pixels wide, so single spheres cannot be seen.
 const SPACING: f64 = 0.6;
 
 /// The colour of edges in 8-bit sRGB: a dark grey, near that of outlines, which are as wide as an edge.
@@ -139,7 +139,7 @@ impl CellEdges {
             if length <= 0.0 {
                 continue;
             }
-            // Every edge begins and ends half a distance before its corners, so spheres at corners join them.
+            // The spheres of an edge end half a distance before its corners. Spheres at the corners join the edges.
             let count = string_count(length, radius, SPACING) as usize;
             for start in [DVec3::ZERO, one, other, one + other] {
                 let start = origin + start;

@@ -1,4 +1,4 @@
-//! The spheres that are added to those of data, how they join these, and why they cannot be added.
+//! The spheres that are added to those of data, their colours and surfaces, and the error of adding them.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ use pinhole::scene::{Appearance, Colors};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AddedSpheres {
     spheres: Vec<[f64; 4]>,
-    /// One after the other, how many spheres have one look, and which.
+    /// The look of the spheres in order: each entry has a number of spheres that follow each other, and their look.
     runs: Vec<(usize, Look)>,
     pub(super) bonds: usize,
     pub(super) notes: Vec<String>,
@@ -68,7 +68,7 @@ impl AddedSpheres {
         self.spheres.is_empty()
     }
 
-    /// The number of bonds, also of those that lie within spheres and need none.
+    /// The number of bonds. It includes bonds that lie within spheres and need no spheres of their own.
     #[must_use]
     pub fn bonds(&self) -> usize {
         self.bonds
@@ -100,7 +100,7 @@ impl AddedSpheres {
         }
     }
 
-    /// Adds the spheres to those that they were made for.
+    /// Appends the spheres to those that they were made for.
     pub fn extend_spheres(&self, all: &mut Vec<Sphere>) {
         for ([x, y, z, radius], look) in self.spheres.iter().zip(self.looks()) {
             let like = match look {
@@ -114,7 +114,7 @@ impl AddedSpheres {
         }
     }
 
-    /// Adds the look of the spheres to that of `count` spheres.
+    /// Returns the look of `count` spheres, followed by the look of the added spheres.
     #[must_use]
     pub fn extend_appearance(&self, appearance: &Appearance, count: usize) -> Appearance {
         let surfaces = self.surfaces(appearance, count);
@@ -159,7 +159,7 @@ impl AddedSpheres {
                 Look::Sphere(index) => indices.get(index as usize).copied().unwrap_or_default(),
                 Look::Own(color) => *own.entry(color.to_srgb8()).or_insert_with(|| {
                     palette.push(color);
-                    // There are a few colours more than spheres at most.
+                    // The palette has at most a few colours more than there are spheres.
                     palette.len() as u32 - 1
                 }),
             };
@@ -196,17 +196,17 @@ impl AddedSpheres {
     }
 }
 
-/// Why spheres cannot be added to those of data, on one line.
+/// The reason why spheres cannot be added to those of data, on one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AddError(pub(super) String);
 
-/// The number of spheres of a string with this length, such that centres are at most `spacing` radii apart.
+/// The number of spheres in a string of this length whose centres are at most `spacing` radii apart.
 pub(super) fn string_count(length: f64, radius: f64, spacing: f64) -> f64 {
     (length / (spacing * radius)).ceil().max(1.0)
 }
 
-/// Spheres in the middles of `count` equal parts of a line. Thus two strings that meet have equal distances there.
+/// Spheres in the middles of `count` equal parts of a line. Distances are also equal where two strings meet.
 pub(super) fn string_between(
     from: DVec3,
     to: DVec3,

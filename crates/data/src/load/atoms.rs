@@ -19,7 +19,7 @@ pub(super) struct Atom<'a> {
     pub(super) b_factor: f64,
     pub(super) residue_number: f64,
     pub(super) name: &'a [u8],
-    /// The name as in columns 13-16 of a PDB file, where its place shows the element.
+    /// The name as in columns 13-16 of a PDB file, where its position shows the element.
     pub(super) name_field: [u8; 4],
     /// The symbol of the element; blank if the file does not have it.
     pub(super) symbol: [u8; 2],
@@ -27,7 +27,7 @@ pub(super) struct Atom<'a> {
     pub(super) chain: &'a [u8],
     /// The name of the record: ATOM or HETATM.
     pub(super) record: &'a [u8],
-    /// The molecule that the atom is of, in mmCIF.
+    /// The molecule that the atom belongs to, in mmCIF.
     pub(super) entity: Option<&'a [u8]>,
     /// The letter of the alternate location, or a blank.
     pub(super) letter: u8,
@@ -53,7 +53,7 @@ pub(super) struct Atoms {
     /// The letter of the alternate location and the insertion code of the residue, for each atom.
     letters: Vec<[u8; 2]>,
     has_alternates: bool,
-    /// Atoms whose name is that of calcium and of the alpha carbon, and that have no symbol.
+    /// Indices of atoms without a symbol whose name means calcium or, in the wrong columns, the alpha carbon.
     doubtful: Vec<usize>,
 }
 
@@ -106,8 +106,8 @@ impl Atoms {
         self.has_alternates |= atom.letter != b' ';
     }
 
-    /// Decides which atoms that may be calcium or an alpha carbon are carbon: those whose residue has other atoms of a
-    /// backbone. Returns notes.
+    /// Decides which doubtful atoms are carbon: those whose residue has other atoms of a backbone. The others are
+    /// calcium. Returns notes.
     fn decide_doubtful(&mut self) -> Vec<String> {
         let residue_of = |atom: usize| {
             let labels = (self.chain.indices[atom], self.residue.indices[atom]);
@@ -193,7 +193,7 @@ impl Atoms {
         )
     }
 
-    /// Returns the atoms as loaded data, without a cell and a number of frames.
+    /// Returns the atoms as a dataset without a cell and without a number of frames.
     pub(super) fn into_loaded(mut self) -> Dataset {
         let doubtful = self.decide_doubtful();
         let left_out = self.keep_one_location();
@@ -228,7 +228,7 @@ struct Species {
     labels: LabelsBuilder,
     /// The appearance of each name in `labels`.
     appearances: Vec<Appearance>,
-    /// The index in `labels` for a name, a symbol and a kind of residue.
+    /// The index in `labels` of a name with a symbol and a kind of residue.
     known: Memo,
 }
 
@@ -293,12 +293,12 @@ struct Location {
     occupancy: f64,
 }
 
-/// Returns for each atom record whether it is kept.
+/// Returns for each atom record whether it is kept, so that each atom has one location.
 ///
-/// In each residue the letters are ranked by the highest occupancy of their atoms, and by their order in the file
-/// where the occupancies are equal; the blank precedes them all. Each atom keeps the best-ranked of its locations, so
-/// that neighbouring atoms come from the same location. If a residue name other than that of the best letter occurs
-/// at the same place in the chain, its atoms are not kept.
+/// In each residue the letters are ranked by the highest occupancy of their atoms; letters of equal occupancy keep
+/// their order in the file. The blank precedes all letters. Each atom keeps the best-ranked of its locations, so that
+/// neighbouring atoms come from the same location. If another residue name than that of the best letter occurs at the
+/// same place in the chain, its atoms are not kept.
 fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
     let mut residues: HashMap<_, Vec<Location>> = HashMap::new();
     for Candidate { key, residue, letter, occupancy, .. } in
@@ -341,7 +341,7 @@ fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
 /// values are only placeholders, as in files of structures that are not crystals.
 ///
 /// # Errors
-/// Says that there is no such cell.
+/// Returns an error if lengths and angles cannot be those of a cell.
 pub(super) fn cell_edges(
     lengths: [f64; 3],
     angles: [f64; 3],
@@ -362,8 +362,8 @@ pub(super) fn cell_edges(
     })
 }
 
-/// The edges of these lengths whose angles have these cosines, the first along x and the second in the plane of x and y;
-/// `None` if they are in one plane.
+/// The edges with these lengths and these cosines of the angles, the first along x and the second in the plane of x and
+/// y; `None` if they lie in one plane.
 pub(super) fn edges_of(
     [a, b, c]: [f64; 3],
     [alpha, beta, gamma]: [f64; 3],
@@ -381,7 +381,7 @@ fn cos_degrees(angle: f64) -> f64 {
     if same(angle, 90.0) { 0.0 } else { angle.to_radians().cos() }
 }
 
-/// Whether two values are equal in the formats, which have few decimals.
+/// Whether two values are equal but for the few decimals of the formats.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-6
 }

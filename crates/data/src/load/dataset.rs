@@ -15,7 +15,7 @@ pub struct Dataset {
     pub spheres: SphereArray,
     /// The colour of each sphere, if the file or the elements of its atoms give one.
     pub colors: Option<Vec<LinearRgb>>,
-    /// How opaque each sphere is, from 0 to 1, if the file says so.
+    /// The opacity of each sphere, from 0 to 1, if the file has opacities.
     pub opacities: Option<Vec<f32>>,
     /// Other named values of the spheres. Each column has one value for each sphere, in the order of the file.
     pub columns: Vec<Column>,
@@ -59,15 +59,15 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Leaves out the spheres for which `is_kept` is false, and texts that no sphere has then. Returns the former index
-    /// of each text that is left.
+    /// Leaves out the spheres for which `is_kept` is false, and texts that no remaining sphere has. Returns the former
+    /// index of each remaining text.
     pub(super) fn keep(&mut self, is_kept: &[bool]) -> Vec<u32> {
         retain(&mut self.indices, is_kept);
         let mut renumbered: Vec<Option<u32>> = vec![None; self.names.len()];
         let (mut names, mut former) = (Vec::new(), Vec::new());
         for index in &mut self.indices {
             let old = *index as usize;
-            // An index without a text stays one.
+            // An index without a text stays without one.
             let (Some(new), Some(name)) = (renumbered.get_mut(old), self.names.get_mut(old)) else {
                 *index = u32::MAX;
                 continue;
@@ -121,8 +121,8 @@ impl Dataset {
         }
     }
 
-    /// Takes out of the notes what is not true any more if something else than the file gives all colours, or all radii,
-    /// or those of the species for which `is_given` is true.
+    /// Removes notes made obsolete by colours or radii from elsewhere: for all spheres, or for the species for which
+    /// `is_given` is true.
     pub fn correct_notes(
         &mut self,
         has_colors: bool,
@@ -143,8 +143,8 @@ impl Dataset {
         self.unknown = left;
     }
 
-    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. What is
-    /// beyond the end of `is_kept` stays.
+    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. Spheres
+    /// beyond the end of `is_kept` stay.
     pub fn keep(&mut self, is_kept: &[bool]) {
         match &mut self.spheres {
             SphereArray::F32(spheres) => retain(spheres, is_kept),
@@ -158,7 +158,7 @@ impl Dataset {
                 ColumnValues::Numbers(numbers) => retain(numbers, is_kept),
             }
         }
-        // Nobody needs to know of species that are not in the picture.
+        // A note about species that are not in the picture would be useless.
         let left: Option<Vec<String>> = self.labels("species").map(|labels| labels.names.clone());
         if let Some(left) = left {
             self.correct_notes(false, false, |name| left.iter().all(|other| other != name));
@@ -183,7 +183,7 @@ impl Dataset {
     /// Makes a scene of the spheres. If the file gives no colours, every sphere gets `color`.
     ///
     /// # Errors
-    /// Names the first sphere that is out of range.
+    /// Returns an error that names the first sphere out of range.
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         let colors = match (self.colors, self.opacities) {
             (colors, Some(opacities)) => {

@@ -1,4 +1,4 @@
-//! Radii and colours of the chemical elements, their covalent radii, and the note about species that are none.
+//! Radii and colours of the chemical elements, their covalent radii, and the note about species that are not elements.
 
 use mendeleev::Element;
 
@@ -36,8 +36,8 @@ pub(super) struct Appearance {
     pub(super) is_element: bool,
 }
 
-/// Returns the appearance of a species, which may be an element's symbol in upper or lower case, also followed by
-/// digits or a charge (`O1`, `Fe3+`), or an atomic number.
+/// Returns the appearance of a species. It is an atomic number or an element's symbol in upper or lower case,
+/// perhaps followed by digits or a charge (`O1`, `Fe3+`).
 ///
 /// A species that is not an element gets the radius 2 Å and the colour deep pink.
 pub(super) fn appearance(species: &str) -> Appearance {
@@ -50,7 +50,7 @@ pub(super) fn appearance(species: &str) -> Appearance {
     Appearance { radius, color: LinearRgb::from_srgb8(color), is_element: element.is_some() }
 }
 
-/// Returns the element that a species is, written in any of these ways.
+/// Returns the element of a species, which is written in any of these ways.
 pub(super) fn element(species: &str) -> Option<Element> {
     match species.parse::<usize>() {
         Ok(number) => Element::list().get(number.wrapping_sub(1)).copied(),
@@ -64,8 +64,8 @@ fn by_symbol(symbol: &str) -> Option<Element> {
     Element::list().iter().copied().find(|e| e.symbol().eq_ignore_ascii_case(symbol))
 }
 
-/// Covalent radii in pm, by atomic number from 1. Carbon is that of single bonds (sp³), and manganese, iron and cobalt
-/// are those of low spin.
+/// Covalent radii in pm, by atomic number from 1. The value for carbon is that of single bonds (sp³), and the values
+/// for manganese, iron and cobalt are those of low spin.
 ///
 /// B. Cordero et al., "Covalent radii revisited", Dalton Transactions (2008) 2832-2838, table 2.
 #[rustfmt::skip]
@@ -85,15 +85,15 @@ pub(crate) struct Covalent {
     pub(crate) is_hydrogen: bool,
 }
 
-/// Returns what is known of the bonds of a species, which is written as for its radius and colour; `None` if it is not an
-/// element, or an element without a covalent radius.
+/// Returns the covalent radius of a species, and whether it is hydrogen; `None` if the species is not an element, or an
+/// element without a covalent radius. The species is written as for its radius and colour.
 pub(crate) fn covalent(species: &str) -> Option<Covalent> {
     let number = element(species)?.atomic_number() as usize;
     let radius = 0.01 * f64::from(*COVALENT.get(number.checked_sub(1)?)?);
     Some(Covalent { radius, is_hydrogen: number == 1 })
 }
 
-/// Species that are not chemical elements, and what these lack therefore.
+/// Species that are not chemical elements and lack a colour or a radius for that reason.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct UnknownSpecies {
     names: Vec<String>,
@@ -102,13 +102,13 @@ pub(super) struct UnknownSpecies {
 }
 
 impl UnknownSpecies {
-    /// Species of which neither the file nor an option gives the colour or the radius; `None` if there are no such.
+    /// Species without a colour or a radius from the file or an option; `None` if there are none.
     pub(super) fn new(names: Vec<String>, lacks_color: bool, lacks_radius: bool) -> Option<Self> {
         let lacks = lacks_color || lacks_radius;
         (lacks && !names.is_empty()).then_some(Self { names, lacks_color, lacks_radius })
     }
 
-    /// The species that still lack something if all colours or all radii are given, and those of some names.
+    /// The species that still lack something after all colours, all radii, or those of some names were given.
     pub(super) fn after(
         &self,
         has_colors: bool,
@@ -119,7 +119,7 @@ impl UnknownSpecies {
         Self::new(names, self.lacks_color && !has_colors, self.lacks_radius && !has_radii)
     }
 
-    /// The note about them, on one line however many there are.
+    /// The note about these species, on one line however many there are.
     pub(super) fn note(&self) -> String {
         let named = first_names(self.names.iter().map(|name| shortened(name)));
         let look = match (self.lacks_color, self.lacks_radius) {

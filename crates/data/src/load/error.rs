@@ -4,29 +4,29 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// An error of reading a file: what is wrong, and where. Its text has one line, which names the line, column or byte but
+/// An error of reading a file: what is wrong, and where. Its text has one line. It names the line, column or byte, but
 /// not the file, which the caller knows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadError {
-    /// What a program may want to tell apart.
+    /// The kind of error, for programs that treat some kinds differently.
     pub kind: LoadErrorKind,
-    /// Where it is wrong.
+    /// The place in the file that is wrong.
     pub place: Place,
-    /// What is wrong, and often what to do about it.
+    /// The description of what is wrong, often with advice.
     pub message: String,
 }
 
-/// Kinds of errors that programs answer in their own ways.
+/// Kinds of errors that programs handle differently.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadErrorKind {
-    /// The operating system does not give the bytes; the message is its own.
+    /// The operating system could not read the bytes; the message is its own.
     Io,
     /// The file ends too early.
     CutOff,
     /// The format has no frames, so the file must be read as a whole.
     NoFrames,
-    /// Positions come without what they belong to; a topology must be given.
+    /// The file has positions alone, so a topology must be given.
     NoTopology,
     /// No columns are positions.
     NoPositions,
@@ -91,7 +91,7 @@ impl LoadError {
         Self::at(Place::Byte(byte), message)
     }
 
-    /// The error with this kind.
+    /// Returns this error with another kind.
     #[must_use]
     pub fn of_kind(self, kind: LoadErrorKind) -> Self {
         Self { kind, ..self }
@@ -131,7 +131,7 @@ impl fmt::Display for LoadError {
     }
 }
 
-/// The first five names, and how many more there are.
+/// The first five names, and the number of further names.
 pub(super) fn first_names(names: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 5;
     let more = names.len().saturating_sub(MOST);
@@ -139,7 +139,7 @@ pub(super) fn first_names(names: impl ExactSizeIterator<Item = String>) -> Strin
     if more == 0 { named } else { format!("{named} and {more} more") }
 }
 
-/// What stands before a message.
+/// Formats the place as it stands before a message.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

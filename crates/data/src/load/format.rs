@@ -1,4 +1,4 @@
-//! A file format as plain data: its names, how its bytes and frames are read, and the options for that.
+//! A file format as plain data: its names, its functions that read bytes and frames, and the options for reading.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -17,19 +17,19 @@ pub struct Format {
     pub name: &'static str,
     /// File name extensions of the format, in lower case and without the dot.
     pub extensions: &'static [&'static str],
-    /// Contents of such a file, in a few words for users.
+    /// Contents of a file of this format, in a few words for users.
     pub about: &'static str,
     pub(super) method: ReadMethod,
-    /// Whether a file has positions alone, so that [`Options::topology`] names a file that says what the spheres are.
+    /// Whether a file has positions alone, so that [`Options::topology`] must name a file that describes the spheres.
     pub needs_topology: bool,
-    /// Whether a file can lack names for its columns, so that [`Options::columns`] gives them.
+    /// Whether a file can lack names for its columns, so that [`Options::columns`] may give them.
     pub may_lack_names: bool,
-    /// Whether a file can lack radii, so that [`Options::radius`] gives one for all spheres.
+    /// Whether a file can lack radii, so that [`Options::radius`] may give one for all spheres.
     pub may_lack_radii: bool,
     /// Whether a file gives colours, either directly or through the elements of its atoms.
     pub has_colors: bool,
-    /// Whether z is the height in most files of this format, as in simulations and surveys. Of molecules and models of
-    /// surfaces, y is up on the screen.
+    /// Whether z is the height in most files of this format, as in simulations and surveys. In pictures of molecules
+    /// and surface models, y is up.
     pub z_is_up: bool,
     /// Whether the first bytes of a file look like this format.
     pub(super) starts: fn(&[u8]) -> bool,
@@ -38,30 +38,30 @@ pub struct Format {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ReadMethod {
-    /// As a whole.
+    /// The file is read as a whole.
     Whole(fn(&[u8], &Options) -> Result<Dataset, LoadError>),
-    /// Frame by frame, because a file can have several.
+    /// The file is read frame by frame, because it can have several.
     Frames(Frames),
 }
 
-/// How a format with several frames finds and reads them.
+/// The functions with which a format finds and reads frames.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Frames {
-    /// Text: frames are found line by line, and each is one piece of the file.
+    /// Text: frames are found line by line, and each is a contiguous part of the file.
     Lines {
-        /// Finds all frames, or those up to one that is wanted.
+        /// Finds all frames, or those up to a wanted one.
         find: fn(&mut LineReader<'_>, Option<usize>) -> io::Result<FrameIndex>,
         read: fn(&FrameText<'_>, &Options) -> Result<Dataset, LoadError>,
     },
-    /// Binary data, where a reader goes to any place.
+    /// Binary data, where a reader can go to any place.
     Bytes {
-        /// Finds all frames, or those up to one that is wanted, and gives the index a reader. What is wrong after some
-        /// frames is the problem of the index, not an error.
+        /// Finds all frames, or those up to a wanted one, and gives the index a reader. A fault after some frames is
+        /// the problem of the index, not an error.
         find: fn(&mut dyn Bytes, Option<usize>, &Options) -> Result<FrameIndex, LoadError>,
     },
-    /// The same of positions alone, where another file, the topology, says what the spheres are.
+    /// Binary data with positions alone. Another file, the topology, describes the spheres.
     Positions {
-        /// Finds all frames, or those up to one that is wanted; an error if there is no topology.
+        /// Finds all frames, or those up to a wanted one. Without a topology it returns an error.
         find: FindPositions,
     },
 }
@@ -69,7 +69,7 @@ pub(super) enum Frames {
 type FindPositions =
     fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
 
-/// Reads frames of binary data, with what was found out about the file.
+/// Reads frames of binary data, with the facts that are known about the file.
 pub(super) trait FrameReader: fmt::Debug + Send + Sync {
     /// Reads one frame that the index has, counted from 0.
     fn read(
@@ -83,17 +83,17 @@ pub(super) trait FrameReader: fmt::Debug + Send + Sync {
 
 #[derive(Debug, Default)]
 pub(super) struct FrameIndex {
-    /// Bytes before the first frame that every frame needs.
+    /// Range of bytes before the first frame that every frame needs.
     pub(super) head: Range<u64>,
     pub(super) frames: Vec<FrameSpan>,
     /// Whether the file was searched to its end.
     pub(super) is_whole: bool,
-    /// What is wrong after the last frame, as where a program is still writing.
+    /// The fault after the last frame, such as where a program is still writing.
     pub(super) problem: Option<LoadError>,
-    /// Whether a complete frame is right whatever follows it, as in binary data that say how long they are.
+    /// Whether a complete frame is valid whatever follows it, as in binary data that declare their length.
     pub(super) stands_alone: bool,
     pub(super) notes: Vec<String>,
-    /// Reads the frames, if they are binary data.
+    /// The reader of the frames, if they are binary data.
     pub(super) reader: Option<Box<dyn FrameReader>>,
 }
 
@@ -107,7 +107,7 @@ pub struct Options {
     pub frame: Option<usize>,
     /// The radius of all spheres, in the file's unit of length, for files without radii.
     pub radius: Option<f64>,
-    /// The file that says what the spheres of a trajectory are, for formats that have positions alone.
+    /// The file that describes the spheres of a trajectory, for formats that have positions alone.
     pub topology: Option<PathBuf>,
     /// The names of the columns, in the order of the file, for tables without a header; empty if there is one.
     pub columns: Vec<String>,
@@ -120,10 +120,10 @@ impl Format {
         matches!(self.method, ReadMethod::Frames(_))
     }
 
-    /// Returns how many bytes of memory reading takes in addition to the file itself, or 0 if the file does not say.
+    /// Returns the bytes of memory that reading takes in addition to the file itself, or 0 if the file does not say.
     ///
     /// # Errors
-    /// If the file cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn extra_bytes(&self, bytes: &[u8]) -> Result<u64, LoadError> {
         if is_gzip(bytes) {
             return Ok(gzip_size_hint(bytes));
@@ -141,19 +141,19 @@ impl PartialEq for Format {
 }
 
 impl Options {
-    /// Returns these options with a format.
+    /// Returns these options with another format.
     #[must_use]
     pub fn with_format(self, format: &'static Format) -> Self {
         Self { format: Some(format), ..self }
     }
 
-    /// Returns these options with a frame of a trajectory, counted from 0.
+    /// Returns these options with another frame of a trajectory, counted from 0.
     #[must_use]
     pub fn with_frame(self, frame: usize) -> Self {
         Self { frame: Some(frame), ..self }
     }
 
-    /// Returns these options with the file that says what the spheres of a trajectory are.
+    /// Returns these options with the file that describes the spheres of a trajectory.
     #[must_use]
     pub fn with_topology(self, path: impl Into<PathBuf>) -> Self {
         Self { topology: Some(path.into()), ..self }
@@ -188,7 +188,7 @@ pub(super) struct FrameText<'a> {
 }
 
 impl Frames {
-    /// Finds frames. An index has at least one. Positions alone need a topology.
+    /// Finds frames; the index has at least one. Formats with positions alone need a topology.
     pub(super) fn find(
         self,
         source: &mut dyn Bytes,
@@ -237,8 +237,8 @@ impl Frames {
     }
 }
 
-/// Reads the frame that the options name, or else the first, of a file that is in memory. Positions alone need a
-/// topology.
+/// Reads a file that is in memory: the frame that the options name, or else the first. Formats with positions
+/// alone need a topology.
 pub(super) fn read_from_memory(
     bytes: &[u8],
     frames: Frames,
@@ -258,8 +258,8 @@ pub(super) fn read_from_memory(
 }
 
 impl FrameIndex {
-    /// A frame, with a note on what is wrong after the last one; or else this as an error, because a wrong number of atoms
-    /// in a text makes what follows them wrong.
+    /// Returns the frame with a note on the fault after the last frame. In text the fault is an error, because a wrong
+    /// number of atoms makes everything after it wrong.
     pub(super) fn with_problem(self, mut loaded: Dataset) -> Result<Dataset, LoadError> {
         match self.problem {
             Some(problem) if self.stands_alone => loaded.notes.push(problem.to_string()),

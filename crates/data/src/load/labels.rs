@@ -1,4 +1,4 @@
-//! Collects texts of which few different ones occur, such as the names of atoms. All readers of text share it.
+//! Collects texts that repeat often, such as the names of atoms. All readers of text share this code.
 
 use std::collections::HashMap;
 
@@ -50,13 +50,13 @@ impl Default for Memo {
 pub(super) struct LabelsBuilder {
     pub(super) names: Vec<String>,
     pub(super) indices: Vec<u32>,
-    /// Texts of few bytes, which most are, packed into a number.
+    /// Indices of texts of few bytes, packed into a number. Most texts are short.
     short: Memo,
     long: HashMap<Box<[u8]>, u32>,
 }
 
 impl LabelsBuilder {
-    /// Makes room for the texts of so many atoms.
+    /// Makes room for the texts of this number of atoms.
     pub(super) fn with_capacity(atoms: usize) -> Self {
         Self { indices: Vec::with_capacity(atoms), ..Self::default() }
     }
@@ -76,7 +76,7 @@ impl LabelsBuilder {
             None => self.long.get(text).copied(),
         };
         known.unwrap_or_else(|| {
-            // There are no more names than atoms, which are fewer than 2³².
+            // There are no more names than atoms, whose number is less than 2³².
             let index = self.names.len() as u32;
             self.names.push(String::from_utf8_lossy(text).into_owned());
             match key {
@@ -107,7 +107,7 @@ impl LabelsBuilder {
     }
 }
 
-/// Packs up to seven bytes and their number into a key. Loads that overlap take less time than a loop over the bytes.
+/// Packs up to seven bytes and their number into a key. Overlapping loads take less time than a loop over the bytes.
 fn packed(text: &[u8]) -> Option<u64> {
     let length = text.len();
     let bytes = match (text.first_chunk::<4>(), text.last_chunk::<4>()) {

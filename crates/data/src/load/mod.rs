@@ -1,7 +1,7 @@
 //! Reads files of spheres: [`open`] takes a path, [`from_bytes`] takes bytes, and both return a [`Dataset`].
 //!
 //! [`FORMATS`] lists every format that this build can read; no other module names a format. The format of a file is
-//! the one in [`Options::format`], or else follows from the file's extension, or else from its content.
+//! [`Options::format`], or else follows from the file's extension, or else from its content.
 //!
 //! ```
 //! use pinhole_data::load::{self, Options};

@@ -1,5 +1,5 @@
-//! Numbers in files: from bytes, in either order and read from no more than the file has, and from text. What is wrong in
-//! binary data is said with a byte offset.
+//! Reads numbers from bytes, in either order and never more than the file has, and from text. Errors in binary data
+//! have a byte offset.
 
 use std::io::{self, SeekFrom};
 
@@ -7,12 +7,12 @@ use super::error::{LoadError, LoadErrorKind};
 use super::source::Bytes;
 use pinhole::internals::text::{one_line, shortened};
 
-/// The file does not start as a file of its format does.
+/// The error of a file that does not start as its format requires.
 pub(super) fn wrong_start(format: &str, message: impl std::fmt::Display) -> LoadError {
     LoadError::new(format!("this is not a {format} file: {message}"))
 }
 
-/// A position is not finite. `byte` is where the coordinate is, or where the positions begin if they are compressed.
+/// The error of a position that is not finite. `byte` is its offset, or that of all positions if they are compressed.
 pub(super) fn wrong_position(
     byte: u64,
     frame: usize,
@@ -58,18 +58,18 @@ macro_rules! number {
 
 number!(u8 i8 u16 i16 u32 i32 u64 i64 f32 f64);
 
-/// Decodes all numbers of a piece of a file.
+/// Decodes all numbers of a range of bytes.
 pub(super) fn numbers<T: Number>(bytes: &[u8], order: Order) -> impl ExactSizeIterator<Item = T> {
     bytes.chunks_exact(T::WIDTH).map(move |bytes| T::decode(bytes, order))
 }
 
-/// A file of binary data, read from a place on.
+/// A file of binary data, read from an offset on.
 pub(super) struct Reader<'a> {
     source: &'a mut dyn Bytes,
     pub(super) order: Order,
     /// Size of the file in bytes.
     pub(super) size: u64,
-    /// How many bytes are before what is read next.
+    /// Offset of the next byte to read.
     pub(super) offset: u64,
 }
 
@@ -81,9 +81,9 @@ impl<'a> Reader<'a> {
         Ok(Self { source, order, size, offset: 0 })
     }
 
-    /// Goes to a place, which may be after the end.
+    /// Goes to an offset, which may be after the end.
     pub(super) fn seek(&mut self, offset: u64) -> Result<(), LoadError> {
-        // Places nearby are often in memory.
+        // Nearby offsets are often in memory.
         match i64::try_from(i128::from(offset) - i128::from(self.offset)) {
             Ok(by) if by.unsigned_abs() < 1 << 10 => self.source.seek_relative(by)?,
             _ => _ = self.source.seek(SeekFrom::Start(offset))?,
@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// How many bytes follow.
+    /// Number of bytes that follow.
     pub(super) fn left(&self) -> u64 {
         self.size.saturating_sub(self.offset)
     }
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         Err(LoadError::byte(offset, message).of_kind(LoadErrorKind::CutOff))
     }
 
-    /// Reads bytes, which the file must have.
+    /// Reads this number of bytes, which the file must have.
     pub(super) fn bytes(
         &mut self,
         count: u64,
@@ -137,13 +137,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Text of a file, as far as the first NUL, to be shown in a message.
+/// Returns the text of a file up to the first NUL, to be shown in a message.
 pub(super) fn shown(bytes: &[u8]) -> String {
     let text = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
     shortened(&one_line(&String::from_utf8_lossy(text)))
 }
 
-/// Names of the components of a vector: `velocity.x` and so on; the name itself if there is one component.
+/// Names of the components of a vector, such as `velocity.x`; only the name itself if there is one component.
 pub(super) fn component_names(name: &str, count: usize) -> Vec<String> {
     match count {
         1 => vec![name.to_owned()],
@@ -168,7 +168,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    /// Bytes of a number.
+    /// Number of bytes of a number.
     pub(super) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -178,7 +178,7 @@ impl Scalar {
         }
     }
 
-    /// The number that means all of a colour, for the types that colours have.
+    /// The value of full intensity, for the types that colours have.
     pub(super) const fn full(self) -> Option<f64> {
         match self {
             Self::U8 => Some(255.0),
@@ -187,7 +187,7 @@ impl Scalar {
         }
     }
 
-    /// Decodes the number at the start of `bytes`, or 0 if there are too few: readers check that before.
+    /// Decodes the number at the start of `bytes`; the result is 0 if there are too few, which readers check before.
     pub(super) fn decode(self, bytes: &[u8], order: Order) -> f64 {
         match self {
             Self::I8 => i8::decode(bytes, order).into(),
@@ -203,7 +203,7 @@ impl Scalar {
         }
     }
 
-    /// Reads a number from text: the one that a binary file has.
+    /// Reads a number from text as a binary file would have it.
     pub(super) fn parse(self, text: &str) -> Option<f64> {
         match self {
             Self::F32 => text.parse::<f32>().ok().map(f64::from),
@@ -223,9 +223,9 @@ fn any_number(text: &[u8]) -> Option<f64> {
     text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse()).ok()
 }
 
-/// Parses a decimal number with at most 15 digits and no exponent: its digits are an integer that f64 holds exactly, as it
-/// does the power of ten, so one division rounds correctly. (W. D. Clinger, "How to read floating point numbers
-/// accurately", PLDI 1990.)
+/// Parses a decimal number with at most 15 digits and no exponent. f64 holds its digits, as an integer, and the power
+/// of ten exactly, so one division rounds correctly. (W. D. Clinger, "How to read floating point numbers accurately",
+/// PLDI 1990.)
 #[inline]
 fn short_decimal(text: &[u8]) -> Option<f64> {
     const TENS: [f64; 16] =

@@ -1,5 +1,5 @@
-//! Opens files of spheres, whole or of several frames one at a time, and chooses their format. The file that says what the
-//! spheres of a trajectory are is opened in the same way.
+//! Opens files of spheres, as a whole or frame by frame, and chooses their format. The topology, a file that describes
+//! the spheres of a trajectory, is opened in the same way.
 
 use std::io::{self, BufRead as _, Read as _};
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use super::source::{Source, decompressed, is_gzip, without_gz};
 use super::topology::Topology;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
-/// content. Of a file with several frames only the one that is asked for is in memory; [`Trajectory`] reads several.
+/// content. Only the wanted frame of a file with several frames is in memory; [`Trajectory`] reads several.
 ///
 /// # Errors
-/// If the file cannot be read, its format is not known, or an option does not apply to it.
+/// Returns an error if the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let path = path.as_ref();
     let failed = |error: io::Error| LoadError::from(error).in_file(path);
@@ -32,11 +32,11 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
     from_bytes(&bytes, path, options)
 }
 
-/// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
-/// choose the format as [`open`] does, and no file is opened but the topology in the options.
+/// Reads a file of spheres that is in memory. `name` is the name of the file, or empty. Only its extension is used, to
+/// choose the format as [`open`] does. The topology in the options is the only file that is opened.
 ///
 /// # Errors
-/// If the bytes cannot be read, their format is not known, or an option does not apply to it.
+/// Returns an error if the bytes cannot be read, their format is not known, or an option does not apply to it.
 pub fn from_bytes(
     bytes: &[u8],
     name: impl AsRef<Path>,
@@ -57,7 +57,7 @@ impl Format {
     /// Reads a file of this format, which may be compressed with gzip.
     ///
     /// # Errors
-    /// If the file cannot be read, or an option does not apply to this format.
+    /// Returns an error if the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         self.check(options)?;
         if is_gzip(bytes) {
@@ -105,12 +105,12 @@ impl Trajectory {
     /// Opens a file and finds its frames, in one pass over the file. Its format is the one in the options, or else
     /// follows from the extension, or else from the content. The other options apply to every frame.
     ///
-    /// If the file ends within a frame, as where a program is still writing, the frames before it can be read, and
-    /// [`Trajectory::problem`] says what is wrong.
+    /// If the file ends within a frame, such as one that a program is still writing, the frames before it can be
+    /// read, and [`Trajectory::problem`] has the error.
     ///
     /// # Errors
-    /// If the file cannot be read, its format is not known or has no frames, an option does not apply to it, or not even
-    /// the first frame is complete.
+    /// Returns an error if the file cannot be read, its format is not known or has no frames, an option does not apply
+    /// to it, or not even the first frame is complete.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
         Self::find(path.as_ref(), options, None)
     }
@@ -118,7 +118,7 @@ impl Trajectory {
     /// Opens a file like [`Trajectory::open`], and finds its frames up to the one in the options or else the first.
     ///
     /// # Errors
-    /// If there is no such frame, or for the reasons of [`Trajectory::open`].
+    /// Returns an error if there is no such frame, or for the reasons of [`Trajectory::open`].
     pub fn open_up_to(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
         let wanted = options.frame.unwrap_or_default();
         let found = Self::find(path.as_ref(), options, Some(wanted))?;
@@ -155,7 +155,7 @@ impl Trajectory {
         Ok(Self { path: path.to_path_buf(), source, frames, index, options })
     }
 
-    /// Number of frames that are complete.
+    /// Number of complete frames.
     #[must_use]
     pub fn len(&self) -> usize {
         self.index.frames.len()
@@ -167,13 +167,13 @@ impl Trajectory {
         self.index.frames.is_empty()
     }
 
-    /// What is wrong after the last complete frame, if anything is.
+    /// The error after the last complete frame, if there is one.
     #[must_use]
     pub fn problem(&self) -> Option<&LoadError> {
         self.index.problem.as_ref()
     }
 
-    /// How many bytes a frame has in the file; `None` if there is no such frame.
+    /// Number of bytes of a frame in the file; `None` if there is no such frame.
     #[must_use]
     pub fn frame_bytes(&self, index: usize) -> Option<u64> {
         self.index.frames.get(index).map(|span| span.bytes.end - span.bytes.start)
@@ -182,17 +182,17 @@ impl Trajectory {
     /// Reads one frame, counted from 0.
     ///
     /// # Errors
-    /// If there is no such frame, or it cannot be read. Lines are counted from the start of the file.
+    /// Returns an error if there is no such frame, or it cannot be read. Lines are counted from the start of the file.
     pub fn frame(&mut self, index: usize) -> Result<Dataset, LoadError> {
         let Self { path, source, frames, index: found, options } = self;
         frames.read(source, found, index, options).map_err(|error| error.in_file(path))
     }
 
-    /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
-    /// of the file: so a wrong number of atoms is noticed. Of binary data, where it need not be, a note says what is wrong.
+    /// Reads one frame, counted from 0, and checks that the frames are followed by the end of the file or by another
+    /// frame, because a wrong number of atoms shows there. A fault after complete frames of binary data is only a note.
     ///
     /// # Errors
-    /// As [`Trajectory::frame`], and then [`Trajectory::problem`].
+    /// Returns the errors of [`Trajectory::frame`], and then [`Trajectory::problem`].
     pub fn into_frame(mut self, index: usize) -> Result<Dataset, LoadError> {
         let loaded = self.frame(index)?;
         self.index.with_problem(loaded)

@@ -1,7 +1,7 @@
 //! Reads lines of values into columns, on all cores: a row is a line, and white space separates its values.
 //!
-//! The text is cut into pieces at the ends of lines. The lines of every piece are counted, so that columns are allocated
-//! once and every piece writes into its own part of them; the result is the same on any number of cores.
+//! The text is cut into pieces at the ends of lines. The lines of every piece are counted, so that columns are
+//! allocated once and every piece writes into its own range of them. The result is the same on any number of cores.
 
 use memchr::{memchr, memchr_iter};
 
@@ -16,7 +16,7 @@ use pinhole::internals::text::shortened;
 use pinhole::scene::sphere::check;
 use pinhole::scene::sphere_array::SphereArray;
 
-/// How much text is read by one core at a time.
+/// Number of bytes that one core reads at a time.
 const PIECE: usize = 1 << 20;
 
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ impl Field {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rows<'a> {
-    /// Every line is a row; the last may lack a line end.
+    /// The text, in which every line is a row. The last line may lack a line end.
     pub(super) text: &'a [u8],
     /// Number of lines before the text.
     pub(super) lines_before: usize,
@@ -64,8 +64,8 @@ impl Rows<'_> {
             })
             .collect();
         let rows = ends.last().copied().unwrap_or_default();
-        // A value and what separates it from the next take two bytes. With fewer a row is too short, and with far fewer
-        // the columns would need far more memory than the text.
+        // A value and its separator take at least two bytes. With less text a row is too short, and with far less the
+        // columns would need far more memory than the text.
         if rows.saturating_mul(fields.len()) > 4 * self.text.len() {
             self.check_lengths(fields)?;
         }
@@ -92,7 +92,7 @@ impl Rows<'_> {
             let slices = parallel::split_mut(column, ends.iter().copied());
             parts.iter_mut().zip(slices).for_each(|(part, slice)| part.indices.push(slice));
         }
-        // Of several bad lines the first is named.
+        // The error names the first of several bad lines.
         let names = parallel::map_parts(parts, |part| part.read(fields))
             .into_iter()
             .collect::<Result<Vec<_>, _>>()?;
@@ -135,13 +135,13 @@ fn pieces(text: &[u8], size: usize) -> Vec<&[u8]> {
     pieces
 }
 
-/// Number of lines, of which the last may lack a line end.
+/// Number of lines, the last of which may lack a line end.
 fn count_lines(text: &[u8]) -> usize {
     let is_cut = text.last().is_some_and(|byte| *byte != b'\n');
     memchr_iter(b'\n', text).count() + usize::from(is_cut)
 }
 
-/// Part of the lines, and where their values go.
+/// Some of the lines, and the ranges of columns for their values.
 struct Piece<'a> {
     text: &'a [u8],
     lines_before: usize,
@@ -151,7 +151,7 @@ struct Piece<'a> {
 }
 
 impl Piece<'_> {
-    /// Reads all lines, and returns the different texts of each column of text, whose indices count from 0 in every piece.
+    /// Reads all lines, and returns the different texts of each text column. Indices count from 0 in every piece.
     fn read(mut self, fields: &[Field]) -> Result<Vec<Vec<String>>, LoadError> {
         let mut labels: Vec<LabelsBuilder> =
             self.indices.iter().map(|_| LabelsBuilder::default()).collect();
@@ -190,7 +190,7 @@ impl Piece<'_> {
     }
 }
 
-/// A line has `columns` values, so that the one at the index `column` is missing.
+/// The error of a line that has `columns` values, so that the one at the index `column` is missing.
 pub(super) fn missing(line: usize, name: &str, column: usize, columns: usize) -> LoadError {
     let (what, column) = (shortened(name), column + 1);
     let values = if columns == 1 { "column" } else { "columns" };
@@ -208,7 +208,7 @@ pub(super) fn not_text(line: usize) -> LoadError {
     LoadError::line(line, "this line is not UTF-8 text, as it must be")
 }
 
-/// The value at the index `column` is not a number.
+/// The error of a value, at the index `column`, that is not a number.
 pub(super) fn not_a_number(value: &[u8], line: usize, column: usize, name: &str) -> LoadError {
     let Ok(found) = std::str::from_utf8(value) else { return not_text(line) };
     let (what, found) = (shortened(name), shortened(found));
@@ -283,7 +283,7 @@ impl<'a> Iterator for Values<'a> {
     }
 }
 
-/// Makes spheres of a table, and names the line of what is wrong in a row.
+/// Makes spheres from a table. An error in a row names the line.
 pub(super) fn into_loaded(
     table: Table,
     options: &Options,
@@ -323,7 +323,7 @@ mod tests {
         columns.into_iter().map(|column| (column.name, column.values)).collect()
     }
 
-    /// Columns for so many rows as there are lines would take 80 GB.
+    /// Columns with a row for each of these lines would take 80 GB.
     #[test]
     fn short_lines_of_many_columns_take_little_memory() {
         let fields = vec![Field::new("a", Kind::Number); 100_000];

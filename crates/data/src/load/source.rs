@@ -1,4 +1,4 @@
-//! The bytes and the lines of a file, whether it is compressed with gzip or not.
+//! The bytes and the lines of a file, which may be compressed with gzip.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -10,17 +10,17 @@ use flate2::read::MultiGzDecoder;
 
 use super::error::LoadError;
 
-/// How much of a file is read at a time.
+/// Number of bytes of a file that are read at a time.
 const PIECE: usize = 1 << 18;
 
-/// The same, where a reader looks at places that are far from each other. What is longer is read without a copy.
+/// The same, for readers that visit places far from each other. Longer data are read without a copy.
 const SMALL_PIECE: usize = 1 << 12;
 
 pub(super) trait Bytes: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Bytes for T {}
 
-/// The bytes of a file. Those of a compressed file are decompressed as they are read: going back starts again from the
+/// The bytes of a file. A compressed file is decompressed as it is read, so going back starts again from the
 /// beginning.
 #[derive(Debug)]
 pub(super) enum Source {
@@ -29,7 +29,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// Opens a file. It is taken as compressed if its first bytes say so.
+    /// Opens a file. The first bytes show whether it is compressed.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let mut plain = BufReader::with_capacity(PIECE, File::open(path)?);
         if is_gzip(plain.fill_buf()?) {
@@ -40,7 +40,7 @@ impl Source {
         Ok(Self::Plain(plain))
     }
 
-    /// Returns this source for a reader that goes from place to place, at the start of the file.
+    /// Returns this source, at the start of the file, for a reader that visits places far from each other.
     pub(super) fn in_small_pieces(self) -> io::Result<Self> {
         let mut source = match self {
             Self::Plain(plain) => {
@@ -83,7 +83,7 @@ impl Seek for Source {
 }
 
 pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8>, LoadError> {
-    /// More is allocated as it arrives, because a file may lie about its frames.
+    /// Initial allocation in bytes. It grows as data arrive, because a file may lie about its frames.
     const AT_ONCE: u64 = 1 << 26;
     let length = range.end - range.start;
     let mut bytes = Vec::with_capacity(length.min(AT_ONCE) as usize);
@@ -94,7 +94,7 @@ pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8
     Ok(bytes)
 }
 
-/// The path without the ending `.gz`, which says nothing about what is compressed.
+/// The path without the ending `.gz`, which says nothing about the compressed data.
 pub(super) fn without_gz(path: &Path) -> PathBuf {
     let is_gz =
         path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("gz"));
@@ -112,23 +112,23 @@ pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     Ok(all)
 }
 
-/// How many bytes a file decompresses to, as its last four bytes say: right for a file of one member and less than
-/// 4 GiB. Nothing depends on it but the check whether there is enough memory.
+/// The decompressed size of a file, from its last four bytes. It is right for a file of one member and less than 4
+/// GiB. Only the check for enough memory depends on it.
 pub(super) fn gzip_size_hint(bytes: &[u8]) -> u64 {
     bytes.last_chunk().map_or(0, |last| u32::from_le_bytes(*last).into())
 }
 
-/// Decompresses a file as it is read. Seeking forward decompresses what lies between, and seeking back begins again.
+/// Decompresses a file as it is read. Seeking forward decompresses the bytes between, and seeking back starts again.
 #[derive(Debug)]
 pub(super) struct Gunzip<R> {
     /// `None` only while the decoder is being replaced.
     decoder: Option<MultiGzDecoder<R>>,
-    /// How many decompressed bytes were read.
+    /// Number of decompressed bytes that were read.
     position: u64,
 }
 
 impl<R: Read + Seek> Gunzip<R> {
-    /// Decompresses `compressed`, which stands at its start.
+    /// Decompresses `compressed`, which must be at its start.
     pub(super) fn new(compressed: R) -> Self {
         Self { decoder: Some(MultiGzDecoder::new(compressed)), position: 0 }
     }
@@ -173,7 +173,7 @@ impl<R: Read + Seek> Seek for Gunzip<R> {
             self.restart()?;
         }
         self.read_up_to(wanted)?;
-        // A place after the end is one where nothing can be read, as in a plain file.
+        // Nothing can be read at a place after the end, as in a plain file.
         Ok(wanted)
     }
 }
@@ -191,12 +191,12 @@ impl<'a> LineReader<'a> {
         Self { source, offset: 0, line: 0, text: Vec::new() }
     }
 
-    /// Returns the next line without its line end; `None` at the end of the file. Of a line longer than 1 KiB only the
-    /// start.
+    /// Returns the next line without its line end; `None` at the end of the file. A line longer than 1 KiB is cut, and
+    /// only its start is returned.
     pub(super) fn next(&mut self) -> io::Result<Option<&[u8]>> {
         const LONGEST: u64 = 1 << 10;
         self.text.clear();
-        // Most lines are short and lie in what has been read.
+        // Most lines are short and already in the buffer.
         let buffer = self.source.fill_buf()?;
         let near = &buffer[..buffer.len().min(LONGEST as usize)];
         if let Some(end) = memchr::memchr(b'\n', near) {
@@ -230,7 +230,7 @@ impl<'a> LineReader<'a> {
                 found += usize::from(is_within);
                 break;
             }
-            // Counting is faster than looking at every line, but where a frame ends is not known.
+            // Counting line ends is faster than visiting lines. Blocks are small, as the frame's end is unknown.
             let block = &buffer[..buffer.len().min(BLOCK)];
             let wanted = lines - found;
             let count = memchr::memchr_iter(b'\n', block).count();

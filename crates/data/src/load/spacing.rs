@@ -4,17 +4,17 @@ use std::collections::HashMap;
 
 use glam::{DVec3, I64Vec3};
 
-/// How many spheres are asked for their nearest neighbour.
+/// Number of sampled spheres whose nearest neighbours are found.
 const ASKED: usize = 256;
 
-/// How many distances are computed before smaller cells are tried.
+/// Number of distances that are computed before smaller cells are tried.
 const MOST_TESTS: usize = 1 << 25;
 
-/// How often the cells are made larger or smaller.
+/// Number of times that the cells are made larger or smaller.
 const ATTEMPTS: usize = 40;
 
 /// Half of the median distance from a sphere to its nearest neighbour, so that neighbours about touch; `None` if all
-/// centres are in one place. Of many spheres only some are asked, which are spread over the file.
+/// centres are in one place. Only a sample, spread over the file, is used if there are many spheres.
 ///
 /// `center` returns the centre of a sphere, by its index below `count`; centres that are not finite are left out.
 pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f64> {
@@ -32,20 +32,20 @@ pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f6
         .map(&center)
         .filter(|c| c.is_finite())
         .collect();
-    // Along a side that is much smaller than the largest, spheres lie in one layer.
+    // Along a side that is much shorter than the largest, spheres lie in one layer.
     let sides = size.to_array().into_iter().filter(|side| *side > 1e-6 * size.max_element());
     let (volume, dimensions) = sides.fold((1.0, 0), |(volume, n), side| (volume * side, n + 1));
     let mut cell = 0.5 * (volume / count as f64).powf(1.0 / f64::from(dimensions));
     let mut most_tests = MOST_TESTS;
     for _ in 0..ATTEMPTS {
         match nearest(&asked, cell, low, finite(), most_tests) {
-            // Many spheres are close together in few places.
+            // Many spheres are close together in few places, so cells must be smaller.
             None => {
                 cell /= 4.0;
                 most_tests *= 2;
             }
-            // A neighbour within the side of a cell is sure to be the nearest, so if half of them are, the median is
-            // one of these.
+            // A neighbour closer than the side of a cell is sure to be the nearest. If half of the neighbours are,
+            // so is the median.
             Some(mut squared) => {
                 squared.sort_unstable_by(f64::total_cmp);
                 let median = squared[(asked.len() - 1) / 2].sqrt();
@@ -59,8 +59,8 @@ pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f6
     None
 }
 
-/// Returns the squared distance from each sphere that is asked to the nearest one that is not in the same place and lies
-/// in the 27 cells around it, or infinity; `None` if that takes more than `most_tests` distances.
+/// Returns the squared distance from each sampled sphere to its nearest neighbour in the 27 cells around it, or
+/// infinity. Spheres in the same place do not count. `None` if that takes more than `most_tests` distances.
 fn nearest(
     asked: &[DVec3],
     cell: f64,
@@ -74,7 +74,7 @@ fn nearest(
         let middle = cell_of(*center);
         for offset in 0..27_i64 {
             let offset = I64Vec3::new(offset % 3, offset / 3 % 3, offset / 9) - I64Vec3::ONE;
-            // Cells that are too far for an i64 are all one, which takes time but changes nothing.
+            // Cells that are too far away for an i64 become the same cell, which takes time but changes no result.
             around.entry(middle.wrapping_add(offset)).or_default().push(index);
         }
     }
@@ -117,18 +117,18 @@ mod tests {
             assert!(found.is_some_and(|found| (found / wanted - 1.0).abs() < 1e-9), "{found:?}");
         };
         near(radius_of(&lattice(12, 3.0)), 1.5);
-        // In one layer, and in one row.
+        // The spheres lie in one layer, or in one row.
         let flat: Vec<_> =
             (0..900).map(|i| DVec3::new(f64::from(i % 30), f64::from(i / 30), 4.0)).collect();
         near(radius_of(&flat), 0.5);
         let row: Vec<_> = (0..50).map(|i| DVec3::new(0.0, f64::from(i) * 0.1, 0.0)).collect();
         near(radius_of(&row), 0.05);
-        // Two dense lumps that are far from each other, with every place twice.
+        // Two dense lumps are far from each other, and every place occurs twice.
         let mut lumps = lattice(20, 0.01);
         lumps.extend(lattice(20, 0.01).iter().map(|c| *c + 1e4));
         lumps.extend_from_within(..);
         near(radius_of(&lumps), 0.005);
-        // Neither a far sphere nor one that is nowhere matters.
+        // Neither a far sphere nor one without a finite place matters.
         let mut odd = lattice(10, 2.0);
         odd.extend([DVec3::splat(1e6), DVec3::NAN]);
         near(radius_of(&odd), 1.0);

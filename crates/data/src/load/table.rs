@@ -1,5 +1,5 @@
-//! Makes spheres of a table of points: recognises by their names which columns are positions, radii, colours, opacities
-//! and chemical elements. All formats with named columns share these rules, so that a name means the same in each.
+//! Makes spheres from a table of points. Columns with positions, radii, colours, opacities and chemical elements are
+//! recognised by their names. All formats with named columns share these rules, so that a name means the same in each.
 
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ pub(super) struct Table {
 pub(super) struct TableColumn {
     pub(super) name: String,
     pub(super) values: ColumnValues,
-    /// The largest value of the numbers' type in the file if that is u8 or u16: colours are fractions of it.
+    /// The largest value of the numbers' type in the file if that is u8 or u16, so that colours are fractions of it.
     pub(super) full: Option<f64>,
 }
 
@@ -37,15 +37,15 @@ impl TableColumn {
         Self { name: name.into(), values: ColumnValues::Labels(labels), full: None }
     }
 
-    /// The name in lower case, with dots for what separates words.
+    /// The name in lower case, with dots between words.
     fn plain_name(&self) -> String {
         plain(&self.name)
     }
 }
 
 impl Table {
-    /// Makes spheres of the table. Columns that are not needed for them become columns of the result. Radii are those of
-    /// a column, or the one in the options, or those of chemical elements, or else follow from the spacing of the points.
+    /// Makes spheres from the table. Columns that are not needed for them become columns of the result. Radii come from
+    /// a column, or the options, or chemical elements, or else from the spacing of the points.
     pub(super) fn into_loaded(mut self, options: &Options) -> Result<Dataset, LoadError> {
         let positions = self.take_set(POSITIONS).ok_or_else(|| self.no_positions())?;
         let names = positions.each_ref().map(|column| column.name.clone());
@@ -64,7 +64,7 @@ impl Table {
         self.dress(SphereArray::F64(spheres), false, options)
     }
 
-    /// Gives the table to spheres, one row to each. If the spheres have no radii, they get them as
+    /// Adds the table to spheres, one row to each. Spheres without radii get them as
     /// [`Table::into_loaded`] says.
     pub(super) fn dress(
         mut self,
@@ -150,7 +150,7 @@ impl Table {
         self.position(names).map(|index| self.columns.remove(index))
     }
 
-    /// Takes the first set of three columns out of the table that is there as a whole.
+    /// Takes the first complete set of three columns out of the table.
     fn take_set(&mut self, sets: Sets) -> Option<[TableColumn; 3]> {
         let set =
             sets.iter().find(|set| set.iter().all(|name| self.position(&[*name]).is_some()))?;
@@ -258,7 +258,7 @@ impl Table {
         }
     }
 
-    /// Says which columns look as if they should change the picture, but do not.
+    /// Adds notes on columns whose names suggest a change of the picture, but that are not used.
     fn note_what_is_unused(&self, notes: &mut Vec<String>) {
         const SIGNS: [(&str, &str); 7] = [
             ("color", "color"),
@@ -269,7 +269,7 @@ impl Table {
             ("opacity", "opacity"),
             ("transparen", "opacity"),
         ];
-        /// Who has more of such columns knows them.
+        /// Maximum number of such notes. More would not help.
         const MOST: usize = 8;
         let mut found = 0;
         for column in &self.columns {
@@ -277,7 +277,7 @@ impl Table {
             let sign = SIGNS.iter().find(|(sign, _)| plain.contains(sign));
             let Some((_, what)) = sign.filter(|_| found < MOST) else { continue };
             let name = shortened(&column.name);
-            // A note that says why a column is not used has said it already.
+            // Another note already says why the column is not used.
             if !notes.iter().any(|note| note.contains(&name)) {
                 found += 1;
                 notes.push(format!(
@@ -321,15 +321,15 @@ fn center(spheres: &SphereArray, row: usize) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// The radius of spheres that have none, with a note.
+/// The radius of spheres whose file has none, with a note.
 pub(super) fn guessed_radius(
     count: usize,
     center: impl Fn(usize) -> DVec3,
     notes: &mut Vec<String>,
 ) -> f64 {
-    // One sphere, or all in one place, may have any size: the camera comes as near as it must.
+    // A single sphere, or spheres that are all in one place, may have any size: the camera comes as near as it must.
     let radius = spacing::radius(count, center).unwrap_or(1.0);
-    // Three digits are as many as anyone wants to paste.
+    // Three digits are enough to be pasted.
     let digits = format!("{radius:.2e}").parse().unwrap_or(radius);
     if count > 0 {
         notes.push(format!(
@@ -340,8 +340,8 @@ pub(super) fn guessed_radius(
 }
 
 impl Dataset {
-    /// Spheres without radii in the file, which all get one radius: half of the median distance to the nearest neighbour,
-    /// so that neighbours about touch. A note says which. The radii of `centers` are not used.
+    /// Makes spheres that all get one radius, for centres from a file without radii: half of the median distance to the
+    /// nearest neighbour, so that neighbours about touch. A note has the radius. The radii of `centers` are not used.
     #[must_use]
     pub fn of_centers(mut centers: SphereArray) -> Self {
         let mut notes = Vec::new();
@@ -365,14 +365,14 @@ fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
     }
 }
 
-/// The colours of a column of CSS colours, if every text is one.
+/// The colours of a column of CSS colours, if every text is a colour.
 fn css_colors(labels: &Labels) -> Option<Vec<LinearRgb>> {
     let colors: Option<Vec<_>> = labels.names.iter().map(|name| css::color(name).ok()).collect();
     let colors = colors?;
     Some(labels.indices.iter().map(|index| colors[*index as usize]).collect())
 }
 
-/// Names of the components of a position, a colour and so on: any one of these sets.
+/// Sets of three column names for the components of a position, a colour and so on. Any of the sets will do.
 type Sets = &'static [[&'static str; 3]];
 
 const POSITIONS: Sets = &[
@@ -409,7 +409,7 @@ const ELEMENTS: &[&str] =
     &["species", "element", "elements", "symbol", "symbols", "type.symbol", "particle.type"];
 const COLOR_NAMES: &[&str] = &["color", "colour", "colors"];
 
-/// The name of a column in lower case, with dots for what separates words.
+/// The name of a column in lower case, with dots between words.
 fn plain(name: &str) -> String {
     let name = name.trim().to_lowercase();
     let dotted = name.replace([' ', '_', '-', '[', '(', ':'], ".");

@@ -1,4 +1,4 @@
-//! Joins positions from a trajectory with what another file, the topology, says about the spheres.
+//! Joins positions from a trajectory with the topology, another file that describes the spheres.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use super::dataset::{Column, Dataset};
 use super::error::{LoadError, LoadErrorKind};
 use pinhole::scene::sphere_array::SphereArray;
 
-/// What the spheres of a trajectory are.
+/// The descriptions of the spheres of a trajectory.
 #[derive(Debug)]
 pub(super) struct Topology {
     path: PathBuf,
@@ -15,7 +15,7 @@ pub(super) struct Topology {
 
 #[derive(Debug, Default)]
 pub(super) struct Positions {
-    /// In Å.
+    /// Centres in Å.
     pub(super) centers: Vec<[f64; 3]>,
     pub(super) cell: Option<[[f64; 3]; 3]>,
     pub(super) columns: Vec<Column>,
@@ -26,7 +26,7 @@ impl Topology {
         Self { path, loaded }
     }
 
-    /// The topology, without which a file of this format cannot be read.
+    /// Returns the topology, or an error if it was not given, because a file of this format cannot be read without.
     pub(super) fn required(given: Option<Self>, format: &str) -> Result<Self, LoadError> {
         given.ok_or_else(|| {
             let message = format!(
@@ -49,8 +49,8 @@ impl Topology {
         )))
     }
 
-    /// Returns the spheres of a frame: radii, colours and columns are those of the topology; positions, cell and further
-    /// columns are those of the frame.
+    /// Returns the spheres of a frame. Radii, colours and columns are those of the topology. Positions, cell and
+    /// further columns are those of the frame.
     pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Dataset, LoadError> {
         let Positions { centers, cell, columns } = positions;
         self.check(frame, centers.len())?;

@@ -12,7 +12,7 @@ use pinhole::scene::sphere_array::SphereArray;
 const NO_COLUMN: &str =
     "this compares two fixed values; one of them must be a column, without quotation marks";
 
-/// What expressions are evaluated for.
+/// The data on which expressions are evaluated.
 struct Data<'a> {
     text: &'a str,
     spheres: &'a SphereArray,
@@ -106,7 +106,7 @@ impl<'a> Data<'a> {
         })
     }
 
-    /// The numbers of one side of a comparison of which no side is a column of text.
+    /// Returns the numbers of one side of a comparison in which neither side is a column of text.
     fn numbers(
         &self,
         operand: &Operand,
@@ -122,7 +122,7 @@ impl<'a> Data<'a> {
                 Cow::Owned(ColumnValues::Numbers(values)) => {
                     return Ok(Numbers::Column(Cow::Owned(values)));
                 }
-                // Columns of text were compared before.
+                // Columns of text were handled before.
                 Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => {
                     NO_COLUMN.to_owned()
                 }
@@ -223,7 +223,7 @@ fn texts<'a>(side: &'a Side<'_>) -> Option<(&'a str, &'a Labels)> {
     }
 }
 
-/// The number that a word is. Words such as `inf` and `nan` are names.
+/// Parses a word as a number. Words such as `inf` and `nan` are names.
 fn number(word: &str) -> Option<f64> {
     let unsigned = word.strip_prefix(['+', '-']).unwrap_or(word);
     let is_number = unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.');

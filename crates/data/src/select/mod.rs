@@ -30,7 +30,7 @@ use std::str::FromStr;
 use crate::load::{Column, ColumnValues, Dataset};
 use pinhole::scene::sphere_array::SphereArray;
 
-/// An expression that says which spheres are kept.
+/// An expression that chooses the spheres to keep.
 ///
 /// Two selections are equal if their texts are.
 #[derive(Clone, Debug)]
@@ -39,13 +39,13 @@ pub struct Selection {
     expression: parse::Expression,
 }
 
-/// What a selection kept.
+/// The result of applying a selection.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KeptSpheres {
     /// The number of spheres that are kept.
     pub kept: usize,
-    /// The number of spheres before.
+    /// The number of spheres before the selection.
     pub of: usize,
     /// Notes for the user, one line each: texts that no sphere has.
     pub notes: Vec<String>,
@@ -84,12 +84,12 @@ impl Selection {
         evaluate::evaluate(&self.expression, &self.text, spheres, columns)
     }
 
-    /// Leaves out the spheres that do not match, with their colours and other values. A column `index` keeps the indices
-    /// that they had before, unless the data has a column of this name.
+    /// Leaves out the spheres that do not match, with their colours and other values. A new column `index` has the
+    /// former indices of the spheres, unless the data has a column of this name.
     ///
     /// # Errors
-    /// Returns the errors of [`Selection::matches`], and an error if no sphere of several matches. Then nothing is
-    /// changed.
+    /// Returns the errors of [`Selection::matches`], and an error if there are spheres but none matches. The data
+    /// are unchanged then.
     pub fn apply(&self, loaded: &mut Dataset) -> Result<KeptSpheres, SelectError> {
         let (is_kept, notes) = self.matches(&loaded.spheres, &loaded.columns)?;
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());

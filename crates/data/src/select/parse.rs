@@ -4,16 +4,16 @@ use std::cmp::Ordering;
 
 use pinhole::internals::text::one_line;
 
-/// How many parentheses may lie in each other, so that the stack suffices.
+/// Maximum depth of nested parentheses, so that the stack suffices.
 const DEEPEST: usize = 100;
 
-/// A part of an expression. Negations are gone: they are in the operators, so that missing values match neither a
+/// A part of an expression. Negations are moved into the operators, so that missing values match neither a
 /// comparison nor its opposite.
 #[derive(Clone, Debug)]
 pub(super) enum Expression {
-    /// All of these match.
+    /// All of these must match.
     All(Vec<Self>),
-    /// At least one of these matches.
+    /// At least one of these must match.
     Any(Vec<Self>),
     Compare(Comparison),
 }
@@ -27,13 +27,13 @@ pub(super) struct Comparison {
 #[derive(Clone, Debug)]
 pub(super) struct Operand {
     pub(super) value: Value,
-    /// Where it begins, in characters from 1.
+    /// Position of its first character, from 1.
     pub(super) character: usize,
 }
 
 #[derive(Clone, Debug)]
 pub(super) enum Value {
-    /// A number, the name of a column, or a text without quotation marks: that depends on the other side.
+    /// A number, the name of a column, or a text without quotation marks, depending on the other side.
     Word(String),
     /// A text in quotation marks.
     Text(String),
@@ -41,7 +41,7 @@ pub(super) enum Value {
     Column(String),
 }
 
-/// An order of its sides that a comparison accepts.
+/// The orders of its two sides that a comparison accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Operator {
     less: bool,
@@ -52,7 +52,7 @@ pub(super) struct Operator {
 impl Operator {
     pub(super) const EQUAL: Self = Self::new(false, true, false);
 
-    /// All signs. A sign comes before those that it begins with.
+    /// All signs. A sign comes before its own prefixes.
     const SIGNS: [(&'static str, Self); 6] = [
         ("==", Self::EQUAL),
         ("!=", Self::new(true, false, true)),
@@ -66,17 +66,17 @@ impl Operator {
         Self { less, equal, greater }
     }
 
-    /// The operator that holds where this one does not.
+    /// Returns the operator that holds exactly where this one does not.
     fn opposite(self) -> Self {
         Self::new(!self.less, !self.equal, !self.greater)
     }
 
-    /// The operator for the sides in the other order.
+    /// Returns the operator for exchanged sides.
     pub(super) fn mirrored(self) -> Self {
         Self::new(self.greater, self.equal, self.less)
     }
 
-    /// `true` for a comparison that asks only whether the sides are equal or not.
+    /// Whether a comparison asks only if the sides are equal.
     pub(super) fn is_equality(self) -> bool {
         self.less == self.greater
     }
@@ -106,7 +106,7 @@ pub(super) fn error_at(text: &str, character: usize, problem: impl Into<String>)
 
 struct Parser<'a> {
     text: &'a str,
-    /// The next byte.
+    /// Offset of the next byte.
     at: usize,
     depth: usize,
 }
@@ -116,7 +116,7 @@ fn ends_word(c: char) -> bool {
 }
 
 impl<'a> Parser<'a> {
-    /// What comes next, after white space.
+    /// Skips white space, and returns the remaining text.
     fn rest(&mut self) -> &'a str {
         let rest = self.text.get(self.at..).unwrap_or_default();
         let trimmed = rest.trim_start();
@@ -143,7 +143,7 @@ impl<'a> Parser<'a> {
         self.error(format!("{wanted} belongs here, but {found} stands here"))
     }
 
-    /// The next word, which is empty if there is none.
+    /// Takes the next word; empty if there is none.
     fn word(&mut self) -> &'a str {
         let rest = self.rest();
         &rest[..rest.find(ends_word).unwrap_or(rest.len())]
@@ -155,7 +155,7 @@ impl<'a> Parser<'a> {
         is_next
     }
 
-    /// Takes a word or the sign that means the same.
+    /// Takes a word, or the sign with the same meaning.
     fn take_either(&mut self, word: &str, sign: &str) -> bool {
         if self.word().eq_ignore_ascii_case(word) {
             self.at += word.len();
@@ -164,7 +164,7 @@ impl<'a> Parser<'a> {
         self.take(sign)
     }
 
-    /// Parts that are joined by `or`, or the opposite of that.
+    /// Parses parts that are joined by `or`, or the negation of that.
     fn any(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
         let mut parts = vec![self.all(is_negated)?];
         while self.take_either("or", "||") {
@@ -176,7 +176,7 @@ impl<'a> Parser<'a> {
         Ok(joined(parts, if is_negated { Expression::All } else { Expression::Any }))
     }
 
-    /// Parts that are joined by `and`, or the opposite of that.
+    /// Parses parts that are joined by `and`, or the negation of that.
     fn all(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
         let mut parts = vec![self.one(is_negated)?];
         while self.take_either("and", "&&") {
@@ -188,7 +188,7 @@ impl<'a> Parser<'a> {
         Ok(joined(parts, if is_negated { Expression::Any } else { Expression::All }))
     }
 
-    /// A comparison, or an expression in parentheses, with or without negations.
+    /// Parses a comparison or an expression in parentheses, with or without negations.
     fn one(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
         let mut is_negated = is_negated;
         while !self.rest().starts_with("!=") && self.take_either("not", "!") {
@@ -266,7 +266,7 @@ impl<'a> Parser<'a> {
         Ok(Operand { value, character })
     }
 
-    /// What stands between two equal marks, of which the first comes next.
+    /// Takes the text between two equal marks, the first of which comes next.
     fn quoted(&mut self, mark: char) -> Result<&'a str, SelectError> {
         let inside = self.rest().get(mark.len_utf8()..).unwrap_or_default();
         let Some(length) = inside.find(mark) else {
@@ -277,7 +277,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Joins parts. One part needs no joint.
+/// Joins parts. A single part stays as it is.
 fn joined(mut parts: Vec<Expression>, joint: fn(Vec<Expression>) -> Expression) -> Expression {
     match (parts.len(), parts.pop()) {
         (1, Some(one)) => one,
@@ -288,7 +288,7 @@ fn joined(mut parts: Vec<Expression>, joint: fn(Vec<Expression>) -> Expression) 
     }
 }
 
-/// Why a selection cannot be read, or does not apply to the data.
+/// The reason why a selection cannot be read, or does not apply to the data.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SelectError {
@@ -299,7 +299,7 @@ pub enum SelectError {
         expression: String,
         /// The character at which the wrong part begins, counted from 1.
         character: usize,
-        /// What is wrong.
+        /// Description of the fault.
         problem: String,
     },
     /// No sphere matches.
@@ -309,7 +309,7 @@ pub enum SelectError {
         expression: String,
         /// The number of spheres.
         of: usize,
-        /// What may be the reason, after a semicolon; empty if it is not known.
+        /// A possible reason, after a semicolon; empty if none is known.
         hint: String,
     },
 }

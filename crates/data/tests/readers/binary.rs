@@ -23,7 +23,7 @@ fn spheres(loaded: &Dataset) -> Vec<[f64; 4]> {
     }
 }
 
-/// A topology of `atoms` oxygen atoms, and options that name it.
+/// A topology with this number of oxygen atoms, and options that name it.
 fn topology(atoms: usize) -> (TempDir, Options) {
     let folder = TempDir::new().unwrap();
     let options = Options::default().with_topology(topology_file(folder.path(), atoms));
@@ -103,7 +103,7 @@ fn cells_of_dcd_in_three_variants() {
             read_dcd(&dcd::file(Layout { cell: Some(cell), ..dcd::PLAIN }), 0).unwrap().cell;
         edges.map(|edges| edges.as_flattened().iter().map(|v| (v * 1e6).round() / 1e6).collect())
     };
-    // A cell given by degrees, by cosines, by a matrix, and not at all.
+    // The cells are given by degrees, cosines and a matrix; one file has none.
     let slanted: Option<Vec<f64>> =
         Some(vec![10.0, 0.0, 0.0, 10.0, 17.320508, 0.0, 0.0, 0.0, 30.0]);
     assert_eq!(edges([10.0, 60.0, 20.0, 90.0, 90.0, 30.0]), slanted);
@@ -128,7 +128,7 @@ fn bad_dcd_files() {
     for length in 0..start + 72 {
         refused(read_dcd(&good[..length], 0));
     }
-    // Bytes after complete frames are noted, and the frames can be read.
+    // A fault after complete frames is a note, and the frames can be read.
     let cut = read_dcd(&good[..good.len() - 5], 1).unwrap();
     let left = format!("byte {}: frame 2 takes 72 bytes, but the file ends after 67", start + 144);
     assert!(cut.notes[0].starts_with(&left), "{:?}", cut.notes);
@@ -149,7 +149,7 @@ fn a_topology_must_be_there_and_fit() {
     assert!(nowhere.starts_with("the topology no.pdb: the file cannot be read: "), "{nowhere}");
 }
 
-/// Opened from a file, a cut trajectory has its complete frames.
+/// A cut trajectory has the complete frames when it is read from a file.
 #[test]
 fn a_trajectory_seeks() {
     let (folder, options) = topology(dcd::ATOMS);
@@ -162,7 +162,7 @@ fn a_trajectory_seeks() {
     let loaded = trajectory.frame(1).unwrap();
     assert_eq!(spheres(&loaded)[0][0], 100.25);
     assert_eq!(loaded.labels("species").unwrap().names, ["O"]);
-    // A single frame has the same note as when read from memory.
+    // A single frame has the same note as one read from memory.
     let alone = pinhole_data::load::open(&path, &options.with_frame(1)).unwrap();
     assert!(alone.notes[0].contains("frame 2 takes 72 bytes"), "{:?}", alone.notes);
 }
@@ -223,8 +223,8 @@ fn xtc_files() {
     }
 }
 
-/// Random positions from dense to far apart. If the numbers of a position take more than 64 bits together, molly writes
-/// others than it reads. A test beside the reader covers that.
+/// Random positions from dense to far apart. For numbers that take more than 64 bits together, molly writes other
+/// values than it reads; a test beside the reader has such numbers.
 #[test]
 fn compressed_positions_are_those_that_molly_reads() {
     let mut random = Rng::with_seed(3);
@@ -257,7 +257,7 @@ fn bad_trr_and_xtc_files() {
     let (_folder, options) = topology(gromacs::ATOMS);
     let trr = gromacs::trr(false);
     let xtc = gromacs::xtc(2, gromacs::ATOMS, molly::Magic::Xtc1995);
-    // A small file that declares a few hundred million atoms reserves no memory for them.
+    // A small file that declares a few hundred million atoms allocates nothing for them.
     let mut huge = xtc.clone();
     huge[4..8].copy_from_slice(&290_000_000_i32.to_be_bytes());
     huge[52..56].copy_from_slice(&290_000_000_i32.to_be_bytes());
@@ -318,7 +318,7 @@ fn gsd_frames_inherit_from_the_first() {
         assert_eq!(spheres(&second)[2], [106.0, 107.0, 108.0, 2.0]);
         assert_eq!(first.cell_origin, [-13.75, -11.875, -15.0]);
         assert_eq!((second.cell, second.column("energy")), (Some(cell), first.column("energy")));
-        // A frame with another number of particles has default values.
+        // A frame with another number of particles has the defaults.
         let third = gsd_frame(&bytes, 2);
         assert_eq!(spheres(&third), [[200.0, 201.0, 202.0, 0.5], [203.0, 204.0, 205.0, 0.5]]);
         assert_eq!(
@@ -345,7 +345,7 @@ fn gsd_types_that_are_elements_have_radii_and_colors() {
     assert_eq!(spheres(&water).iter().map(|s| s[3]).collect::<Vec<_>>(), [1.5, 1.2]);
     assert_eq!(water.colors.unwrap()[0].to_srgb8(), [255, 13, 13]);
     assert!(water.notes[0].starts_with("there are no diameters; the types are chemical elements"));
-    // B alone would be boron.
+    // B is the symbol of boron, but A is not an element.
     let beads = gsd_frame(&atoms(b"A\0B\0", 2), 0);
     assert_eq!(spheres(&beads).iter().map(|s| s[3]).collect::<Vec<_>>(), [0.5, 0.5]);
     assert_eq!((beads.colors, beads.notes), (None, vec![]));

@@ -1,4 +1,4 @@
-//! Files of spheres and what they hold, those that are refused, and damaged files of every format.
+//! Files of spheres and their contents, files that are refused, and damaged files of every format.
 
 use std::path::{Path, PathBuf};
 
@@ -27,17 +27,17 @@ fn accepted_files() {
     compare(&folder("accepted"), contents);
 }
 
-/// What the program says to a file that cannot be read.
+/// The program's answer to a file that cannot be read.
 fn answer(Case { files, arguments }: &Case<'_>) -> String {
     let [(name, bytes)] = &files[..] else { panic!("{arguments}: not one file") };
     let options = options(arguments);
     let error = load::from_bytes(bytes, name, &options).unwrap_err();
-    // Of a file that is opened, frame by frame if it has any, the same is said.
+    // The error is the same if the file is opened, frame by frame if it has frames.
     let folder = TempDir::new().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     assert_eq!(load::open(&path, &options).unwrap_err().to_string(), error.to_string(), "{name}");
-    // A radius that contradicts the file is wrong usage.
+    // A radius that contradicts the file is a usage error.
     let code = if options.radius.is_some() { 2 } else { 1 };
     format!("exit code {code}\nerror: {name}: {error}\n")
 }
@@ -53,14 +53,14 @@ fn options(arguments: &str) -> Options {
     options
 }
 
-/// What a file holds. Several files of one case are different ways to write the same.
+/// The contents of a file. Several files of one case are different ways to write the same.
 fn contents(Case { files, arguments }: &Case<'_>) -> String {
     let read = |(name, bytes): &(&str, Vec<u8>)| {
         load::from_bytes(bytes, name, &options(arguments)).unwrap_or_else(|e| panic!("{name}: {e}"))
     };
     let loaded = read(&files[0]);
     for (number, file) in files.iter().enumerate() {
-        // As text, because a missing number is not equal to itself.
+        // The contents are compared as text, because a missing number is not equal to itself.
         assert_eq!(written(&read(file)), written(&loaded), "file {number} of {arguments}");
         if file.0.ends_with(".pdb") {
             let frame = options(arguments).frame.unwrap_or(0);
@@ -131,7 +131,7 @@ fn every_format_has_good_files() {
 
 #[test]
 fn damaged_files_end_with_spheres_or_one_line() {
-    // Two threads share the formats, which are about equally slow.
+    // Two threads share the formats, which take about the same time each.
     std::thread::scope(|scope| {
         for first in 0..2 {
             scope.spawn(move || FORMATS.iter().skip(first).step_by(2).for_each(read_damaged));
@@ -156,7 +156,7 @@ fn read_damaged(format: &'static Format) {
         let seed = &seeds[number as usize % seeds.len()];
         let other = &seeds[random.usize(0..seeds.len())].bytes;
         let bytes = damaged(&seed.bytes, other, &mut random);
-        // Frames are read from files in many ways, which takes ten times as long.
+        // Reading frames from files in many ways takes ten times as long, so it is done rarely.
         let taken = if random.u8(0..20) == 0 {
             let file = folder.path().join("file");
             read_all(format, &bytes, &seed.options, &file, &mut random)
@@ -164,7 +164,7 @@ fn read_damaged(format: &'static Format) {
             read_bytes(format, &bytes, &seed.options, &mut random)
         };
         let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
-        // A busy machine may be slow, but what hangs is slower. The long run in `benches` measures.
+        // A busy machine may be slow, but a reader that hangs is slower. The long run in `benches` measures times.
         assert!(taken < 60 * SLOW, "{}, input {number}: {taken:?}", format.name);
     }
 }

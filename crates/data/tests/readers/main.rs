@@ -1,4 +1,4 @@
-//! Readers, on files that are right, wrong and damaged.
+//! Tests of the readers on files that are right, wrong and damaged.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,

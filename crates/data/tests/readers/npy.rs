@@ -1,4 +1,4 @@
-//! Arrays of spheres from .npy, .npz and raw files. Those that are refused are in `tests/files/refused`.
+//! Arrays of spheres from .npy, .npz and raw files. Refused files are in `tests/files/refused`.
 
 use pinhole::SphereArray;
 use pinhole_data::load::npy as reader;
@@ -42,7 +42,7 @@ fn both_precisions_both_byte_orders_both_layouts() {
             let spheres = read_spheres(&npy(dtype, by_columns, "(2, 4)", &data), None);
             assert_eq!(spheres.as_ref(), Ok(expected), "{dtype} {by_columns}");
         }
-        // Only the first three columns, with one radius for both spheres.
+        // The array has only the first three columns, with one radius for both spheres.
         let part: Vec<f32> = match by_columns {
             false => ROWS.iter().flat_map(|row| row[..3].to_vec()).collect(),
             true => by_column[..6].to_vec(),
@@ -196,7 +196,7 @@ fn more_columns_are_a_value_or_colors() {
     assert!(three.notes[0].contains("--radius sets it"), "{:?}", three.notes);
 }
 
-/// Two structures with positions, colours, opacities, text and an unused field.
+/// Two structures with positions, colours, opacities, text and unused fields.
 #[test]
 fn fields_have_names() {
     let loaded = reader::read(include_bytes!("../files/good/structured.npy"), None).unwrap();
@@ -248,7 +248,7 @@ fn archives_of_several_arrays() {
             ]
         );
     }
-    // One coordinate in each array. The radius follows from the spacing, or is given.
+    // Each array has one coordinate; the radius follows from the spacing, or is given.
     let axis = |values: [i16; 2]| file("<i2", "(2,)", &values.map(i16::to_le_bytes).concat());
     let (x, y, z) = (axis([0, 0]), axis([0, 7]), axis([1, 1]));
     let archive = zip(&[("x.npy", &x), ("y.npy", &y), ("z.npy", &z)], false);

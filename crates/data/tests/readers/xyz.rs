@@ -1,4 +1,4 @@
-//! XYZ files, and trajectories of any format, which keep one frame at a time in memory.
+//! XYZ files, and trajectories of any format that are in memory one frame at a time.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::npy::numbers;
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 
-/// The dataset of a frame, and its atoms one by one.
+/// Reads a frame, and returns its atoms one by one.
 fn read(bytes: &[u8], frame: usize) -> Result<(Vec<Sphere>, Dataset), LoadError> {
     let loaded = xyz::read(bytes, frame)?;
     Ok((loaded.colored_spheres(LinearRgb::WHITE).collect(), loaded))
@@ -111,7 +111,7 @@ fn every_declared_column_and_the_cell_are_kept() {
     assert_eq!(loaded.labels("fixed").unwrap().indices, [0, 1]);
 }
 
-/// Column names have the same meaning in all tables (see `tests/files/accepted/csv.txt`), and unused columns are noted.
+/// Names mean the same as in all tables (`tests/files/accepted/csv.txt` has more cases). Notes name unused columns.
 #[test]
 fn columns_are_used_or_noted() {
     let one = |columns: &str, values: &str| {
@@ -127,7 +127,7 @@ fn columns_are_used_or_noted() {
     let odd = one("color:R:3", "-1 0 0");
     assert_eq!(srgb(&odd), [255, 13, 13]);
     assert_eq!(numbers(&odd, "color.x"), [-1.0]);
-    // Missing values are kept if no sphere needs them.
+    // Missing values are kept in columns that spheres do not need.
     assert!(numbers(&one("q:R:1", "nan"), "q")[0].is_nan());
     let plain = loaded("1\n\nO 0 0 0 7 8\n");
     assert_eq!(
@@ -176,7 +176,7 @@ fn pdb_text(frames: usize, random: &mut Rng) -> String {
     text + "END\n"
 }
 
-/// Every frame, in any order, equals that of reading the text as a whole. So does a frame that is opened by itself.
+/// Frames are the same in any order, from the whole text, and when opened one by one.
 #[test]
 fn frames_are_those_of_the_whole_text() {
     let folder = TempDir::new().unwrap();
@@ -214,7 +214,7 @@ fn frames_are_those_of_the_whole_text() {
     }
 }
 
-/// A program may still be writing the file. Complete frames can be read.
+/// Complete frames can be read while a program is still writing.
 #[test]
 fn a_file_that_ends_within_a_frame_has_those_before_it() {
     let folder = TempDir::new().unwrap();
@@ -241,7 +241,7 @@ fn errors_count_lines_from_the_start_of_the_file() {
     assert!(error.to_string().starts_with(&format!("line {line}")), "{error}");
 }
 
-/// Files of formats without frames are refused. `files` checks that opening a file gives the same errors as its bytes.
+/// The test `files` makes sure that opened files are refused as files in memory are.
 #[test]
 fn files_without_frames_are_refused() {
     let folder = TempDir::new().unwrap();

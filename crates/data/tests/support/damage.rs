@@ -1,4 +1,4 @@
-//! Reads files that were damaged at random. For any file, reading must end soon, with spheres or with a one-line error.
+//! Reads files that were damaged at random. Reading any file must end soon, with spheres or with an error of one line.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use pinhole_data::load::{self, ColumnValues, Dataset, Format, LoadError, Options
 /// The longest time that reading a small file may take.
 pub(crate) const SLOW: Duration = Duration::from_secs(2);
 
-/// Numbers that are most likely to break readers.
+/// Numbers that are likely to break readers.
 const NUMBERS: [u64; 14] = [
     0,
     1,
@@ -28,14 +28,14 @@ const NUMBERS: [u64; 14] = [
     u64::MAX,
 ];
 
-/// The same numbers as text, and words in the place of numbers, separated by blanks. One word is empty.
+/// Numbers of this kind as text, other forms of numbers, and an empty text, with blanks between them.
 const WORDS: &str = "0 -1 1e308 -1e-320 nan inf 1e999 16777216 4294967296 999999999999 18446744073709551615 \
                      99999999999999999999999  \u{e9}";
 
-/// Bytes that have a meaning in text formats.
+/// Bytes with a meaning in texts.
 const TELLING: &[u8] = b"\n\t \"';#,._\xff\0";
 
-/// Returns a damaged copy of a file. `other` is another valid file, from which pieces may be taken.
+/// A damaged copy of a file. Pieces of `other`, another good file, may be copied into it.
 pub(crate) fn damaged(good: &[u8], other: &[u8], random: &mut Rng) -> Vec<u8> {
     let mut bytes = good.to_vec();
     for _ in 0..1 << random.usize(0..4) {
@@ -78,7 +78,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
         7 => {
             let number = NUMBERS[random.usize(0..NUMBERS.len())].wrapping_add(random.u64(0..3));
             let width = 1 << random.usize(0..4);
-            // Most numbers of binary files stand at multiples of their width.
+            // Most numbers of binary files are at multiples of their width.
             let at = if random.bool() { at / width * width } else { at };
             let mut number = number.to_le_bytes()[..width].to_vec();
             if random.bool() {
@@ -94,7 +94,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], random: &mut Rng) {
     }
 }
 
-/// Replaces the number in the text at or after this position by another one.
+/// Replaces the first number in the text at this place or after it.
 fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Rng) {
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
     let Some(start) = bytes[at..].iter().position(is_part).map(|offset| at + offset) else {
@@ -106,10 +106,10 @@ fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Rng) {
     bytes.splice(start..end, random.choice(words).unwrap().bytes());
 }
 
-/// Reads a file in every way that a program can, and returns the time of the slowest way.
+/// Reads a file in every way that a program can, and returns the longest time.
 ///
 /// # Errors
-/// Returns a message about wrong content, or about a wrong error message.
+/// Describes the fault in the result, or in the message of an error.
 pub(crate) fn read_all(
     format: &'static Format,
     bytes: &[u8],
@@ -141,7 +141,7 @@ pub(crate) fn read_all(
     Ok(longest)
 }
 
-/// Reads bytes as [`read_all`] does, without a file, which takes much longer.
+/// Reads bytes as [`read_all`] does, but without a file, which takes much longer.
 ///
 /// # Errors
 /// Returns an error as [`read_all`] does.
@@ -153,21 +153,21 @@ pub(crate) fn read_bytes(
 ) -> Result<Duration, String> {
     let named = options.clone().with_format(format);
     let longest = timed(|| check(load::from_bytes(bytes, "", &named)))?;
-    // The content may look like another format now. That format then gets options that it does not support.
+    // The content may now look like another format, which would get options that do not apply to it.
     if random.u8(0..8) > 0 {
         return Ok(longest);
     }
     Ok(longest.max(timed(|| check(load::from_bytes(bytes, "", options)))?))
 }
 
-/// The time that reading took.
+/// Returns the time that reading took.
 fn timed(read: impl FnOnce() -> Result<(), String>) -> Result<Duration, String> {
     let start = Instant::now();
     read()?;
     Ok(start.elapsed())
 }
 
-/// Checks that the data is consistent, or that the error is one line.
+/// Checks that the data are consistent, or that the error is one line.
 fn check(read: Result<Dataset, LoadError>) -> Result<(), String> {
     let loaded = match read {
         Ok(loaded) => loaded,

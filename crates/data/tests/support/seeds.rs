@@ -1,7 +1,7 @@
-//! Small valid files of every format that can be read. The fuzzer makes invalid ones from them.
+//! Small good files of every format that can be read, which the fuzzer damages.
 //!
-//! A new format needs files in `tests/files/good`, and a test fails until it has some. Files of DCD, TRR and XTC need a
-//! topology, and `binary_files` writes them.
+//! A new format needs files in `tests/files/good`, or a test fails. Files of DCD, TRR and XTC need a topology, and are
+//! written by `binary_files`.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use crate::binary_files::{dcd as charmm, gromacs, topology};
 /// A valid file.
 pub(crate) struct Seed {
     pub(crate) bytes: Vec<u8>,
-    /// Further options that reading the file needs.
+    /// The options for reading the file.
     pub(crate) options: Options,
 }
 
-/// Files whose options must name their columns, or give `radius`.
+/// Files that need the names of their columns, or `radius`.
 const NEEDS: [(&str, &str); 5] = [
     ("general.dump", "id type xsu ysu zsu"),
     ("bare.data", "id type q x y z"),
@@ -25,7 +25,7 @@ const NEEDS: [(&str, &str); 5] = [
     ("bare.csv", "x y z"),
 ];
 
-/// The names and bytes of the valid files of a format, found by their extensions.
+/// The names and bytes of the good files of a format, by their extensions.
 fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/good");
     let extensions = if format.name == "raw-f32x4" { &["bin"][..] } else { format.extensions };
@@ -40,7 +40,7 @@ fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
     names.into_iter().map(read).collect()
 }
 
-/// The valid files of a format, if it is known here. What they need, such as a topology, is written into the folder.
+/// The good files of a format; none if it is unknown here. Files that they need are written into the folder.
 pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
     let mut seeds = match format.name {
         "dcd" => dcd(folder),
@@ -83,7 +83,7 @@ fn trr(folder: &Path) -> Vec<Seed> {
 
 fn xtc(folder: &Path) -> Vec<Seed> {
     let (old, new) = (molly::Magic::Xtc1995, molly::Magic::Xtc2023);
-    // For fewer than ten atoms, the positions are not compressed.
+    // Positions of fewer than ten atoms are not compressed.
     [(5, old), (12, old), (60, new)]
         .map(|(atoms, magic)| with_topology(gromacs::xtc(2, atoms, magic), folder, atoms))
         .into()

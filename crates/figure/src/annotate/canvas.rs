@@ -1,4 +1,4 @@
-//! The samples of a picture in sRGB, which annotations are blended into, and what annotations consist of before they have
+//! The samples of a picture in sRGB, into which annotations are blended, and the shapes of annotations before they have
 //! a place and a colour.
 
 use super::font;
@@ -14,8 +14,8 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas of this width and height on samples: 3 (RGB) or 4 (RGBA) for each pixel, each of one byte or of two
-    /// bytes with the high one first. `None` unless the number of bytes is right.
+    /// A canvas of this width and height over samples: 3 (RGB) or 4 (RGBA) for each pixel, each of one byte, or of
+    /// two with the high byte first. Returns `None` if the number of bytes does not fit.
     #[must_use]
     pub fn new(size: [u32; 2], channels: usize, bits: Bits, samples: &'a mut [u8]) -> Option<Self> {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
@@ -30,7 +30,7 @@ impl<'a> Canvas<'a> {
         self.size
     }
 
-    /// How bright a pixel looks over white, from 0 to 1: its luma, of encoded components.
+    /// The brightness of a pixel over white, from 0 to 1: the luma of its encoded components.
     pub(super) fn luma(&self, x: u32, y: u32) -> f32 {
         let Some(start) = self.start(i64::from(x), i64::from(y)) else { return 1.0 };
         let of = |channel| self.sample(start, channel) / 255.0;
@@ -38,8 +38,8 @@ impl<'a> Canvas<'a> {
         if self.channels == 4 { luma * of(3) + 1.0 - of(3) } else { luma }
     }
 
-    /// Blends a colour over a pixel: `coverage` is from 0, no change, to 1, exactly this colour. Pixels outside are left
-    /// out.
+    /// Blends a colour over a pixel. A `coverage` of 0 changes nothing, and 1 gives exactly this colour. Pixels outside
+    /// the canvas are ignored.
     pub(super) fn blend(&mut self, x: i64, y: i64, color: [u8; 3], coverage: f32) {
         let Some(start) = self.start(x, y) else { return };
         if coverage.is_nan() || coverage <= 0.0 {
@@ -66,7 +66,7 @@ impl<'a> Canvas<'a> {
         Some(pixel * self.channels * self.bits.bytes())
     }
 
-    /// A sample on a scale from 0 to 255.
+    /// Reads a sample on a scale from 0 to 255.
     fn sample(&self, start: usize, channel: usize) -> f32 {
         match self.bits {
             Bits::Eight => self.samples[start + channel].into(),
@@ -91,26 +91,26 @@ impl<'a> Canvas<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Paint {
-    /// That of text, which depends on what lies behind.
+    /// The colour of text, which depends on the picture behind it.
     Ink,
     /// A colour in 8-bit sRGB.
     Color([u8; 3]),
 }
 
-/// A part of an annotation. Coordinates are pixels from its top left corner.
+/// A shape of an annotation. Coordinates are pixels from the annotation's top left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shape {
     /// A rectangle: left, top, right, bottom.
     Rect { rect: [f32; 4], paint: Paint },
-    /// A bar of whole pixels, with a colour for each row from the top, or if it lies for each column from the left.
+    /// A bar of whole pixels, with a colour for each row from the top or, if it lies, each column from the left.
     Bar { place: [i64; 2], thickness: i64, colors: Vec<[u8; 3]>, lies: bool },
     /// A disk.
     Disk { center: [f32; 2], radius: f32, paint: Paint },
-    /// One line of text, from the start of its baseline.
+    /// One line of text, at the start of its baseline.
     Text { text: String, at: [f32; 2], em: f32 },
 }
 
-/// The width of lines for this size of text.
+/// The width of lines beside text of this size.
 pub(super) fn line_width(em: f32) -> f32 {
     (em / 14.0).round().max(1.0)
 }
@@ -123,7 +123,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Adds one line of text, and makes the block as wide as it.
+    /// Adds one line of text, and widens the block to hold it.
     pub(super) fn text(&mut self, text: impl Into<String>, at: [f32; 2], em: f32) {
         let text = text.into();
         self.width = self.width.max(at[0] + font::width(&text, em));
@@ -141,7 +141,7 @@ impl Block {
         self.shapes.push(Shape::Rect { rect, paint });
     }
 
-    /// Adds a line around a rectangle, outside of it, with this width.
+    /// Adds a frame of this line width around the outside of a rectangle.
     pub(super) fn frame(&mut self, [left, top, right, bottom]: [f32; 4], line: f32) {
         let (l, t, r, b) = (left - line, top - line, right + line, bottom + line);
         for rect in
@@ -175,7 +175,7 @@ impl Block {
                     disk([x + dx, y + dy], *radius, color(paint), canvas);
                 }
                 Shape::Text { text, at: [x, y], em } => {
-                    // A baseline between two rows of pixels keeps letters sharp.
+                    // The baseline is rounded to an edge between two rows of pixels, which keeps letters sharp.
                     font::draw(text, [x + dx, (y + dy).round()], *em, |x, y, coverage| {
                         canvas.blend(x, y, ink, coverage);
                     });
@@ -188,7 +188,7 @@ impl Block {
 /// The distance between baselines, relative to the size of the text.
 pub(super) const LINE: f32 = 1.35;
 
-/// The pixels that a rectangle touches, cut to the canvas: columns and rows, the last ones excluded.
+/// The pixels that a rectangle touches within the canvas: left, top, right, bottom, the last two excluded.
 fn pixels([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> [i64; 4] {
     let [width, height] = canvas.size().map(i64::from);
     [
@@ -199,7 +199,7 @@ fn pixels([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> [i64; 4]
     ]
 }
 
-/// Fills a rectangle; pixels that it covers in part are blended.
+/// Fills a rectangle. Pixels that it covers in part are blended.
 pub(super) fn fill(rect: [f32; 4], color: [u8; 3], opacity: f32, canvas: &mut Canvas<'_>) {
     let [left, top, right, bottom] = pixels(rect, canvas);
     let part = |low: f32, high: f32, pixel: i64| {
@@ -213,7 +213,7 @@ pub(super) fn fill(rect: [f32; 4], color: [u8; 3], opacity: f32, canvas: &mut Ca
     }
 }
 
-/// Fills a disk; the coverage of its edge is that of a straight edge.
+/// Fills a disk. Its edge is treated as straight when coverage is computed.
 fn disk([x, y]: [f32; 2], radius: f32, color: [u8; 3], canvas: &mut Canvas<'_>) {
     let reach = radius + 1.0;
     let [left, top, right, bottom] = pixels([x - reach, y - reach, x + reach, y + reach], canvas);

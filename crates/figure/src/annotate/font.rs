@@ -1,4 +1,4 @@
-//! The embedded font: widths of texts, and texts as coverage of pixels.
+//! The embedded font: the widths of texts, and their coverage of pixels.
 
 use std::sync::LazyLock;
 
@@ -14,11 +14,11 @@ pub(super) const HALF_CAPITAL: f32 = 0.357;
 /// The size of raised and lowered digits, relative to that of the text.
 const SMALL: f32 = 0.64;
 
-/// A character as it is drawn: another character, smaller and moved up.
+/// The glyph for a character: another character, which may be smaller and moved up.
 struct ScaledGlyph {
     glyph: char,
     scale: f32,
-    /// How far it is moved up, relative to the size of the text.
+    /// Distance by which the glyph is moved up, relative to the size of the text.
     up: f32,
 }
 
@@ -37,7 +37,7 @@ impl ScaledGlyph {
         };
         match small {
             Some(glyph) => Self { glyph, scale: SMALL, up },
-            // Control characters would be boxes; line breaks are not drawn at all.
+            // Control characters would be drawn as boxes. Line breaks do not reach this function.
             None => Self { glyph: if c.is_control() { ' ' } else { c }, scale: 1.0, up: 0.0 },
         }
     }
@@ -67,8 +67,8 @@ pub(super) fn width(text: &str, em: f32) -> f32 {
     text.chars().map(advance).sum::<f32>() * em / units
 }
 
-/// Draws one line of text: calls `cover` with pixels and their coverage. `x` is where the text begins, and `baseline`
-/// the line that letters stand on.
+/// Draws one line of text by calling `cover` with pixels and their coverage. `x` is the start of the text, and
+/// `baseline` the line on which letters stand.
 pub(super) fn draw(
     text: &str,
     [x, baseline]: [f32; 2],
@@ -114,7 +114,7 @@ mod tests {
         assert!(width("10³", 20.0) < width("103", 20.0));
     }
 
-    /// Capital letters stand on the baseline, and are as high as `HALF_CAPITAL` says.
+    /// Capital letters stand on the baseline and have twice the height `HALF_CAPITAL`.
     #[test]
     fn capitals_stand_on_the_baseline() {
         let (mut top, mut bottom) = (i64::MAX, i64::MIN);

@@ -1,4 +1,4 @@
-//! Legends: what colours mean. Categories are disks of their colours, and their names.
+//! Legends explain the colours of a picture. Categories are shown as disks of their colours, with their names.
 
 use super::canvas::{Block, LINE, Paint, Shape};
 use super::font::{self, HALF_CAPITAL};
@@ -6,15 +6,15 @@ use super::legend_scale::{MISSING, horizontal, vertical};
 use super::place::{Anchor, Position};
 use crate::color_by::{Category, ColorKey, KeyKind};
 
-/// What the colours of a picture mean: a bar with ticks for a scale, or a list of categories. At the middle of the top or
-/// of the bottom it lies, elsewhere it stands.
+/// Explains the colours of a picture: a bar with ticks for a scale, or a list of categories. It is horizontal in the
+/// middle of the top or bottom of the picture, and vertical elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    /// What the colours mean.
+    /// The meaning of the colours.
     pub key: ColorKey,
     /// The title; without one it is the name of the column. It may be empty, and may have several lines.
     pub title: Option<String>,
-    /// Where the legend lies.
+    /// The position of the legend.
     pub position: Position,
 }
 
@@ -73,7 +73,7 @@ impl Legend {
         let item_width = |(name, color): &Entry| {
             font::width(name, em) + if color.is_some() { (INDENT + 1.2) * em } else { 1.2 * em }
         };
-        // As many as fit into the rows.
+        // The loop reduces the entries until they fit into the rows.
         let mut count = list.len() + usize::from(missing.is_some());
         let lines = loop {
             let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
@@ -122,13 +122,13 @@ const MOST_COLUMNS: usize = 3;
 /// The radius of a disk, relative to the size of text.
 const RADIUS: f32 = 0.46;
 
-/// Where a name begins after the left edge of its disk, relative to the size of text.
+/// Distance from the left edge of a disk to its name, relative to the size of text.
 const INDENT: f32 = 1.5;
 
 /// A name, and its colour in 8-bit sRGB unless it has none.
 type Entry = (String, Option<[u8; 3]>);
 
-/// The names and colours that are shown, of which there are at most `room`.
+/// Returns at most `room` names and colours to show.
 fn shown(list: &[Category], missing: Option<[u8; 3]>, room: usize) -> Vec<Entry> {
     let last = missing.map(|color| (MISSING.to_owned(), Some(color)));
     let room = room.max(2);
@@ -153,7 +153,7 @@ fn row(block: &mut Block, (name, color): &Entry, [x, y]: [f32; 2], em: f32) {
     match color {
         Some(color) => {
             let center = [x + 0.5 * em, y];
-            // A thin line around it, so that a colour like the background is seen.
+            // A thin outline shows a disk whose colour is like the background.
             let line = (0.06 * em).max(0.6);
             block.shapes.push(Shape::Disk {
                 center,

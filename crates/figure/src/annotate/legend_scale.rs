@@ -7,7 +7,7 @@ use crate::color_by::ColorScale;
 
 pub(super) const MISSING: &str = "no value";
 
-/// A bar that stands, with its high end on top, ticks to its right and the title above.
+/// A vertical bar with its high end at the top, ticks to its right and the title above.
 pub(super) fn vertical(
     scale: &ColorScale,
     title: &str,
@@ -48,7 +48,7 @@ pub(super) fn vertical(
     block
 }
 
-/// A bar that lies, with its high end at the right, ticks below and the title above.
+/// A horizontal bar with its high end at the right, ticks below and the title above.
 pub(super) fn horizontal(
     scale: &ColorScale,
     title: &str,
@@ -59,7 +59,7 @@ pub(super) fn horizontal(
     let line = line_width(em);
     let bar_height = (1.1 * em).round();
     let bar_width = (0.4 * width).max(12.0 * em).min(0.75 * width).round().max(1.0);
-    // As many ticks as have room for their texts.
+    // Chooses the most ticks whose texts have room.
     let fits = |ticks: &Ticks| {
         let widths = ticks.labeled.iter().map(|(_, text)| font::width(text, em) + em);
         widths.sum::<f32>() <= bar_width
@@ -68,7 +68,7 @@ pub(super) fn horizontal(
     let ticks = choices.into_iter().find(fits).unwrap_or_else(|| Ticks::of(scale.scale(), 2));
     let columns = bar_width as usize;
     let column_of = |value: f64| pixel_at(scale, value, columns) as f32;
-    // The first and the last text may reach beyond the bar.
+    // The first and the last text may extend beyond the bar.
     let overhang = |(value, text): &(f64, String)| {
         let half = 0.5 * font::width(text, em);
         (half - column_of(*value)).max(half - (bar_width - column_of(*value))).max(0.0)
@@ -108,7 +108,7 @@ pub(super) fn horizontal(
     block
 }
 
-/// Draws ticks from an edge of a bar, and returns where the long ones end.
+/// Draws ticks from an edge of a bar, and returns the end of the long ticks.
 fn draw_ticks(
     block: &mut Block,
     ticks: &Ticks,
@@ -128,7 +128,7 @@ fn draw_ticks(
     long
 }
 
-/// The title, and the power of ten of the numbers below.
+/// The title, and the power of ten by which the numbers below are multiplied.
 fn head(title: &str, exponent: i32, em: f32) -> Block {
     let mut block = Block::default();
     block.lines(title, em);
@@ -141,7 +141,7 @@ fn head(title: &str, exponent: i32, em: f32) -> Block {
     block
 }
 
-/// The pixel of a bar that is nearest to a position, counted from the low end. The first is at 0, the last at 1.
+/// The pixel of a bar that is nearest to a position. Pixels count from the low end; the first is at 0, the last at 1.
 fn pixel_of(position: f64, count: usize) -> usize {
     let last = count.saturating_sub(1);
     ((position * last as f64).round() as usize).min(last)
@@ -152,8 +152,8 @@ fn pixel_at(scale: &ColorScale, value: f64, count: usize) -> usize {
     pixel_of(scale.scale().position(value).unwrap_or(0.0), count)
 }
 
-/// The colours of a bar from its low end. The first and the last pixel have the colours of the ends, and one with a tick
-/// has exactly the colour of the tick's number.
+/// The colours of a bar from its low end. The first and the last pixel have the colours of the ends. A pixel with a
+/// tick has exactly the colour of the tick's number.
 fn bar_colors(scale: &ColorScale, count: usize, ticks: &Ticks) -> Vec<[u8; 3]> {
     let position = |pixel: usize| pixel as f64 / count.saturating_sub(1).max(1) as f64;
     let mut colors: Vec<[u8; 3]> =
@@ -185,7 +185,7 @@ mod tests {
         ranges.into_iter().flat_map(|range| maps.iter().map(move |map| of(range, map))).collect()
     }
 
-    /// Draws a block on white with its corner at (20, 10), and returns a function that gives its pixels.
+    /// Draws a block on white with its corner at (20, 10), and returns a function that reads its pixels.
     fn drawn(block: &Block) -> impl Fn(i64, i64) -> [u8; 3] {
         let mut samples = vec![255; (3 * SIZE[0] * SIZE[1]) as usize];
         let mut canvas = Canvas::new(SIZE, 3, Bits::Eight, &mut samples).unwrap();
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// Left and top, thickness and colours.
+    /// The left and top edge of the bar, its thickness and its colours.
     fn bar(block: &Block) -> ([i64; 2], i64, &[[u8; 3]]) {
         let bar = block.shapes.iter().find_map(|shape| match shape {
             Shape::Bar { place, thickness, colors, .. } => Some((*place, *thickness, &colors[..])),

@@ -1,8 +1,8 @@
 //! Legends, scale bars and labels, drawn over an encoded picture.
 //!
 //! Annotations are drawn on the samples of a PNG, after exposure and tone curve, so that neither changes them: the bar
-//! of a legend has exactly the colours that the map gives. Light does change the colours of spheres, which are brighter
-//! or darker than the bar; with flat shading they are equal. Layers of data and EXR pictures are never drawn on.
+//! of a legend has exactly the colours of the map. Light does make spheres brighter or darker than the bar; with flat
+//! shading they have its colours. Nothing is ever drawn on layers of data and EXR pictures.
 //!
 //! ```
 //! use pinhole_figure::annotate::{Annotation, Annotations, Canvas, Label, Position};
@@ -34,13 +34,13 @@ pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 use canvas::Block;
 use place::{GAP, PADDING, origin};
 
-/// What is drawn over a picture.
+/// An annotation of a picture.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Annotation {
-    /// What colours mean.
+    /// The meaning of colours.
     Legend(Legend),
-    /// How long a length is.
+    /// The size of a length in the picture.
     ScaleBar(ScaleBar),
     /// A text.
     Label(Label),
@@ -49,7 +49,7 @@ pub enum Annotation {
 /// All annotations of a picture. Those with the same [`Anchor`] are stacked in this order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Annotations {
-    /// What is drawn.
+    /// The annotations.
     pub items: Vec<Annotation>,
     /// The size of text relative to the default, which is 1/36 of the picture's height and at least 10 pixels.
     pub text_scale: f32,
@@ -69,20 +69,20 @@ impl Annotations {
     /// The smallest and the largest [`Annotations::text_scale`].
     pub const TEXT_SCALES: [f32; 2] = [0.2, 10.0];
 
-    /// These annotations and one more.
+    /// Returns these annotations with one more.
     #[must_use]
     pub fn with(mut self, item: Annotation) -> Self {
         self.items.push(item);
         self
     }
 
-    /// Whether nothing is drawn.
+    /// Whether there are no annotations.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }
 
-    /// All texts that the user chose, to look for characters that the font lacks; see [`missing_characters`].
+    /// The texts that the user chose, for a search for characters that the font lacks; see [`missing_characters`].
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.items.iter().map(|item| match item {
             Annotation::Legend(legend) => legend.title(),
@@ -107,20 +107,20 @@ impl Annotations {
         self.items.iter().map(block).collect()
     }
 
-    /// The size of text in pixels: that of the letter M is about 0.7 of it.
+    /// The size of text in pixels. The letter M is about 0.7 of it high.
     fn em(&self, [width, height]: [u32; 2]) -> f32 {
         let [low, high] = Self::TEXT_SCALES;
         let scale = if self.text_scale.is_nan() { 1.0 } else { self.text_scale.clamp(low, high) };
-        // A picture that is much higher than wide has text that fits its width.
+        // The text of a picture that is much higher than wide must fit its width.
         let height = (height as f32).min(1.5 * width as f32);
         scale * (height / 36.0).max(10.0)
     }
 }
 
 impl Annotations {
-    /// The part of a picture of this size in pixels that must be free so that nothing lies under the legend: on the
-    /// left, the right, the bottom and the top, as fractions of the width and the height. Of the sides the one is free
-    /// that takes the smallest part; if that is more than `most`, or if there is no legend, none is.
+    /// The part of a picture of this size in pixels that must stay free so that nothing lies under the legend: on the
+    /// left, right, bottom and top, as fractions of the width and the height. Only the side with the smallest part is
+    /// free. All are 0 if this part is larger than `most`, or if there is no legend.
     pub(crate) fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
         let none = [0.0; 4];
         let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_));
@@ -150,14 +150,14 @@ impl Annotations {
 pub struct Label {
     /// The text.
     pub text: String,
-    /// Where it lies.
+    /// The position of the text.
     pub position: Position,
 }
 
 impl Label {
     fn block(&self, em: f32) -> Block {
         let mut block = Block::default();
-        // Somewhat larger than the numbers of a legend.
+        // Labels are somewhat larger than the numbers of a legend.
         block.lines(&self.text, 1.15 * em);
         block
     }

@@ -1,4 +1,4 @@
-//! Places of annotations in the picture, and colours that can be read there.
+//! Places of annotations in the picture, and colours that are readable there.
 
 use std::str::FromStr;
 
@@ -11,7 +11,7 @@ const MARGIN: f32 = 1.2;
 /// The distance between annotations of one corner, relative to the size of text.
 pub(super) const GAP: f32 = 0.9;
 
-/// How far a panel reaches beyond its annotation, relative to the size of text.
+/// Distance by which a panel extends beyond its annotation, relative to the size of text.
 pub(super) const PADDING: f32 = 0.6;
 
 const PANEL_OPACITY: f32 = 0.8;
@@ -24,7 +24,7 @@ const WHITE: [u8; 3] = [255; 3];
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Panel {
-    /// Where the picture behind it is too mixed for black or white text.
+    /// A panel where the picture behind is too mixed for black or white text.
     #[default]
     Auto,
     /// Always.
@@ -33,7 +33,7 @@ pub enum Panel {
     Never,
 }
 
-/// Places and draws all blocks. Without a colour, each has the one that can be read.
+/// Places and draws all blocks. Without `color`, each gets black or white, whichever is readable.
 pub(super) fn draw(
     blocks: &[(Position, Block)],
     em: f32,
@@ -76,7 +76,7 @@ pub(super) fn origin(
             margin + fy * (height - 2.0 * margin - all) + heights(&blocks[..index])
         }
     };
-    // What is too large for the picture is cut at its right and bottom.
+    // A block that is too large for the picture is cut at its right and bottom.
     [x, y].map(|place| place.max(0.0).round() as i64)
 }
 
@@ -97,7 +97,7 @@ fn draw_block(
     ];
     let lumas = lumas(behind, canvas);
     let mean = lumas.iter().sum::<f32>() / lumas.len().max(1) as f32;
-    // With little light and with much of it, one of the two is easy to read; grey counts as light.
+    // Black or white is easy to read on light or dark grounds. A middle grey counts as light.
     let ink = color.unwrap_or(if mean < 0.45 { WHITE } else { BLACK });
     let ink_luma =
         (0.2126 * f32::from(ink[0]) + 0.7152 * f32::from(ink[1]) + 0.0722 * f32::from(ink[2]))
@@ -115,7 +115,7 @@ fn draw_block(
     block.draw(origin, ink, canvas);
 }
 
-/// The lumas of the pixels behind an annotation, or of every n-th of them if they are many.
+/// The lumas of the pixels behind an annotation, or of every n-th pixel if there are many.
 fn lumas([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> Vec<f32> {
     let [width, height] = canvas.size();
     let clamped = |x: f32, most: u32| (x.max(0.0) as u32).min(most);
@@ -165,7 +165,7 @@ impl Anchor {
         self.row().0
     }
 
-    /// The fractions of the picture's width and height, from the top left.
+    /// The position as fractions of the picture's width and height, from the top left.
     const fn fractions(self) -> [f32; 2] {
         self.row().1
     }
@@ -184,13 +184,13 @@ impl Anchor {
     }
 }
 
-/// Where an annotation lies.
+/// The position of an annotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Position {
     /// At a corner, or in the middle of a side.
     Anchor(Anchor),
     /// At fractions of the picture's width and height from the top left: `[0, 0]` is the top left corner, `[1, 1]` the
-    /// bottom right one. The same fractions of the annotation lie there, so that it is always inside the picture.
+    /// bottom right one. The same fractions of the annotation lie there, so that the annotation is always inside.
     At([f32; 2]),
 }
 
@@ -215,7 +215,7 @@ impl Position {
     }
 }
 
-/// A text is not a position.
+/// The error of a text that is not a position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{text}` is not a position; write top-left, top, top-right, left, right, bottom-left, bottom or bottom-right, or \

@@ -1,4 +1,4 @@
-//! What a user asks for, before the scene is known.
+//! The annotations that a user wants, before the scene is known.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::{Film, YAxis};
 use pinhole::geometry::subject::Subject;
 
-/// The annotations that a user asks for, in a scene file or with flags.
+/// The annotations that a user wants, from a scene file or flags.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnnotationPlan {
     /// A legend.
@@ -27,48 +27,48 @@ pub struct AnnotationPlan {
     pub panel: Option<Panel>,
 }
 
-/// A legend that a user asks for.
+/// A legend that a user wants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LegendPlan {
-    /// The title; without one it is the name of the column.
+    /// The title; by default the name of the column.
     pub title: Option<String>,
-    /// Where it lies; without one in the middle of the right side.
+    /// The position; by default the middle of the right side.
     pub position: Option<Position>,
 }
 
-/// A scale bar that a user asks for.
+/// A scale bar that a user wants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScaleBarPlan {
-    /// The length in scene units; without one it is a round number that suits the picture.
+    /// The length in scene units; by default a round number that suits the picture.
     pub length: Option<f64>,
     /// The unit; it may be empty.
     pub unit: String,
-    /// Where it lies; without one in the bottom left corner.
+    /// The position; by default the bottom left corner.
     pub position: Option<Position>,
 }
 
-/// Why there are no annotations.
+/// The reason why annotations are impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AnnotationError {
-    /// A legend was asked for, but colours do not come from a column.
+    /// A legend is wanted, but colours do not come from a column.
     #[error(
         "a legend shows what colors mean, but no column gives colors; color the spheres by a column"
     )]
     NoKey,
-    /// There is no scale bar.
+    /// A scale bar is impossible.
     #[error(transparent)]
     ScaleBar(#[from] ScaleBarError),
 }
 
 impl AnnotationPlan {
-    /// Whether nothing is to be drawn.
+    /// Whether there is nothing to draw.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()
     }
 
-    /// The labels and the legend, which do not depend on the camera.
+    /// Returns the labels and the legend, which do not depend on the camera.
     fn without_camera(&self, key: Option<&ColorKey>) -> Result<Annotations, AnnotationError> {
         let mut drawn = Annotations { color: self.color, ..Annotations::default() };
         drawn.text_scale = self.text_scale.unwrap_or(drawn.text_scale);
@@ -84,7 +84,7 @@ impl AnnotationPlan {
     }
 
     /// The parts of a film that a camera must leave free so that no sphere lies under the legend, for
-    /// [`Subject::with_free_sides`]. There are none if there is no legend, no key, or no room for it.
+    /// [`Subject::with_free_sides`]. All are 0 if there is no legend, no key, or no room.
     #[must_use]
     pub fn free_sides(&self, key: Option<&ColorKey>, film: Film) -> [f64; 4] {
         let drawn = self.without_camera(key).unwrap_or_default();
@@ -96,8 +96,8 @@ impl AnnotationPlan {
         }
     }
 
-    /// The annotations of a picture, and notes for the user. `key` is what colours mean, if a column gives them; a scale
-    /// bar is true at the depth of `middle`, the middle of the scene.
+    /// Returns the annotations of a picture, and notes for the user. `key` explains the colours, if a column gives
+    /// them. A scale bar is true at the depth of `middle`, the middle of the scene.
     ///
     /// # Errors
     /// Returns an error if there is no key for a legend, or a scale bar has no meaning or does not fit.

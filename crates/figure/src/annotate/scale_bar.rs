@@ -1,4 +1,4 @@
-//! Scale bars: how long a length is in the picture.
+//! Scale bars show the size of a length in the picture.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use pinhole::camera::View;
 /// A bar with the length of a round number of scene units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleBar {
-    /// Where it lies.
+    /// The position of the bar.
     pub position: Position,
     /// The unit of a length in the scene, such as Å; it may be empty.
     pub unit: String,
@@ -20,16 +20,16 @@ pub struct ScaleBar {
     pixels: f64,
 }
 
-/// Why there is no scale bar, on one line.
+/// The reason why there is no scale bar, on one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct ScaleBarError(String);
 
-/// How many pixels a length of 1 across the picture has at the depth of `point`. For an orthographic camera that does
-/// not depend on the point. A camera with a lens has the scale of the ray through the centre of its lens.
+/// The number of pixels that a length of 1 across the picture takes at the depth of `point`. For an orthographic camera
+/// it does not depend on the point. A camera with a lens has the scale of the ray through the centre of its lens.
 ///
 /// # Errors
-/// Returns an error if the camera is not one that keeps straight lines straight, or if it does not see the point.
+/// Returns an error if the camera bends straight lines, or if it does not see the point.
 pub fn pixels_per_unit(view: &View<'_>, point: DVec3) -> Result<f64, ScaleBarError> {
     let kind = view.camera.kind();
     if !kind.is_linear() {
@@ -40,7 +40,7 @@ pub fn pixels_per_unit(view: &View<'_>, point: DVec3) -> Result<f64, ScaleBarErr
         )));
     }
     let vectors = view.camera.vectors();
-    // Any length gives the same quotient; this one keeps digits.
+    // Any length gives the same quotient; this one loses few digits.
     let across = 0.5 * vectors.right * (point - vectors.origin).length().max(1.0)
         / vectors.forward.length().max(1.0);
     let behind = || {
@@ -54,8 +54,8 @@ pub fn pixels_per_unit(view: &View<'_>, point: DVec3) -> Result<f64, ScaleBarErr
 }
 
 impl ScaleBar {
-    /// A scale bar in the bottom left corner of a picture that is `width` pixels wide, where a length of 1 has
-    /// `pixels_per_unit` pixels. Without a `length`, it is a round number, about a sixth of the width.
+    /// A scale bar in the bottom left corner of a picture that is `width` pixels wide, where a length of 1
+    /// takes `pixels_per_unit` pixels. The default `length` is a round number, about a sixth of the width.
     ///
     /// # Errors
     /// Returns an error if the length is not a positive number, or too long or too short to be seen.

@@ -6,9 +6,9 @@ use crate::color_by::Scale;
 pub(super) struct Ticks {
     /// Numbers with texts, in ascending order.
     pub(super) labeled: Vec<(f64, String)>,
-    /// Numbers without texts, between those of a logarithmic scale.
+    /// Numbers without texts, between the labelled numbers of a logarithmic scale.
     pub(super) minor: Vec<f64>,
-    /// The power of ten by which the texts are to be multiplied, if it is not 0.
+    /// The power of ten by which the texts must be multiplied, if it is not 0.
     pub(super) exponent: i32,
 }
 
@@ -22,11 +22,11 @@ impl Ticks {
     }
 }
 
-/// 1, 2 or 5 times a power of ten: the largest such number that is not larger than `value`, which is positive.
+/// The largest number that is at most `value` and 1, 2 or 5 times a power of ten. `value` is positive.
 pub(super) fn round_down(value: f64) -> f64 {
     let power = 10_f64.powi(exponent_of(value));
     let mantissa = value / power;
-    // A little less, so that a rounded quotient counts as the number that it should be.
+    // The margin makes a rounded quotient count as the number that it should be.
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| mantissa >= step * (1.0 - 1e-12));
     step.unwrap_or(1.0) * power
 }
@@ -37,7 +37,7 @@ fn exponent_of(value: f64) -> i32 {
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
-/// Steps of 1, 2, 2.5 or 5 times a power of ten.
+/// Ticks at multiples of 1, 2, 2.5 or 5 times a power of ten.
 fn linear([low, high]: [f64; 2], most: usize) -> Ticks {
     let span = (high - low).min(f64::MAX);
     let least = span / most as f64;
@@ -58,10 +58,10 @@ fn linear([low, high]: [f64; 2], most: usize) -> Ticks {
     let largest = low.abs().max(high.abs());
     let is_plain = (1e-3..1e5).contains(&largest) || largest / step > 1e5;
     let exponent = if is_plain { 0 } else { exponent_of(largest) };
-    // In two steps, because a power below the smallest normal number loses digits.
+    // The division has two steps, because a power below the smallest normal number loses digits.
     let scaled =
         |value: f64| value / 10_f64.powi(exponent / 2) / 10_f64.powi(exponent - exponent / 2);
-    // The fewest that write the step.
+    // The fewest decimals that write the step exactly.
     let is_whole = |value: f64| (value - value.round()).abs() < 1e-6 * value;
     let decimals = (0..=12).find(|digits| is_whole(scaled(step) * 10_f64.powi(*digits)));
     let decimals = decimals.unwrap_or(3) as usize;
@@ -73,7 +73,7 @@ fn linear([low, high]: [f64; 2], most: usize) -> Ticks {
     }
 }
 
-/// Powers of ten, and within less than two of them also 2 and 5 times these. `None` if there are fewer than two.
+/// Ticks at powers of ten and, within less than two powers, at 2 and 5 times these. `None` for fewer than two.
 fn logarithmic([low, high]: [f64; 2], most: usize) -> Option<Ticks> {
     let (first, last) = (exponent_of(low), exponent_of(high));
     let is_inside = |value: &f64| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value);
@@ -127,7 +127,7 @@ pub(super) fn raised(exponent: i32) -> String {
     exponent.to_string().chars().map(raised).collect()
 }
 
-/// The text of a number with a minus sign in place of a hyphen, and zero without one.
+/// Replaces the hyphen of a number by a minus sign, and removes that of zero.
 pub(super) fn minus(text: &str) -> String {
     match text.strip_prefix('-') {
         Some(digits) if digits.contains(|c: char| ('1'..='9').contains(&c)) => format!("−{digits}"),
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(ticks.minor.len(), 16);
     }
 
-    /// Whatever the range is, there are few ticks, in order, inside of it.
+    /// Whatever the range, there are few ticks, in order and inside the range.
     #[test]
     fn ticks_lie_in_the_range() {
         let mut random = fastrand::Rng::with_seed(7);

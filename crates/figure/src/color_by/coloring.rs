@@ -1,4 +1,4 @@
-//! Colours of numbers on a scale, and of categories: texts, and few different whole numbers.
+//! Colours for numbers on a scale, and for categories: texts, or a small number of different whole numbers.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -15,12 +15,12 @@ use pinhole_data::column;
 use pinhole_data::column::BUILT_IN;
 use pinhole_data::load::Labels;
 
-/// Different whole numbers that become categories unless a map or a range is chosen.
+/// The most different whole numbers that become categories by default.
 const MOST_CATEGORIES: usize = 8;
 
 impl ColorBy {
-    /// Whether the numbers of a column are categories: those for which a palette is chosen, and few different whole
-    /// numbers for which nothing is chosen that needs a scale.
+    /// Whether the numbers of a column are categories. They are if a palette is chosen, or if they are few
+    /// different whole numbers and no choice needs a scale.
     pub(super) fn are_categories(
         &self,
         found: &column::NamedColumn<'_>,
@@ -98,7 +98,7 @@ impl ColorBy {
         })
     }
 
-    /// Chooses the scale, and notes it if it comes from the values.
+    /// Chooses the scale, and adds a note if it comes from the values.
     fn scale(
         &self,
         column: &str,
@@ -173,14 +173,14 @@ fn around(value: f64, is_log: bool) -> [f64; 2] {
     [(value - half).max(f64::MIN), (value + half).min(f64::MAX)]
 }
 
-/// Different numbers that a palette may be used for.
+/// The most different numbers for which a palette may be used.
 const MOST_NUMBERS: usize = 256;
 
 const NONE: u32 = u32::MAX;
 
 impl ColorBy {
-    /// Colours texts. Their order is that of whole numbers, if all are, and otherwise alphabetic, so that a text has the
-    /// same colour in every frame that has the same texts. Empty texts are missing values.
+    /// Colours texts. Texts are ordered as whole numbers if all are whole numbers, and otherwise alphabetically, so
+    /// that they have the same colours in every frame with the same texts. Empty texts are missing values.
     pub(super) fn color_labels(
         &self,
         column: &str,
@@ -274,7 +274,7 @@ impl ColorBy {
     }
 
     /// Gives colours to categories, each a name and the number of its spheres. `indices` has the category of each
-    /// sphere, or [`NONE`]. `others` of these have a value that is not among the given categories.
+    /// sphere, or [`NONE`]. `others` is the number of spheres whose value is not among the given categories.
     fn color_categories(
         &self,
         column: &str,
@@ -297,7 +297,7 @@ impl ColorBy {
             if map.is_palette() {
                 return colors[category % colors.len()];
             }
-            // Spread over the whole map; a single category has its middle.
+            // Categories are spread over the whole map. A single category has the middle colour.
             let position = if count > 1 { category as f64 / (count - 1) as f64 } else { 0.5 };
             colors[entry(position, colors.len())]
         };
@@ -343,8 +343,8 @@ impl ColorBy {
     }
 }
 
-/// Puts categories, each a name and the number of its spheres, into the given order. Those that are not given are counted in
-/// `others`.
+/// Puts categories, each a name and the number of its spheres, into the given order. Spheres of other categories are
+/// counted in `others`.
 fn given_categories(
     given: &[String],
     found: &[(String, usize)],
@@ -373,7 +373,7 @@ fn given_categories(
     given.iter().cloned().zip(counts).collect()
 }
 
-/// The order of categories with these names: that of whole numbers, if all are, and otherwise alphabetic.
+/// The order of categories with these names: that of whole numbers if all are, and otherwise alphabetic.
 pub(super) fn order<'a>(mut names: impl Iterator<Item = &'a str>) -> fn(&str, &str) -> Ordering {
     fn whole(name: &str) -> Option<i64> {
         name.parse().ok()

@@ -1,11 +1,11 @@
-//! Why a column does not give colours, radii, opacities or strengths.
+//! The error of a column that cannot give colours, radii, opacities or strengths of light.
 
 use super::scale::ScaleError;
 use pinhole::scene::SceneError;
 use pinhole_data::added::AddError;
 use pinhole_data::column::ColumnError;
 
-/// Why a column does not give colours, radii, opacities or strengths of light.
+/// The reason why a column does not give colours, radii, opacities or strengths of light.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorByError {
@@ -15,7 +15,7 @@ pub enum ColorByError {
     /// The range is wrong.
     #[error("the range of the colors: {0}")]
     Scale(#[from] ScaleError),
-    /// The values, the range or the factor cannot be used as they were asked for.
+    /// The values, the range or the factor do not suit the request.
     #[error("{0}")]
     Values(String),
     /// A sphere is out of range.

@@ -1,15 +1,14 @@
-//! Colours with one meaning in several frames, and colours of data that gives none, but says of what kinds its spheres
-//! are.
+//! Colours with one meaning in several frames, and colours for data without colours by the kinds of their spheres.
 
 use super::coloring::order;
 use super::key::{ColorKey, KeyKind};
 use super::{ColorBy, Limit, Limits};
 use pinhole_data::load::Dataset;
 
-/// What colours mean in several frames of a trajectory together, so that equal values have equal colours in all of them.
+/// The meaning of colours in all frames of a trajectory, so that equal values have equal colours in each frame.
 ///
-/// If the values of any frame are on a scale, the range of all frames is used, and whole numbers that are categories in
-/// other frames count for it. Otherwise the categories of all frames are used, in the order in which one frame has them.
+/// If the values of any frame are on a scale, the scale covers the range of all frames. It includes whole numbers that
+/// are categories in other frames. Otherwise the categories of all frames are used, in the order of a single frame.
 ///
 /// ```
 /// use pinhole_figure::color_by::{ColorBy, JoinedKeys};
@@ -37,7 +36,7 @@ pub struct JoinedKeys {
 }
 
 impl JoinedKeys {
-    /// What [`JoinedKeys::range`], [`JoinedKeys::names`] and [`JoinedKeys::missing`] of another process returned.
+    /// Makes keys from the results of [`JoinedKeys::range`], [`JoinedKeys::names`] and [`JoinedKeys::missing`].
     #[must_use]
     pub fn new(range: Option<[f64; 2]>, names: Vec<String>, missing: Option<[u8; 3]>) -> Self {
         Self { range, names, missing }
@@ -55,7 +54,7 @@ impl JoinedKeys {
         &self.names
     }
 
-    /// Adds what colours mean in a frame.
+    /// Adds the meaning of colours in a frame.
     pub fn add(&mut self, key: &ColorKey) {
         self.missing = self.missing.or(key.missing);
         match &key.kind {
@@ -75,7 +74,7 @@ impl JoinedKeys {
         self.range = Some([l.min(low), h.max(high)]);
     }
 
-    /// Gives a frame's colours the range or the categories of all frames. Without any frame, nothing is changed.
+    /// Gives a frame's colours the range or the categories of all frames. If no frame was added, nothing changes.
     pub fn apply_to(&self, by: &mut ColorBy) {
         if self.range.is_some() {
             let mut all = self.clone();
@@ -93,22 +92,22 @@ impl JoinedKeys {
         }
     }
 
-    /// The colour of spheres without a value, in 8-bit sRGB; `None` if all spheres of all frames have one.
+    /// The colour of spheres without a value, in 8-bit sRGB; `None` if every sphere of every frame has a value.
     #[must_use]
     pub fn missing(&self) -> Option<[u8; 3]> {
         self.missing
     }
 }
 
-/// Names of the columns of kinds, of which the first is taken.
+/// Names of the columns with the kinds of spheres. The first that is suitable is used.
 const KINDS: [&str; 2] = ["species", "type"];
 
 /// More kinds than this cannot be told apart by colour.
 const MOST_KINDS: usize = 32;
 
 impl ColorBy {
-    /// Colours by the kinds of spheres that have no colours: by the column `species` or else `type`, if it is text, and
-    /// there are from 2 to 32 kinds to tell apart. `None` if the data gives colours or says no kinds.
+    /// Colours spheres by their kinds: by the column `species` or else `type`, if it is text with 2 to 32 different
+    /// kinds. `None` if the data has colours, or no such column.
     #[must_use]
     pub fn of_kinds(loaded: &Dataset) -> Option<Self> {
         if loaded.colors.is_some() {

@@ -1,8 +1,8 @@
-//! What colours mean, for legends.
+//! The meaning of colours, for legends.
 
 use super::scale::{Scale, entry};
 
-/// What the colours of a column mean.
+/// The meaning of a column's colours.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ColorKey {
@@ -10,7 +10,7 @@ pub struct ColorKey {
     pub title: String,
     /// The scale or the categories.
     pub kind: KeyKind,
-    /// The colour of spheres without a value in 8-bit sRGB; `None` if all spheres have one.
+    /// The colour of spheres without a value in 8-bit sRGB; `None` if every sphere has a value.
     pub missing: Option<[u8; 3]>,
 }
 
@@ -27,11 +27,11 @@ pub enum KeyKind {
 /// A category and its colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Category {
-    /// The text or the whole number that all its spheres have.
+    /// The text or the whole number that all spheres of the category have.
     pub name: String,
     /// The colour in 8-bit sRGB.
     pub color: [u8; 3],
-    /// How many spheres it has.
+    /// The number of spheres of the category.
     pub count: usize,
 }
 
@@ -61,13 +61,13 @@ impl ColorScale {
         &self.colors
     }
 
-    /// The index of the colour of a number; `None` if the scale does not show it.
+    /// The index of the colour of a number; `None` if the number has no place on the scale.
     #[must_use]
     pub fn index(&self, value: f64) -> Option<usize> {
         self.scale.position(value).map(|position| entry(position, self.colors.len()))
     }
 
-    /// The colour of a number in 8-bit sRGB; `None` if the scale does not show it.
+    /// The colour of a number in 8-bit sRGB; `None` if the number has no place on the scale.
     #[must_use]
     pub fn color(&self, value: f64) -> Option<[u8; 3]> {
         self.colors.get(self.index(value)?).copied()

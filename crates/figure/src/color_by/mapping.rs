@@ -1,4 +1,4 @@
-//! Everything of spheres that columns may decide, together.
+//! All properties of spheres that columns may determine, together.
 
 use std::collections::HashMap;
 
@@ -13,17 +13,17 @@ use pinhole_data::added::{AddedSpheres, Additions, Base};
 use pinhole_data::column::numbers;
 use pinhole_data::load::{Column, Dataset};
 
-/// What columns decide of spheres: colour, radius, opacity, strength of light, each if it is given.
+/// The columns that determine colour, radius, opacity and strength of light, each if it is given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapping {
     /// The colours.
     pub color: Option<ColorBy>,
     /// The radii.
     pub radius: Option<RadiusBy>,
-    /// The column of the opacities, from 0 to 1; others are clamped, with a note. They are rounded to 256 levels.
+    /// The column of the opacities from 0 to 1, rounded to 256 levels. Others are clamped, with a note.
     pub opacity: Option<String>,
-    /// The strengths of light, which make spheres emit light in their colour. They are rounded to 255 levels, with equal
-    /// ratios between them, and 0.
+    /// The strengths of light, which make spheres emit light in their colour. They are rounded to 0 and 255 levels with
+    /// equal ratios between them.
     pub emission: Option<EmissionBy>,
 }
 
@@ -36,7 +36,7 @@ pub struct RadiusBy {
     pub factor: f64,
 }
 
-/// What columns gave to spheres; see [`Mapping::apply`].
+/// The properties of spheres from columns; see [`Mapping::apply`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MappedColumns {
     coloring: Option<Coloring>,
@@ -46,13 +46,13 @@ pub struct MappedColumns {
 }
 
 impl Mapping {
-    /// Whether columns decide nothing.
+    /// Whether no column is given.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// This mapping, and where it says nothing, `other`.
+    /// Returns this mapping, completed by `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Mapping {
     }
 
     /// Looks up the columns. Radii are written to `spheres`; colours, opacities and strengths of light are returned.
-    /// `left_out` says for each sphere whether it is left out of the picture; it may be empty.
+    /// `left_out` has true for each sphere that is left out of the picture; it may be empty.
     ///
     /// # Errors
     /// Returns an error if there is no such column, or its values cannot be used.
@@ -96,8 +96,8 @@ impl Mapping {
         Ok(mapped)
     }
 
-    /// Makes a scene of a file's spheres, and returns what its columns gave beside it. Spheres that neither a column nor
-    /// the file gives a colour have `color`. Opacities are those of the column, or else of the file.
+    /// Makes a scene from a file's spheres, and returns it with the properties from columns. Spheres without a colour
+    /// from a column or the file have `color`. Opacities are those of the column, or else of the file.
     ///
     /// # Errors
     /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
@@ -110,11 +110,11 @@ impl Mapping {
         Ok((scene, mapped))
     }
 
-    /// Makes a scene like [`Mapping::scene`], with bonds or the edges of the cell after the spheres of the file. They do
-    /// not count for the range of colours.
+    /// Makes a scene like [`Mapping::scene`], with bonds or the edges of the cell after the spheres of the file. Added
+    /// spheres do not affect the range of colours.
     ///
     /// # Errors
-    /// The errors of [`Mapping::scene`], and an error if the file lacks what the additions need.
+    /// Returns the errors of [`Mapping::scene`], and an error if the file lacks data for the additions.
     pub fn scene_with(
         &self,
         mut loaded: Dataset,
@@ -155,7 +155,7 @@ fn set_radii(
     check_factor(column, factor)?;
     for (index, value) in values.iter().enumerate() {
         let value = value * factor;
-        // A radius in f32 must not become zero either.
+        // A radius must not become zero in f32 either.
         if !(value.is_finite() && value as f32 > 0.0) && is_kept(left_out, index) {
             return Err(ColorByError::Values(format!(
                 "sphere {index} would have the radius {}; a radius from `{column}` must be finite and greater than 0",
@@ -176,7 +176,7 @@ fn set_radii(
 }
 
 impl MappedColumns {
-    /// What the colours mean, if columns gave colours.
+    /// The meaning of the colours, if columns gave colours.
     #[must_use]
     pub fn key(&self) -> Option<&ColorKey> {
         self.coloring.as_ref().map(|coloring| &coloring.key)
@@ -194,7 +194,7 @@ impl MappedColumns {
         self.coloring.as_ref()?.color(index)
     }
 
-    /// The surface properties of a sphere that would have those of `base`.
+    /// The surface properties of a sphere. `base` gives those that no column determines.
     #[must_use]
     pub fn surface(&self, base: SurfaceProperties, index: usize) -> SurfaceProperties {
         let levels = self.levels(index);
@@ -219,7 +219,7 @@ impl MappedColumns {
         SurfaceProperties { material, opacity: base.opacity * opacity }
     }
 
-    /// The appearance of `count` spheres that would have the colours and surface properties given here.
+    /// The appearance of `count` spheres. `colors` and `base` apply where no column determines colours and surfaces.
     #[must_use]
     pub fn appearance(&self, count: usize, colors: Colors, base: SurfaceProperties) -> Appearance {
         let mut surfaces = Vec::new();
@@ -231,7 +231,7 @@ impl MappedColumns {
                     let levels = self.levels(index);
                     *known.entry(levels).or_insert_with(|| {
                         surfaces.push(self.of_levels(base, levels));
-                        // There are at most 256 levels of each.
+                        // There are at most 256 levels of opacity and of strength.
                         surfaces.len() as u32 - 1
                     })
                 })
@@ -258,7 +258,7 @@ pub struct EmissionBy {
 const STRONGEST: f64 = 1e6;
 
 /// Levels of opacity for numbers from 0 to 1: byte 0 is clear, byte 255 is opaque. Numbers outside are clamped, and
-/// missing ones are opaque; notes count both.
+/// missing ones are opaque. Notes have the numbers of both.
 pub(super) fn opacities(column: &str, values: &[f64], notes: &mut Vec<String>) -> Vec<u8> {
     let (mut outside, mut missing) = (0_usize, 0_usize);
     let mut level = |value: &f64| {
@@ -282,15 +282,15 @@ pub(super) fn opacities(column: &str, values: &[f64], notes: &mut Vec<String>) -
     levels
 }
 
-/// Strengths of light: for each sphere the index of its level in `strengths`, of which there are at most 256.
+/// Strengths of light. Each sphere has the index of a level in `strengths`, which has at most 256 levels.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Strengths {
     pub(super) strengths: Vec<f32>,
     pub(super) indices: Vec<u8>,
 }
 
-/// Turns numbers into strengths. Equal ratios are equal steps between levels, because light strengths differ by powers
-/// of ten. Level 0 is dark.
+/// Turns numbers into strengths. Levels have equal ratios, because light strengths differ by powers of ten. Level 0 is
+/// dark.
 pub(super) fn strengths(
     by: &EmissionBy,
     column: &str,
@@ -298,7 +298,7 @@ pub(super) fn strengths(
     notes: &mut Vec<String>,
 ) -> Result<Strengths, ColorByError> {
     check_factor(column, by.factor)?;
-    // NaN is dark.
+    // NaN becomes dark.
     let strength = |value: &f64| {
         if *value > 0.0 { (value * by.factor).min(STRONGEST) } else { 0.0 }
     };
@@ -377,7 +377,7 @@ mod tests {
         let of = |index: usize| found.strengths[usize::from(found.indices[index])];
         for (index, value) in values.iter().enumerate() {
             let exact = if *value > 0.0 { 2.0 * *value as f32 } else { 0.0 };
-            // Half a step of 254 over three decades.
+            // The tolerance is half a step, of 254 steps over three decades.
             assert!((of(index) - exact).abs() <= 0.014 * exact, "{value}: {}", of(index));
         }
         assert_eq!([of(0), of(2)], [1.0, 1000.0]);

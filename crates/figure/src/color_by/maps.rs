@@ -1,4 +1,4 @@
-//! Colour maps by their names, and palettes for categories, whose colours colour-blind people can tell apart.
+//! Colour maps by their names, and palettes for categories that people with colour blindness can tell apart.
 
 use std::str::FromStr;
 
@@ -21,7 +21,7 @@ const CRAMERI: [&str; 39] = [
 
 static CRAMERI_COLORS: &[u8; 39 * ENTRIES * 3] = include_bytes!("maps/crameri.rgb");
 
-/// The maps of `colorous`, which are those of D3, by the names of Matplotlib.
+/// The maps of `colorous`, which are those of D3, under the names of Matplotlib.
 const COLOROUS: [(&str, Gradient); 36] = [
     ("viridis", colorous::VIRIDIS),
     ("inferno", colorous::INFERNO),
@@ -61,14 +61,14 @@ const COLOROUS: [(&str, Gradient); 36] = [
     ("sinebow", colorous::SINEBOW),
 ];
 
-/// A colour map or a palette that exists.
+/// The name of an existing colour map or palette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MapName {
     name: &'static str,
     is_reversed: bool,
 }
 
-/// There is no colour map of this name.
+/// The error of a name that no colour map has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no color map `{name}`;{} {}",
     .nearest.map_or(String::new(), |nearest| format!(" did you mean `{nearest}`?")), MapName::examples())]
@@ -76,7 +76,7 @@ pub struct MapName {
 pub struct MapError {
     /// The name as given.
     pub name: String,
-    /// The name of a map that is spelled alike.
+    /// The name of a map that is spelled similarly.
     pub nearest: Option<&'static str>,
 }
 
@@ -135,18 +135,18 @@ impl MapName {
         self.name
     }
 
-    /// Whether the map is used backwards.
+    /// Whether the map is reversed.
     #[must_use]
     pub fn is_reversed(&self) -> bool {
         self.is_reversed
     }
 
-    /// The same map backwards, if `reverse` is true.
+    /// Reverses the map if `reverse` is true.
     pub(crate) fn reversed_if(self, reverse: bool) -> Self {
         Self { is_reversed: self.is_reversed != reverse, ..self }
     }
 
-    /// Whether this is a palette: colours for categories, which lie on no scale.
+    /// Whether this is a palette, whose colours are for categories and not for a scale.
     pub(crate) fn is_palette(&self) -> bool {
         self.palette().is_some()
     }
@@ -184,21 +184,21 @@ impl MapName {
         (0..=255).map(|level| [level; 3]).collect()
     }
 
-    /// Viridis, the map of numbers unless another is chosen.
+    /// Viridis, the default map for numbers.
     pub(super) const VIRIDIS: Self = Self { name: "viridis", is_reversed: false };
 
-    /// The palette of categories unless another is chosen.
+    /// The default palette for categories.
     pub(super) const OKABE_ITO: Self = Self { name: "okabe-ito", is_reversed: false };
 }
 
 struct Palette {
     name: &'static str,
-    /// In 8-bit sRGB, as `0xrrggbb`.
+    /// Colours in 8-bit sRGB, as `0xrrggbb`.
     colors: &'static [u32],
 }
 
-/// The palette of Okabe and Ito, "Color Universal Design", 2008, with black last, which light hardly shows; and palettes
-/// of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002, issue 3.2, 2021, without the grey that he keeps for missing data.
+/// The palette of Okabe and Ito, "Color Universal Design", 2008, with black last, because light hardly shows on it; and
+/// palettes of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002, issue 3.2, 2021, without his grey for missing data.
 const PALETTES: [Palette; 5] = [
     Palette {
         name: "okabe-ito",
@@ -234,7 +234,7 @@ mod tests {
         [colors[0], colors[colors.len() - 1]]
     }
 
-    /// The ends as the tables of Matplotlib and of Crameri have them; D3's splines round down.
+    /// The ends are those of the tables of Matplotlib and Crameri. D3's splines round down.
     #[test]
     fn maps_have_the_ends_that_their_makers_publish() {
         for (name, low, high) in [

@@ -1,7 +1,7 @@
 //! Colours, radii, opacities and strengths of light from the columns of data.
 //!
-//! [`ColorBy`] turns a column, [`column::column`], into a colour for each sphere, and into a [`ColorKey`], which tells
-//! a legend what the colours mean. Nothing here accesses the file system.
+//! [`ColorBy`] turns a column, [`column::column`], into a colour for each sphere, and into a [`ColorKey`], from which
+//! a legend is made. Nothing here accesses the file system.
 //!
 //! ```
 //! use pinhole_figure::color_by::ColorBy;
@@ -39,32 +39,32 @@ use pinhole::scene::sphere_array::SphereArray;
 use pinhole_data::column;
 use pinhole_data::load::{Column, ColumnValues};
 
-/// How a column becomes colours.
+/// The choices that turn a column into colours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorBy {
     /// The column; see [`column::column`].
     pub column: String,
-    /// The colour map or palette. Without one, numbers get viridis, and text and few different whole numbers get the
-    /// palette of Okabe and Ito.
+    /// The colour map or palette. The default is viridis for numbers, and the palette of Okabe and Ito for text and
+    /// few different whole numbers.
     pub map: Option<MapName>,
-    /// Whether to use the map backwards.
+    /// Whether to reverse the map.
     pub is_reversed: bool,
-    /// The numbers that have the first and the last colour of the map.
+    /// The numbers for the first and the last colour of the map.
     pub limits: Limits,
     /// Whether colours follow the logarithm of the numbers.
     pub is_log: bool,
     /// The colour of spheres without a value, in 8-bit sRGB.
     pub missing: [u8; 3],
-    /// The categories in the order of their colours, whether or not they occur; other values have the colour of missing
-    /// ones. `None` stands for those that occur.
+    /// The categories in the order of their colours, whether or not they occur; other values count as missing. `None`
+    /// stands for the categories that occur.
     pub categories: Option<Vec<String>>,
 }
 
-/// The colour of spheres without a value, unless another is chosen: a middle grey, in 8-bit sRGB.
+/// The default colour of spheres without a value: a middle grey, in 8-bit sRGB.
 pub const MISSING: [u8; 3] = [0x80; 3];
 
 impl ColorBy {
-    /// Colours from this column, with the map and the range that suit its values.
+    /// Chooses this column, with the map and the range that suit its values.
     #[must_use]
     pub fn column(column: impl Into<String>) -> Self {
         Self {
@@ -78,8 +78,8 @@ impl ColorBy {
         }
     }
 
-    /// Computes the colours of the spheres. `left_out` says for each sphere whether it is left out of the picture, so
-    /// that its value does not count for the range; it may be empty.
+    /// Computes the colours of the spheres. `left_out` has true for each sphere that is left out of the picture,
+    /// whose value does not affect the range; it may be empty.
     ///
     /// # Errors
     /// Returns an error if there is no such column, if it has no value that can be shown, if the range is wrong, or if
@@ -101,17 +101,17 @@ impl ColorBy {
     }
 }
 
-/// The colours of spheres, and what they mean.
+/// The colours of spheres, and their meaning.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Coloring {
-    /// All colours that may occur. They are those of 8-bit sRGB.
+    /// All colours that may occur. They are colours of 8-bit sRGB.
     pub palette: Vec<LinearRgb>,
     /// For each sphere, the index of its colour.
     pub indices: Vec<u32>,
-    /// What the colours mean.
+    /// The meaning of the colours.
     pub key: ColorKey,
-    /// Notes for the user, one line each: the range, values that are missing, colours that repeat.
+    /// Notes for the user, one line each: the range, missing values, repeated colours.
     pub notes: Vec<String>,
 }
 
@@ -122,7 +122,7 @@ impl Coloring {
         self.palette.get(*self.indices.get(index)? as usize).copied()
     }
 
-    /// The colours for a scene, 4 bytes for each sphere.
+    /// Returns the colours for a scene, 4 bytes for each sphere.
     pub(crate) fn to_colors(&self) -> Colors {
         Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
     }

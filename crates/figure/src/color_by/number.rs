@@ -1,4 +1,4 @@
-//! Short texts for numbers, as notes and legends show them.
+//! Short texts of numbers for notes and legends.
 
 /// Writes a number with at most six significant digits, as C's `%g` does.
 ///
@@ -21,7 +21,7 @@ pub fn short(value: f64) -> String {
     format!("{}e{exponent}", trimmed(digits))
 }
 
-/// The text of a decimal number without zeros at its end.
+/// Removes the zeros at the end of a decimal number.
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }

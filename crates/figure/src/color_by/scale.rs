@@ -1,4 +1,4 @@
-//! From numbers to positions on a colour map, and back; the ends of a range, given as numbers or percentiles.
+//! Maps numbers to positions on a colour map and back. The ends of a range are given as numbers or percentiles.
 
 use std::str::FromStr;
 
@@ -12,7 +12,7 @@ pub struct Scale {
     is_log: bool,
 }
 
-/// Why a range does not make a scale.
+/// The reason why a range does not make a scale.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScaleError {
@@ -45,7 +45,7 @@ pub enum ScaleError {
 }
 
 impl Scale {
-    /// A scale from `low`, at the position 0, to `high`, at the position 1.
+    /// Makes a scale from `low`, at the position 0, to `high`, at the position 1.
     ///
     /// # Errors
     /// Returns an error if an end is not finite, if `low` is not less than `high`, or if the scale is logarithmic and an
@@ -72,8 +72,8 @@ impl Scale {
         self.is_log
     }
 
-    /// The position of a number: from 0 to 1, and that of the nearer end for numbers outside the range. `None` for NaN,
-    /// and on a logarithmic scale for numbers that are not positive.
+    /// The position of a number, from 0 to 1. Numbers outside the range have the position of the nearer end. `None` for
+    /// NaN, and on a logarithmic scale for numbers that are not positive.
     #[must_use]
     pub fn position(&self, value: f64) -> Option<f64> {
         if !is_shown(value, self.is_log) {
@@ -85,7 +85,7 @@ impl Scale {
         let along = if self.is_log {
             (value.ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
         } else {
-            // Half of each, because the difference of the ends may be too large for f64.
+            // Each is halved, because the difference of the ends may be too large for f64.
             (0.5 * value - 0.5 * self.low) / (0.5 * self.high - 0.5 * self.low)
         };
         Some(along.clamp(0.0, 1.0))
@@ -97,8 +97,8 @@ pub(super) fn is_shown(value: f64, is_log: bool) -> bool {
     !value.is_nan() && (!is_log || value > 0.0)
 }
 
-/// The entry of a table of `count` colours for a position from 0 to 1, as [`ColorMap`](crate::ColorMap) chooses it:
-/// the nearest, when the first is at 0 and the last at 1.
+/// The entry of a table of `count` colours for a position from 0 to 1, chosen as by [`ColorMap`](crate::ColorMap):
+/// the nearest, with the first at 0 and the last at 1.
 pub(super) fn entry(position: f64, count: usize) -> usize {
     let last = count.saturating_sub(1);
     ((position * last as f64 + 0.5).floor() as usize).min(last)
@@ -112,7 +112,7 @@ pub enum Limit {
     Automatic,
     /// A number.
     Value(f64),
-    /// A percentile of the finite values, from 0 to 100; between two values it is interpolated.
+    /// A percentile of the finite values, from 0 to 100. It is interpolated between two values.
     Percentile(f64),
 }
 
@@ -125,7 +125,7 @@ pub struct Limits {
     pub high: Limit,
 }
 
-/// A text is not a limit.
+/// The error of a text that is not a limit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{text}` is not a number; write a number, a percentile such as 2%, or nothing for the end of the data"
@@ -157,7 +157,7 @@ impl FromStr for Limit {
 impl FromStr for Limits {
     type Err = LimitError;
 
-    /// Reads two limits that a comma separates, such as `0,5` or `2%,98%` or `0,`.
+    /// Reads two limits, separated by a comma, such as `0,5` or `2%,98%` or `0,`.
     fn from_str(text: &str) -> Result<Self, LimitError> {
         let missing_comma = || LimitError { text: pinhole::internals::text::one_line(text) };
         let (low, high) = text.split_once(',').ok_or_else(missing_comma)?;
@@ -166,13 +166,13 @@ impl FromStr for Limits {
 }
 
 impl Limits {
-    /// Whether both ends are numbers, so that the values do not matter.
+    /// Whether both ends are given as numbers, so that they do not depend on the values.
     pub(crate) fn are_values(&self) -> bool {
         matches!((self.low, self.high), (Limit::Value(_), Limit::Value(_)))
     }
 
     /// The ends as numbers. Only values that the scale can show count: finite ones, and on a logarithmic scale positive
-    /// ones. `None` if there are none and an end depends on them.
+    /// ones. `None` if there are no such values and an end depends on them.
     pub(crate) fn resolve(
         &self,
         values: impl Iterator<Item = f64>,
@@ -216,7 +216,7 @@ impl Limit {
     }
 }
 
-/// A percentile of sorted numbers, of which there is at least one; between two of them it is interpolated linearly.
+/// A percentile of one or more sorted numbers, linearly interpolated between two of them.
 fn percentile(sorted: &[f64], percent: f64) -> f64 {
     let place = percent / 100.0 * (sorted.len() - 1) as f64;
     let below = place.floor();
@@ -292,7 +292,7 @@ mod tests {
         assert_eq!(resolved("0,1", &[], false), Some([0.0, 1.0]));
     }
 
-    /// The numbers are those of NumPy's `percentile`.
+    /// The expected numbers are those of NumPy's `percentile`.
     #[test]
     fn percentiles_are_interpolated() {
         let values: Vec<f64> = (0..=10).rev().map(f64::from).collect();

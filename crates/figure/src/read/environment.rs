@@ -18,12 +18,12 @@ use image::codecs::hdr::HdrDecoder;
 use pinhole::light::environment::Environment;
 use pinhole_data::load::{LoadError, LoadErrorKind};
 
-/// Reads an environment map; the first bytes of the file show its format.
+/// Reads an environment map. The first bytes of the file show its format.
 ///
-/// From an OpenEXR file, the first part with the channels R, G and B is read.
+/// The first part of an OpenEXR file with the channels R, G and B is read.
 ///
 /// # Errors
-/// If the file has neither format, is damaged or too large, or if a texel is not a valid radiance.
+/// Returns an error if the file has neither format, is damaged or too large, or has an invalid radiance.
 pub fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     if bytes.starts_with(b"#?") {
         return read_hdr(bytes);
@@ -52,15 +52,15 @@ fn damaged(format: &str, message: &str) -> LoadError {
     ))
 }
 
-/// Limit on the number of texels that a file may declare for each of its bytes. What the formats can reach is less:
-/// 172 with deflate, at three halves per texel, and about 1,400 with long runs in Radiance's oldest encoding.
+/// Limit on the number of texels that a file may declare for each of its bytes. Both formats stay below it: 172
+/// with deflate, at three halves per texel, and about 1,400 with long runs in Radiance's oldest encoding.
 const TEXELS_PER_BYTE: u64 = 2048;
 
 /// Number of texels that a file of any length may declare.
 const SMALL: u64 = 1 << 20;
 
-/// Allocates a black image. Its size comes from a header that may be wrong, so a size that a file of `bytes` bytes
-/// cannot hold is refused.
+/// Allocates a black image. Its size comes from a header that may be wrong, so the size is refused if a file of
+/// `bytes` bytes cannot hold it.
 fn black(
     [width, height]: [u64; 2],
     format: &'static str,
@@ -85,8 +85,7 @@ fn black(
     Ok(room)
 }
 
-/// A file in memory that remembers whether a decoder tried to read beyond its end. Each decoder reports that in its
-/// own way.
+/// A file in memory that records whether a decoder tried to read beyond its end. Decoders report that differently.
 pub(super) struct FileBytes<'a> {
     bytes: Cursor<&'a [u8]>,
     at_end: &'a Cell<bool>,
@@ -179,7 +178,7 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
         )
         .first_valid_layer()
         .all_attributes()
-        // A file that the decoder does not expect makes its threads panic, which would end the process.
+        // Unexpected files make the decoder's threads panic, which would end the process.
         .non_parallel()
         .from_buffered(FileBytes::new(bytes, &at_end))
         .map_err(refused)?;
@@ -200,7 +199,7 @@ fn read_hdr(bytes: &[u8]) -> Result<Environment, LoadError> {
     if has_empty_runs(bytes) {
         return Err(damaged(RADIANCE, "it has several empty runs of pixels in a row"));
     }
-    // Not strict: the signature may be `#?RGBE` as well, and headers have lines of all kinds.
+    // The decoder must not be strict: the signature may also be `#?RGBE`, and headers have lines of all kinds.
     let decoder =
         HdrDecoder::with_strictness(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
     let (width, height) = decoder.dimensions();
@@ -209,8 +208,8 @@ fn read_hdr(bytes: &[u8]) -> Result<Environment, LoadError> {
     Environment::new(width, height, texels).map_err(|error| LoadError::new(error.to_string()))
 }
 
-/// Whether the file has eight run markers in a row of which the last four are empty. No encoder writes that, and the
-/// decoder's multiplier for such a run overflows (image 0.25.10).
+/// Whether the file has eight run markers in a row, the last four of which are empty. No encoder writes that, and
+/// the decoder's multiplier for such a run overflows (image 0.25.10).
 fn has_empty_runs(bytes: &[u8]) -> bool {
     const MARKER: usize = 4;
     let is_marker = |marker: &[u8]| marker[..3] == [1, 1, 1];

@@ -1,11 +1,11 @@
-//! Reads pictures as the writers of this crate make them: the samples of a PNG or an OpenEXR file as they stand there, and
-//! the certificate that the file carries.
+//! Reads pictures that the writers of this crate made: the unchanged samples of a PNG or an OpenEXR file, and the
+//! certificate in the file.
 
 use pinhole::image::encoding::Bits;
 use pinhole::internals::text::one_line;
 use pinhole_data::load::LoadError;
 
-/// A picture as it stands in a file.
+/// A picture as a file stores it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PictureFile {
@@ -13,14 +13,14 @@ pub struct PictureFile {
     pub size: [u32; 2],
     /// The samples, row by row from the top.
     pub samples: FileSamples,
-    /// The text of the certificate, if the file carries one.
+    /// The text of the certificate, if the file has one.
     pub certificate: Option<String>,
 }
 
 /// The samples of a picture in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileSamples {
-    /// Those of a PNG: RGB, or RGBA, each of one byte or of two with the higher first.
+    /// Samples of a PNG: RGB or RGBA, each of one byte, or of two with the high byte first.
     Encoded {
         /// The bits of each sample.
         bits: Bits,
@@ -29,7 +29,7 @@ pub enum FileSamples {
         /// The samples.
         bytes: Vec<u8>,
     },
-    /// Those of an OpenEXR file: red, green, blue and alpha.
+    /// Samples of an OpenEXR file: red, green, blue and alpha.
     Linear(Vec<[f32; 4]>),
 }
 
@@ -53,12 +53,12 @@ fn damaged(format: &str, error: &impl ToString) -> LoadError {
     LoadError::new(format!("the {format} file cannot be read: {message}"))
 }
 
-/// The file is not one that this crate writes.
+/// The error of a file that this crate could not have written.
 fn of_other_kind(format: &str, found: &str, written: &str) -> LoadError {
     LoadError::new(format!("the {format} file has {found}; this crate writes {written}"))
 }
 
-/// Makes room for `count` samples; a header that asks for more than its file can hold is refused before.
+/// Makes room for `count` samples. Callers have refused headers that declare more than the file can hold.
 fn room<T: Clone>(
     count: usize,
     sample: T,
@@ -99,7 +99,7 @@ fn read_png(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     };
     let sides = [width, height].map(|side| side as usize);
     let size = reader.output_buffer_size().ok_or_else(|| no_memory(sides[0], sides[1]))?;
-    // Deflate shrinks by less than 1032, so that a short file cannot ask for much memory.
+    // Deflate shrinks data by a factor below 1032, so a short file cannot ask for much memory.
     if size as u64 > 1032 * bytes.len() as u64 + 1032 {
         return Err(damaged("PNG", &"it is cut off"));
     }
@@ -129,7 +129,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     let written = "one part with R, G, B and A in f32 and ZIP compression";
     let kind = |found: &str| of_other_kind("OpenEXR", found, written);
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
-    // The reader of environments, so that the decoder is compiled once.
+    // The reader for environments is used, so that the decoder is compiled only once.
     let at_end = Cell::new(false);
     let meta =
         MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(failed)?;
@@ -148,7 +148,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     }
     let Vec2(width, height) = header.layer_size;
     let count = width.checked_mul(height).ok_or_else(|| no_memory(width, height))?;
-    // Deflate shrinks by less than 1032.
+    // Deflate shrinks data by a factor below 1032.
     if (count as u64).saturating_mul(16) > 1032 * bytes.len() as u64 {
         return Err(damaged("OpenEXR", &"it is cut off"));
     }
@@ -166,7 +166,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
         )
         .first_valid_layer()
         .all_attributes()
-        // A file that the decoder does not expect makes its threads panic, which would end the process.
+        // Unexpected files make the decoder's threads panic, which would end the process.
         .non_parallel()
         .from_buffered(FileBytes::new(bytes, &at_end))
         .map_err(failed)?;

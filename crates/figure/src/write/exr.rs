@@ -1,5 +1,5 @@
 //! Writes pictures with their data layers as OpenEXR files: one part with scan lines and lossless ZIP compression.
-//! Every number is stored as it is in the picture.
+//! Numbers are stored unchanged.
 //!
 //! | channels | type | layer |
 //! | --- | --- | --- |
@@ -14,8 +14,8 @@
 //! | `samples` | u32 | samples |
 //! | `variance` | f32 | variance |
 //!
-//! The attributes are `software`, and `adapter` if the adapter that rendered is known. A picture that was certified has its
-//! certificate as [`CERTIFICATE`].
+//! The attributes are `software`, and `adapter` if the adapter that rendered is known. A certified picture has its
+//! certificate in the attribute [`CERTIFICATE`].
 
 use std::io::{self, Seek, Write};
 
@@ -36,7 +36,7 @@ use pinhole::image::{Image, Layer, LayerSet};
 /// The name of the attribute that holds a picture's certificate.
 pub const CERTIFICATE: &str = "pinhole-certificate";
 
-/// What a file says beside its picture.
+/// Texts that a file has beside its picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Remarks<'a> {
     /// Name of the adapter that rendered, if it is known.
@@ -47,11 +47,11 @@ pub struct Remarks<'a> {
 
 /// Writes a picture with colour, alpha and the `layers`. This format uses only the transparency of the encoding.
 ///
-/// The picture is not copied: a few rows at a time go to the sink.
+/// The picture is not copied. A few rows at a time go to the sink.
 ///
 /// # Errors
-/// If the picture was rendered without one of the layers, if the encoding is transparent and the picture has no alpha,
-/// or if the sink fails.
+/// Returns an error if the picture was rendered without one of the layers, if the encoding is transparent and the
+/// picture has no alpha, or if the sink fails.
 pub fn write(
     picture: &Image,
     layers: LayerSet,
@@ -121,7 +121,7 @@ impl From<Error> for ExrError {
     }
 }
 
-/// Converts a text to Latin-1, which is all that the format has; other characters become `?`.
+/// Converts a text to Latin-1, the only encoding of the format. Other characters become `?`.
 fn latin(text: &str) -> Text {
     let bytes: SmallVec<[u8; 24]> = text.chars().map(|c| u8::try_from(c).unwrap_or(b'?')).collect();
     Text::from_bytes_unchecked(bytes)
@@ -211,7 +211,7 @@ impl SamplesWriter for Channel<'_> {
     fn extract_line(&self, line: LineRefMut<'_>) {
         let Vec2(x, y) = line.location.position;
         let start = y * self.width + x;
-        // The line's memory is as long as its samples, so nothing can fail.
+        // Writing cannot fail, because the line's memory has the length of its samples.
         let _ = match self.samples {
             Samples::One => line.write_samples(|_| 1.0_f32),
             Samples::Numbers(values) => line.write_samples(|i| values[start + i]),

@@ -10,7 +10,7 @@ use pinhole::image::{Image, Layer};
 /// top. Its type is float32, or uint32 for ids and numbers of samples.
 ///
 /// # Errors
-/// If the image was rendered without this layer.
+/// Returns an error if the image was rendered without this layer.
 pub fn encode(image: &Image, layer: Layer) -> Result<Vec<u8>, NpyError> {
     let (height, width) = (u64::from(image.height()), u64::from(image.width()));
     let vectors = |values: &[[f32; 3]]| array(values.as_flattened(), &[height, width, 3]);

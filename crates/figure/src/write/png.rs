@@ -15,20 +15,20 @@ pub const CERTIFICATE: &str = "pinhole-certificate";
 const CHUNK: usize = 1 << 14;
 
 /// Encodes a picture as a PNG file in sRGB with 8 or 16 bits per channel: RGB, or RGBA if the encoding is transparent.
-/// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1]; they leave
-/// [the background](Encoding::background) as it is.
+/// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1]. Both leave [the
+/// background](Encoding::background) unchanged.
 ///
-/// PNG stores colours that are not premultiplied. So the colours of a transparent picture are divided by alpha first;
-/// they are black where alpha is zero.
+/// PNG stores colours that are not premultiplied, so the colours of a transparent picture are first divided by alpha.
+/// They are black where alpha is zero.
 ///
 /// # Errors
-/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers), or if the encoder fails, which does not
-/// happen for sizes that PNG allows.
+/// Returns an error if the picture lacks one of [the layers that the encoding needs](Encoding::layers), or if the
+/// encoder fails, which does not happen for sizes that PNG allows.
 pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
     encode_samples(picture, encoding, &samples(picture, encoding)?)
 }
 
-/// Encodes a picture as [`encode`] does, and draws annotations over it. Exposure and tone curve do not change them.
+/// Encodes a picture as [`encode`] does, and draws annotations over it, which exposure and tone curve do not change.
 ///
 /// # Errors
 /// Returns the same errors as [`encode`].
@@ -40,11 +40,11 @@ pub fn encode_annotated(
     encode_samples(picture, encoding, &samples_annotated(picture, encoding, annotations)?)
 }
 
-/// The samples of a picture that [`encode`] would compress: RGB or, if the encoding is transparent, RGBA, row by row from
-/// the top, each of one byte or of two with the higher first.
+/// The samples of a picture that [`encode`] would compress: RGB or, if the encoding is transparent, RGBA, row by row
+/// from the top, each of one byte, or of two with the high byte first.
 ///
 /// # Errors
-/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
+/// Returns an error if the picture lacks one of [the layers that the encoding needs](Encoding::layers).
 pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
     let alpha = match encoding.layers().contains(Layer::Alpha) {
         true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
@@ -65,11 +65,11 @@ pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError
     })
 }
 
-/// The samples of a picture that [`encode_annotated`] would compress: RGB or, if the encoding is transparent, RGBA, row
-/// by row from the top, each of one byte or of two with the higher first. Movies are made of them.
+/// The samples of a picture that [`encode_annotated`] would compress, for movies: RGB or, if the encoding is
+/// transparent, RGBA, row by row from the top, each of one byte, or of two with the high byte first.
 ///
 /// # Errors
-/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
+/// Returns an error if the picture lacks one of [the layers that the encoding needs](Encoding::layers).
 pub fn samples_annotated(
     picture: &Image,
     encoding: &Encoding,
@@ -92,7 +92,7 @@ fn encode_samples(image: &Image, encoding: &Encoding, samples: &[u8]) -> Result<
 /// Encodes samples that [`samples`] returned for the same encoding as a PNG file, which carries a certificate as a text.
 ///
 /// # Errors
-/// If the samples are not those of a picture of this size, or if the certificate is not ASCII.
+/// Returns an error if the samples are not those of a picture of this size, or if the certificate is not ASCII.
 pub fn encode_certified(
     size: [u32; 2],
     encoding: &Encoding,
@@ -114,7 +114,7 @@ fn kind(encoding: &Encoding) -> (ColorType, BitDepth) {
 /// the top.
 ///
 /// # Errors
-/// If `rgb` does not have three bytes per pixel.
+/// Returns an error if `rgb` does not have three bytes per pixel.
 pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
     write(size, (ColorType::Rgb, BitDepth::Eight), None, None, rgb)
 }
@@ -123,7 +123,7 @@ pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
 /// row from the top. Colours are not premultiplied.
 ///
 /// # Errors
-/// If `rgba` does not have four bytes per pixel.
+/// Returns an error if `rgba` does not have four bytes per pixel.
 pub fn encode_rgba8(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, PngError> {
     write(size, (ColorType::Rgba, BitDepth::Eight), None, None, rgba)
 }
@@ -172,7 +172,7 @@ pub enum PngError {
     },
 }
 
-/// The pixels of a picture, and how they are encoded.
+/// The pixels of a picture, with their encoding.
 struct Pixels<'a> {
     color: &'a [[f32; 3]],
     /// Alpha, if the encoding needs it.
@@ -195,7 +195,7 @@ impl Pixels<'_> {
             let (mut before, mut encoded) = (None, [0; RGB]);
             for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
                 let alpha = self.alpha.map_or(1.0, |alpha| alpha[start + index]);
-                // Large parts of many pictures have one colour, such as the background.
+                // Large areas of many pictures, such as the background, have a single colour.
                 let [r, g, b] = rgb.map(f32::to_bits);
                 let bits = Some([r, g, b, alpha.to_bits()]);
                 if bits != before {
@@ -211,7 +211,7 @@ impl Pixels<'_> {
         bytes
     }
 
-    /// Converts a pixel to linear light of a display.
+    /// Converts a pixel to the linear light that a display shows.
     fn shown(&self, rgb: [f32; 3], alpha: f32) -> [f32; 3] {
         match self.encoding.kept_background() {
             Some(background) => self.encoding.display_over(rgb, alpha, background),

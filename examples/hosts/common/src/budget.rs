@@ -1,4 +1,4 @@
-//! How many rays a lit picture may trace in a frame, so that the window stays responsive.
+//! Limits the rays that a lit picture may trace in a frame, so that the window stays responsive.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 
 use pinhole::gpu::{GpuError, LitPicture, LitProgress, LitRenderer, SceneBuffers, wgpu};
 
-/// The number of rays of a frame. It follows the device: twice as many if a frame takes less than half of the time that it
-/// may take, and half as many if it takes twice as long.
+/// The number of rays of a frame. It follows the device: it doubles if a frame takes less than half of the wanted time,
+/// and halves if a frame takes more than twice this time.
 #[derive(Debug)]
 pub struct Budget {
     rays: u64,
     wanted: Duration,
-    /// Rays and nanoseconds of the frame that the device has finished last, until they were looked at.
+    /// Rays and nanoseconds of the last frame that the device has finished; 0 after they were read.
     done: Arc<[AtomicU64; 2]>,
 }
 
@@ -22,7 +22,7 @@ impl Budget {
         Self { rays: 500_000, wanted, done: Arc::default() }
     }
 
-    /// Records the next part of a lit picture. `None` if it must be tried again in the next frame.
+    /// Records the next part of a lit picture. Returns `None` if it must be tried again in the next frame.
     pub fn record(
         &mut self,
         picture: &mut LitPicture,
@@ -36,12 +36,12 @@ impl Budget {
                 self.watch(encoder, progress.rays);
                 Ok(Some(progress))
             }
-            // The smallest part of the picture has so many.
+            // The smallest part of the picture needs this number.
             Err(GpuError::Budget { needed, .. }) => {
                 self.rays = self.rays.max(needed);
                 Ok(None)
             }
-            // The next `set` takes passes with fewer iterations.
+            // The next `set` chooses passes with fewer iterations.
             Err(GpuError::Steps) => Ok(None),
             Err(error) => Err(error),
         }
@@ -61,8 +61,8 @@ impl Budget {
         self.rays
     }
 
-    /// Measures how long the device takes for rays that were recorded into this encoder: from now until they are
-    /// executed.
+    /// Measures the time that the device takes for rays that were recorded into this encoder, from now until
+    /// they are traced.
     fn watch(&self, encoder: &wgpu::CommandEncoder, rays: u64) {
         if rays > 0 {
             let (begin, done) = (Instant::now(), Arc::clone(&self.done));

@@ -1,5 +1,5 @@
-//! What the host programs share: a window with wgpu in it, a camera that orbits, a molecule and light to look at it, a
-//! budget of rays, and a picture by `Headless` to compare with.
+//! Code that the host programs share: a window with wgpu, a camera that orbits, a molecule and its light, a budget of
+//! rays, and a picture by `Headless` for comparison.
 
 mod budget;
 mod light;
@@ -19,7 +19,7 @@ pub use still::save_still;
 pub use surface::{Gpu, WindowSurface};
 pub use window::{Host, Next, run};
 
-/// Whatever goes wrong in a host ends it with a message.
+/// The result of a step in a host. Any error ends the host with a message.
 pub type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Logs warnings and errors of wgpu to standard error. The environment variable `RUST_LOG` asks for more.

@@ -5,13 +5,13 @@ use pinhole::light::{Light, LightFrame, LightKind};
 use pinhole::render::{Occlusion, Sampling, Studio};
 use pinhole::{Integrator, LinearRgb, RenderSettings};
 
-/// What is behind the spheres.
+/// The colour behind the spheres.
 pub fn background() -> LinearRgb {
     LinearRgb::from_srgb8([0xf3, 0xf4, 0xf6])
 }
 
-/// A studio: one light with shadows, fixed to the camera at an angle in radians about it, and ambient light that does not
-/// reach into pockets.
+/// A studio: one light with shadows, fixed to the camera at an angle in radians about it, and ambient light that does
+/// not reach into pockets.
 pub fn studio(angle: f64, samples: u32) -> RenderSettings {
     let studio = Studio {
         ambient: LinearRgb::from_srgb8([188; 3]),

@@ -36,7 +36,7 @@ pub fn molecule() -> Outcome<Scene> {
         }
         for (end, color) in [-0.52, 0.52].into_iter().zip(strands) {
             for step in 0..4_u8 {
-                // A strand follows the knot between two rungs, too.
+                // Strands follow the knot between two rungs, too.
                 let t = t + TAU / f64::from(RUNGS) * f64::from(step) / 4.0;
                 let (sine, cosine) = (TWISTS * t).sin_cos();
                 let across = cosine * side + sine * side.cross(along);

@@ -6,7 +6,7 @@ use pinhole::camera::{DepthOrder, HostCamera, PinholeCamera, Pose};
 
 use crate::Outcome;
 
-/// The place of a camera that looks at the origin, with +y up.
+/// The position of a camera that looks at the origin, with +y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     azimuth: f64,
@@ -32,7 +32,7 @@ impl Orbit {
         self.elevation = (self.elevation + 0.01 * down).clamp(-1.5, 1.5);
     }
 
-    /// Moves the camera by some notches of the mouse wheel, nearer if positive.
+    /// Moves the camera by notches of the mouse wheel, nearer if positive.
     pub fn zoom(&mut self, notches: f64) {
         self.distance = (self.distance * (-0.1 * notches).exp()).clamp(1.0, 200.0);
     }
@@ -49,8 +49,8 @@ impl Orbit {
         Ok(PinholeCamera::with_vertical_fov(pose, Self::FOV, aspect)?)
     }
 
-    /// The view matrix and the projection matrix of a host that rasterizes: depth is 1 at the near plane and 0 at
-    /// infinity.
+    /// The view matrix and the projection matrix for a host that rasterizes. Depth is 1 at the near plane and 0
+    /// at infinity.
     pub fn matrices(&self, aspect: f64) -> [DMat4; 2] {
         let view = view::look_at_mat4(self.eye(), DVec3::ZERO, DVec3::Y);
         [view, directx::perspective_infinite_reverse(Self::FOV, aspect, Self::NEAR)]

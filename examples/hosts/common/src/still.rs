@@ -1,4 +1,4 @@
-//! The picture of a host as a device of pinhole's own renders it.
+//! The picture of a host, as a separate device of pinhole renders it.
 #![allow(clippy::print_stdout, reason = "a host tells what it wrote")]
 
 use pinhole::gpu::{Headless, HeadlessOptions, Wait};
@@ -7,8 +7,8 @@ use pinhole_figure::write;
 
 use crate::Outcome;
 
-/// Renders a view without the host and writes it to `pinhole-host-NAME.png` in the current folder. It waits for the
-/// device, which nothing else in these hosts does.
+/// Renders a view without the host and writes it to `pinhole-host-NAME.png` in the current folder. Unlike all other
+/// code of these hosts, it waits for the device.
 pub fn save_still(
     name: &str,
     scene: &Scene,

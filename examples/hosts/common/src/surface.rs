@@ -9,7 +9,7 @@ use winit::window::Window;
 
 use crate::Outcome;
 
-/// What a host owns, and hands to pinhole by reference.
+/// The device and queue of a host, which pinhole uses by reference.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
@@ -31,14 +31,14 @@ pub struct WindowSurface {
 
 impl WindowSurface {
     /// Opens a device that can draw to the window, with the default limits of WebGPU and no features. The format of the
-    /// surface takes linear light if `is_srgb`, and else encoded colours, where the window offers both.
+    /// surface takes linear light if `is_srgb`, and otherwise encoded colours, if the window offers both.
     pub async fn open(
         window: Arc<Window>,
         display: OwnedDisplayHandle,
         is_srgb: bool,
     ) -> Outcome<(Self, Gpu)> {
         let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display));
-        // Validation layers must be asked for, by WGPU_VALIDATION=1.
+        // Validation layers are off unless WGPU_VALIDATION=1 asks for them.
         descriptor.flags = wgpu::InstanceFlags::empty();
         let instance = wgpu::Instance::new(descriptor.with_env());
         let surface = instance.create_surface(Arc::clone(&window))?;
@@ -66,7 +66,7 @@ impl WindowSurface {
         Ok((Self { window, instance, surface, configuration }, gpu))
     }
 
-    /// Columns and rows.
+    /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.configuration.width, self.configuration.height]
     }
@@ -79,13 +79,13 @@ impl WindowSurface {
         }
     }
 
-    /// The texture to be drawn to next. `None` if there is none now; then another redraw was asked for where one helps.
+    /// The next texture to draw to; `None` if there is none now. Another redraw was then requested if that helps.
     pub fn next_texture(&mut self, gpu: &Gpu) -> Outcome<Option<wgpu::SurfaceTexture>> {
         match self.surface.get_current_texture() {
             CurrentSurfaceTexture::Success(texture) => return Ok(Some(texture)),
-            // It can be drawn to once more. The event of the new size follows.
+            // The texture can still be used once. The event with the new size follows.
             CurrentSurfaceTexture::Suboptimal(texture) => return Ok(Some(texture)),
-            // winit tells when the window is visible again.
+            // winit reports when the window is visible again.
             CurrentSurfaceTexture::Occluded => return Ok(None),
             CurrentSurfaceTexture::Timeout => {}
             CurrentSurfaceTexture::Outdated => {

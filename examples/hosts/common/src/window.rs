@@ -13,7 +13,7 @@ use winit::window::{Window, WindowId};
 
 use crate::{Gpu, Orbit, Outcome, WindowSurface};
 
-/// What a host does in its window.
+/// A program that draws in a window.
 pub trait Host: Sized {
     /// The title of the window.
     const TITLE: &'static str;
@@ -21,20 +21,20 @@ pub trait Host: Sized {
     /// Whether the surface takes linear light and encodes it.
     const IS_SRGB: bool = true;
 
-    /// Makes what belongs to the device.
+    /// Creates the objects that depend on the device.
     fn new(gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<Self>;
 
-    /// Makes what belongs to the size of the window.
+    /// Creates the objects that depend on the size of the window.
     fn resize(&mut self, gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<()>;
 
-    /// Draws the window, and says whether it wants to draw again without an event.
+    /// Draws the window. Returns whether it must be drawn again without an event.
     fn draw(&mut self, gpu: &Gpu, orbit: &Orbit, window: &wgpu::Texture) -> Outcome<Next>;
 
-    /// A key was pressed, given as the character that it types.
+    /// Handles a key, given as the character that it types.
     fn key(&mut self, key: &str, orbit: &Orbit) -> Outcome<()>;
 }
 
-/// When a host draws its window again.
+/// The time at which a host draws its window again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     /// At once.
@@ -71,7 +71,7 @@ struct Program<H> {
     host: PhantomData<H>,
 }
 
-/// What there is once the window is open. The surface is dropped before the window.
+/// The state while the window is open. The surface is dropped before the window.
 struct Open<H> {
     host: H,
     gpu: Gpu,

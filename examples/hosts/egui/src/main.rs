@@ -38,12 +38,12 @@ fn main() -> Outcome<()> {
     Ok(())
 }
 
-/// How the spheres are lit.
+/// The style of the spheres' light.
 #[derive(Clone, Copy, PartialEq)]
 enum Style {
     Studio,
     Paths,
-    /// The colours of the spheres alone.
+    /// Only the colours of the spheres.
     Flat,
 }
 
@@ -51,12 +51,12 @@ struct Panels {
     scene: Scene,
     orbit: Orbit,
     style: Style,
-    /// Where the light is, about the camera, in radians.
+    /// The angle of the light about the camera, in radians.
     angle: f64,
     samples: u32,
     background: [f32; 3],
     progress: Option<LitProgress>,
-    /// Whether a pick has no result yet.
+    /// Whether the result of a pick is pending.
     is_picking: bool,
     picked: Option<PickedPixel>,
     message: Option<String>,
@@ -133,7 +133,7 @@ impl Panels {
         }
     }
 
-    /// The panel of spheres fills the rest of the window.
+    /// Shows the panel of spheres in the rest of the window.
     fn spheres(&mut self, ui: &mut egui::Ui) {
         let sense = egui::Sense::click_and_drag();
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), sense);
@@ -150,7 +150,7 @@ impl Panels {
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, draw));
     }
 
-    /// Takes what the device has told since the last frame, and writes the panel to a file if `saves`.
+    /// Takes the device's results since the last frame, and writes the panel to a file if `saves`.
     fn after_drawing(&mut self, spheres: &mut Spheres, saves: bool) -> Outcome<()> {
         if let Some(failed) = spheres.failed() {
             return Err(failed.into());

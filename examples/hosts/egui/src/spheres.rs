@@ -1,4 +1,4 @@
-//! What lives on egui's device, and the callback that draws it in a panel.
+//! The objects on egui's device, and the callback that draws them in a panel.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use pinhole::gpu::{
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
 
-/// What egui keeps for the panel, in `CallbackResources`.
+/// The state of the panel, which egui keeps in `CallbackResources`.
 pub(crate) struct Spheres {
     renderer: LitRenderer,
     composite: Composite,
@@ -24,7 +24,7 @@ pub(crate) struct Spheres {
     failed: Option<String>,
 }
 
-/// What belongs to a size of the panel.
+/// The objects that depend on the size of the panel.
 struct Panel {
     film: Film,
     first_pixel: [u32; 2],
@@ -64,36 +64,36 @@ impl Spheres {
         self.panel.as_ref().map(|panel| (panel.film, panel.first_pixel))
     }
 
-    /// How far the last drawing has come.
+    /// The progress of the last drawing.
     pub(crate) fn progress(&self) -> Option<LitProgress> {
         self.progress
     }
 
-    /// What was picked, if the device has told.
+    /// The picked pixel, if the device has returned one.
     pub(crate) fn take_pick(&mut self) -> Outcome<Option<PickedPixel>> {
         Ok(self.picker.take()?)
     }
 
-    /// Why the panel could not be drawn. Callbacks of egui return no errors.
+    /// The error of the last drawing, if there was one. Callbacks of egui cannot return errors.
     pub(crate) fn failed(&mut self) -> Option<String> {
         self.failed.take()
     }
 }
 
-/// One drawing of the panel.
+/// A single drawing of the panel.
 pub(crate) struct Draw {
-    /// Asked for another frame while samples remain.
+    /// egui's context, from which frames are requested while samples remain.
     pub(crate) context: egui::Context,
     /// The panel, in points.
     pub(crate) rect: egui::Rect,
     pub(crate) orbit: Orbit,
     pub(crate) settings: RenderSettings,
-    /// Where the panel was clicked, in points of the window.
+    /// The place where the panel was clicked, in points of the window.
     pub(crate) clicked: Option<egui::Pos2>,
 }
 
 impl CallbackTrait for Draw {
-    /// Records compute passes into egui's encoder, which egui submits.
+    /// Records compute passes into egui's encoder, which egui will submit.
     fn prepare(
         &self,
         device: &wgpu::Device,
@@ -135,7 +135,7 @@ impl Draw {
         screen: &ScreenDescriptor,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Outcome<()> {
-        // The pixels of the panel, as egui rounds them for the viewport.
+        // The pixels of the panel, rounded as egui does for the viewport.
         let scale = screen.pixels_per_point;
         let pixels =
             egui::epaint::ViewportInPixels::from_points(&self.rect, scale, screen.size_in_pixels);
@@ -177,7 +177,7 @@ impl Draw {
         let is_done = |progress: Option<LitProgress>| {
             progress.is_some_and(|progress| progress.state == LitState::Done)
         };
-        // The widgets show in the next frame how far this one has come.
+        // The widgets show this progress in the next frame.
         if !(is_done(next) && is_done(*progress)) {
             self.context.request_repaint();
         }

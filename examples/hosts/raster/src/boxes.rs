@@ -1,11 +1,11 @@
-//! What the host rasterizes: a ground and boxes, one of which turns.
+//! The triangles that the host rasterizes: a ground and boxes, one of which turns.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DQuat, DVec3};
 use pinhole::gpu::wgpu;
 use pinhole_host_common::Gpu;
 
-/// The number of boxes; twin of `boxes` in `boxes.wgsl`.
+/// The number of boxes; keep it equal to `boxes` in `boxes.wgsl`.
 const COUNT: usize = 6;
 
 #[repr(C)]

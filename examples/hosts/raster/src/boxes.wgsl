@@ -18,7 +18,7 @@ struct Corner {
     @location(1) color: vec3f,
 }
 
-// Six sides of two triangles, of a cube from -1 to 1.
+// The corners of a cube from -1 to 1: six sides of two triangles.
 @vertex
 fn corner(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Corner {
     let axis = vertex / 12u;

@@ -1,8 +1,8 @@
 //! Spheres among triangles that the host rasterizes with its own matrices: reversed depth, no far plane, four samples.
-//! They hide each other.
+//! Spheres and triangles hide each other.
 //!
-//! Drag to turn the camera, turn the wheel to come nearer. The space bar stops the box that turns, `t` leaves out the
-//! triangles, `d` hides spheres before they are shaded, `s` writes the spheres as `Headless` renders them; Escape quits.
+//! Drag to turn the camera, turn the wheel to come nearer. The space bar stops the box that turns, `t` hides the
+//! triangles, `d` skips shading of hidden spheres, `s` writes the spheres as `Headless` renders them; Escape quits.
 //!
 //! ```sh
 //! cargo run --release --manifest-path examples/hosts/Cargo.toml -p pinhole-host-raster
@@ -23,9 +23,9 @@ use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 use pinhole_host_common::{Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still};
 use wgpu::{TextureFormat, TextureUsages};
 
-/// Samples of each pixel of the host's attachments.
+/// Number of samples for each pixel of the host's attachments.
 const SAMPLES: u32 = 4;
-/// What is behind everything, in linear light.
+/// The background in linear light.
 const SKY: [f32; 3] = [0.55, 0.65, 0.75];
 
 fn main() -> Outcome<()> {
@@ -47,14 +47,14 @@ struct Raster {
     tests_early: bool,
 }
 
-/// What belongs to a size of the window.
+/// The objects that depend on the size of the window.
 struct Pictures {
     film: Film,
     // The host's attachments, and the depth of its triangles with one sample for each pixel.
     color: wgpu::TextureView,
     depth: wgpu::TextureView,
     early_depth: wgpu::TextureView,
-    // The spheres.
+    // The picture of the spheres.
     frame: Frame,
     picture: CompositePicture,
     host_depth: HostDepth,
@@ -64,7 +64,7 @@ impl Host for Raster {
     const TITLE: &'static str = "pinhole among triangles";
 
     fn new(gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<Self> {
-        // Depth of the host is computed from the data layers.
+        // The host's depth is computed from the data layers.
         let options = RendererOptions {
             cameras: vec![CameraKind::Pinhole],
             data_layers: true,
@@ -114,7 +114,7 @@ impl Host for Raster {
         let aspect = pictures.film.aspect();
         self.boxes.set(&gpu.queue, orbit.matrices(aspect), self.angle);
 
-        // The camera of the spheres is made of the host's matrices.
+        // The camera of the spheres is made from the host's matrices.
         let camera = orbit.host_camera(aspect)?;
         let view = View::new(&camera, pictures.film);
         pictures.frame.set_view(&gpu.queue, &self.buffers, &view, &self.settings)?;
@@ -220,7 +220,7 @@ fn attachment(
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Begins a pass over cleared depth.
+/// Begins a pass, and clears the depth.
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],

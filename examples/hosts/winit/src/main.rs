@@ -1,6 +1,6 @@
 //! Spheres in a bare window, in the light of a studio, on a device that the program owns.
 //!
-//! Drag to turn the camera, turn the wheel to come nearer. While nothing moves, samples accumulate. `s` writes the same
+//! Drag to turn the camera, turn the wheel to come nearer. Samples accumulate while nothing moves. `s` writes the same
 //! picture as `Headless` renders it; Escape quits.
 //!
 //! ```sh
@@ -27,11 +27,11 @@ fn main() -> Outcome<()> {
 struct BareWindow {
     scene: Scene,
     settings: RenderSettings,
-    // Once for the device, for the kind of render pass, and for the scene.
+    // These are made once for the device, the kind of render pass, and the scene.
     renderer: LitRenderer,
     composite: Composite,
     buffers: SceneBuffers,
-    // Once for a size of the window.
+    // These are made once for a size of the window.
     pictures: Pictures,
     budget: Budget,
     is_done: bool,
@@ -76,7 +76,7 @@ impl Host for BareWindow {
         let Gpu { device, queue, .. } = gpu;
         let Pictures { film, lit, shown } = &mut self.pictures;
         let camera = orbit.camera(film.aspect())?;
-        // The samples so far are kept unless the camera has moved.
+        // Samples are kept unless the camera has moved.
         lit.set(renderer, device, queue, buffers, &View::new(&camera, *film), settings).wait()?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let progress = budget.record(lit, renderer, queue, &mut encoder, buffers)?;

@@ -2,7 +2,7 @@
 
 use crate::load::elements::appearance;
 
-/// Kinds of residues. The atoms of known kinds are of few elements, whatever their names look like.
+/// Kinds of residues. Atoms of the known kinds are of few elements, whatever their names suggest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Residue {
     AminoAcid,
@@ -27,7 +27,7 @@ impl Residue {
     }
 }
 
-/// Returns the symbol of an atom's element, such as `Fe`, and true; or the best name of another species, and false.
+/// Returns the symbol of an atom's element, such as `Fe`, and true. For other atoms it is the best name, and false.
 ///
 /// `name` is columns 13-16 and `symbol` is columns 77-78, which may be blank.
 pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (String, bool) {
@@ -49,8 +49,8 @@ pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (Strin
     }
 }
 
-/// Whether an atom without a symbol has a name that can be that of calcium or, in the wrong columns, of an alpha carbon: its
-/// residue is neither known nor that of the ion.
+/// Whether an atom's name may mean calcium or, in the wrong columns, the alpha carbon. The atom has no symbol, and its
+/// residue is neither known nor the calcium ion.
 pub(super) fn is_doubtful(name: [u8; 4], symbol: [u8; 2], kind: Residue, residue: &[u8]) -> bool {
     &name == b"CA  "
         && symbol.trim_ascii().is_empty()
@@ -58,8 +58,8 @@ pub(super) fn is_doubtful(name: [u8; 4], symbol: [u8; 2], kind: Residue, residue
         && !residue.to_ascii_uppercase().starts_with(b"CA")
 }
 
-/// Returns the element that an atom's name shows. Old files have no symbols, but names whose first two characters are
-/// the right-justified symbol.
+/// Returns the element that an atom's name shows. Old files have no symbols, but the first two characters of a name
+/// are the right-justified symbol.
 fn by_name(name: [u8; 4], residue: Residue) -> Option<String> {
     let [first, second, third, fourth] = name;
     if residue != Residue::Other
@@ -79,7 +79,7 @@ fn by_name(name: [u8; 4], residue: Residue) -> Option<String> {
     element(&[first, second]).or_else(|| element(&[first]))
 }
 
-/// Returns the element of an atom in a known residue, which the first letter of its name shows.
+/// Returns the element of an atom in a known residue, by the first letter of the atom's name.
 fn in_known_residue(name: [u8; 4]) -> Option<String> {
     let mut letters = name.into_iter().skip_while(|byte| !byte.is_ascii_alphabetic());
     let (first, second) = (letters.next()?, letters.next());

@@ -1,8 +1,8 @@
 //! Reads tables of text, such as CSV and TSV.
 //!
-//! Values are separated by commas, tabs, semicolons or white space, whichever the first row has. Lines that begin with `#`
-//! are comments, and the last comment before the first row may have the names of the columns. What the names mean is the
-//! same as in all tables. A value that is missing (empty, `NaN`, `NA`, `null`) is NaN.
+//! Values are separated by commas, tabs, semicolons or white space, depending on the first row. Lines that begin with
+//! `#` are comments. The last comment before the first row may have the names of the columns. Names mean the same as in
+//! all tables. A missing value (empty, `NaN`, `NA`, `null`) is NaN.
 
 use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::error::LoadError;
@@ -17,12 +17,12 @@ use pinhole::internals::text::without_byte_order_mark;
 /// Reads a table.
 ///
 /// # Errors
-/// If the columns have no names, a row has more or fewer values than the others, or positions or radii are not numbers.
+/// Returns an error if columns have no names, rows differ in length, or positions or radii are not numbers.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let text = without_byte_order_mark(bytes);
     let first = First::of(text, &options.columns)?;
     let mut columns: Vec<_> = first.names.iter().map(|name| ColumnBuilder::new(name)).collect();
-    // A column is of text if any of its values is; that is known after all rows, which are read again then.
+    // A column is text if any of its values is. That is known only after all rows, which are then read again.
     if read_rows(&first, &mut columns)? {
         columns.iter_mut().for_each(ColumnBuilder::clear);
         read_rows(&first, &mut columns)?;
@@ -69,7 +69,7 @@ impl ColumnBuilder {
     }
 }
 
-/// Reads all rows. Returns whether a column has turned out to be of text, so that its values are not whole.
+/// Reads all rows. Returns whether a column turned out to be text, so that its values are incomplete.
 fn read_rows(first: &First<'_>, columns: &mut [ColumnBuilder]) -> Result<bool, LoadError> {
     let declared = columns.len();
     let mut is_new_text = false;
@@ -162,7 +162,7 @@ enum Separator {
     Byte(u8),
 }
 
-/// What the first lines of a table say.
+/// The separator, the names and the place of the rows, from the first lines of a table.
 struct First<'a> {
     names: Vec<String>,
     separator: Separator,
@@ -247,7 +247,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     let lines = Lines::new(text)
         .map(<[u8]>::trim_ascii)
         .filter(|line| !line.is_empty() && !line.starts_with(b"#"));
-    // The last line may be cut.
+    // The last line may be incomplete.
     let mut rows = lines.take(2).map(|line| values_of(line, separator_of(line)));
     rows.next().is_some_and(|first| {
         let all_numbers = |row: &[String]| {
@@ -258,7 +258,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     })
 }
 
-/// The last comment before the first line that is neither blank nor a comment, this line, and what follows it.
+/// Returns the last comment before the first row, this row, which is not blank, and the text after it.
 fn first_line(text: &[u8]) -> Option<(Option<Line<'_>>, Line<'_>, &[u8])> {
     let mut lines = Lines::new(text);
     let (mut comment, mut number) = (None, 0);

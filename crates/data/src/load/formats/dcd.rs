@@ -1,11 +1,11 @@
 //! Reads trajectories in the format of CHARMM and X-PLOR (`.dcd`), which NAMD, `OpenMM`, LAMMPS and others write as
 //! well.
 //!
-//! The file is a sequence of Fortran records: the number of bytes before and after each, in 32 or 64 bits. The first
-//! three are a header of 84 bytes, a title and the number of atoms; if atoms are fixed, the list of those that are not
-//! follows. A frame is a record for the unit cell, if the header says so, and one each for all x, y and z in f32, and for
-//! a fourth dimension, if the header says so. Only the first frame has the fixed atoms. Lengths are taken as they are, in
-//! Å.
+//! The file is a sequence of Fortran records, with the number of bytes before and after each, in 32 or 64 bits. The
+//! first three are a header of 84 bytes, a title and the number of atoms. If atoms are fixed, the list of the others
+//! follows. A frame is a record for the unit cell, if the header says so, one each for all x, y and z in f32, and one
+//! for a fourth dimension, if the header says so. Only the first frame has the fixed atoms. Lengths are taken as they
+//! are, in Å.
 
 use std::ops::Range;
 
@@ -69,7 +69,7 @@ fn find(
 #[derive(Debug)]
 struct Dcd {
     header: Header,
-    /// Where the first frame is, which has the fixed atoms.
+    /// Range of bytes of the first frame, which has the fixed atoms.
     first: Range<u64>,
     topology: Topology,
 }
@@ -97,7 +97,7 @@ impl FrameReader for Dcd {
 }
 
 impl Dcd {
-    /// Reads a frame; `positions` has those of the fixed atoms if it is not the first.
+    /// Reads a frame. After the first frame, `positions` must already have the fixed atoms.
     fn read_frame(
         &self,
         reader: &mut Reader<'_>,
@@ -142,23 +142,23 @@ const NAME: &[u8] = b"CORD";
 
 const CELL_BYTES: u64 = 48;
 
-/// What a file says about its frames.
+/// The layout of the frames, as a file declares it.
 #[derive(Debug)]
 struct Header {
     order: Order,
-    /// Bytes of the length before and after each record.
+    /// Number of bytes of the length that stands before and after each record.
     marker_bytes: u64,
     atoms: usize,
-    /// Number of frames; 0 where a program did not come to write it.
+    /// Number of frames; 0 if the program that wrote the file was stopped early.
     frames: u32,
     has_cell: bool,
     /// Whether positions have a fourth dimension.
     has_fourth: bool,
-    /// Indices of the atoms that are not fixed, from 0, if some are fixed.
+    /// Indices of the atoms that are not fixed, from 0; empty if none is fixed.
     free: Vec<u32>,
 }
 
-/// The order of bytes, and the bytes of the length of a record, if the first bytes are those of a file of this kind.
+/// The byte order and the number of bytes of a record's length, if the first bytes are those of a DCD file.
 fn layout(bytes: &[u8]) -> Option<(Order, u64)> {
     for order in [Order::Little, Order::Big] {
         for marker_bytes in [4, 8] {
@@ -184,7 +184,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     layout(bytes).is_some()
 }
 
-/// A reader in the order of a file's bytes.
+/// Returns a reader in the byte order of the file.
 fn reader(source: &mut dyn Bytes) -> Result<Reader<'_>, LoadError> {
     let mut reader = Reader::new(source, Order::Little)?;
     let first = reader.bytes(reader.size.min(12), "the header")?;
@@ -218,7 +218,7 @@ impl Header {
         }
         let control: Vec<u32> = numbers(&first[4..], reader.order).collect();
         header.frames = control[0];
-        // Only files of CHARMM's kind, which have a version at the end, have these.
+        // Only files of CHARMM's kind, which have a version at the end of the header, have a cell or a fourth axis.
         let is_charmm = control[19] != 0;
         header.has_cell = is_charmm && control[10] != 0;
         header.has_fourth = is_charmm && control[11] != 0;
@@ -236,7 +236,7 @@ impl Header {
             let message = format!("{fixed} of {atoms} atoms are fixed; at least one must move");
             return Err(LoadError::byte(marker_bytes + 36, message));
         }
-        // What one frame takes is checked before memory depends on the number of atoms.
+        // The size of a frame is checked before memory depends on the number of atoms.
         reader.check(header.frame_bytes(0), format!("a frame of {atoms} atoms"))?;
         if fixed > 0 {
             let start = reader.offset + marker_bytes;
@@ -313,11 +313,11 @@ impl Header {
     }
 }
 
-/// Returns the edge vectors of a cell; `None` if its lengths are 0, as where there is no cell.
+/// Returns the edge vectors of a cell; `None` if its lengths are 0, which means no cell.
 ///
 /// The six numbers are a, the angle between a and b, b, the angle between a and c, the angle between b and c, and c.
 /// Angles are degrees, or cosines (CHARMM, NAMD). Newer versions of CHARMM write the six different elements of a
-/// symmetric matrix whose rows are the edges; that is assumed if the numbers cannot be lengths and angles.
+/// symmetric matrix whose rows are the edges. They are assumed if the numbers cannot be lengths and angles.
 fn edges(cell: [f64; 6]) -> Result<Option<[[f64; 3]; 3]>, String> {
     let [a, gamma, b, beta, alpha, c] = cell;
     if cell.iter().any(|value| !value.is_finite()) {

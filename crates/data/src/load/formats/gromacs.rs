@@ -1,6 +1,5 @@
 //! Reads trajectories of GROMACS: `.trr` (full precision) and `.xtc` (compressed). Both are in XDR, which is big-endian
-//! with everything padded to 4 bytes. Lengths are nm in the file and Å in the result, so that they fit other files of
-//! atoms.
+//! and pads everything to 4 bytes. Lengths are nm in the file and Å in the result, to fit other files of atoms.
 
 mod trr;
 mod xtc;
@@ -20,7 +19,7 @@ const ANGSTROMS: f64 = 10.0;
 /// Checks a frame's header, and returns where the frame ends and whether it has positions.
 type NextFrame = fn(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>;
 
-/// Reads the positions of a frame, whose number of atoms the topology has.
+/// Reads the positions of a frame. The topology has the number of atoms.
 type ReadFrame = fn(&mut Reader<'_>, usize, &Topology) -> Result<Positions, LoadError>;
 
 #[derive(Debug)]
@@ -92,7 +91,7 @@ fn find_frames(
     Ok(found)
 }
 
-/// The edges of a cell, in nm; `None` if they are 0, as where there is no cell.
+/// The edges of a cell, in nm; `None` if they are 0, which means no cell.
 fn cell_of(edges: [f64; 9], offset: u64, frame: usize) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
     if edges.iter().any(|value| !value.is_finite()) {
         let message = format!("frame {frame}: the cell has a number that is not finite");

@@ -1,7 +1,7 @@
 //! Reads files of HOOMD-blue (GSD with the schema `hoomd`).
 //!
-//! A frame has positions, and what else changed since the first one; the rest is that of the first frame, or else the
-//! schema's default. Lengths are taken as they are. <https://gsd.readthedocs.io/en/stable/schema-hoomd.html>
+//! A frame has positions and any data that changed since the first frame. Other data are those of the first frame, or
+//! else the schema's default. Lengths are taken as they are. <https://gsd.readthedocs.io/en/stable/schema-hoomd.html>
 
 mod index;
 
@@ -20,7 +20,7 @@ use index::{Chunk, Index};
 
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
 
-/// More components of a vector than this are not made columns.
+/// Vectors with more components than this do not become columns.
 const MOST_COMPONENTS: u32 = 64;
 
 /// Quantities of particles that become columns: name of the chunk, name of the column, number of components.
@@ -33,7 +33,7 @@ const QUANTITIES: [(&str, &str, u32); 6] = [
     ("particles/diameter", "diameter", 1),
 ];
 
-/// Chunks that say what the others mean.
+/// Chunks that describe the others.
 const OTHERS: [&str; 4] =
     ["particles/N", "particles/position", "particles/types", "particles/typeid"];
 
@@ -100,7 +100,7 @@ struct Frame<'a> {
     count: u64,
     /// Whether there are as many particles as in the first frame.
     is_like_first: bool,
-    /// How many bytes may still be read: chunks that lie over each other could take much more memory than the file.
+    /// Maximum number of bytes that may still be read. Overlapping chunks could take much more memory than the file.
     left: u64,
 }
 
@@ -115,7 +115,7 @@ impl Frame<'_> {
                 columns.extend(self.columns(chunk, name, column)?);
             }
         }
-        // Types are often called A, B and C, of which B and C happen to be elements.
+        // Types are often called A, B and C, and B and C happen to be chemical elements.
         let are_elements = !species.names.is_empty()
             && species.names.iter().all(|name| {
                 name.starts_with(|c: char| c.is_ascii_alphabetic()) && appearance(name).is_element
@@ -129,7 +129,7 @@ impl Frame<'_> {
                     .to_owned(),
             );
         } else if !has_diameters && options.radius.is_none() {
-            // The schema's default.
+            // The schema has this default.
             columns.push(TableColumn::numbers("diameter", vec![1.0; self.count as usize]));
         }
         let mut others = Vec::new();
@@ -149,19 +149,19 @@ impl Frame<'_> {
         loaded.columns = others;
         loaded.notes.extend(notes);
         loaded.cell = self.cell()?;
-        // The box of HOOMD-blue has its middle at the origin.
+        // The box of HOOMD-blue is centred at the origin.
         if let Some([a, b, c]) = loaded.cell {
             loaded.cell_origin = std::array::from_fn(|axis| -0.5 * (a[axis] + b[axis] + c[axis]));
         }
         Ok(loaded)
     }
 
-    /// The chunk of this frame with this name, or else that of the first frame.
+    /// Returns the chunk of this frame with this name, or else that of the first frame.
     fn chunk(&self, name: &str) -> Option<Chunk> {
         self.index.chunk(self.frame, name).or_else(|| self.index.chunk(0, name))
     }
 
-    /// The same, for one that has a row for each particle.
+    /// Returns the same for data of particles, which apply only to frames with as many particles as the first.
     fn particle_chunk(&self, name: &str) -> Result<Option<Chunk>, LoadError> {
         let own = self.index.chunk(self.frame, name);
         let inherited = || self.index.chunk(0, name).filter(|_| self.is_like_first);
@@ -256,7 +256,7 @@ impl Frame<'_> {
         Ok(Labels { names, indices: ids.into_iter().map(|id| id as u32).collect() })
     }
 
-    /// Adds columns for what was logged of each particle, and returns what else the frame has.
+    /// Adds columns for quantities that were logged for each particle, and returns the names of unused chunks.
     fn logged(&mut self, columns: &mut Vec<TableColumn>) -> Result<BTreeSet<String>, LoadError> {
         let index = self.index;
         let mut seen = BTreeSet::new();
@@ -278,7 +278,7 @@ impl Frame<'_> {
                     && is_for_all
             });
             let Some(quantity) = quantity else {
-                // Of bonds, all of what they have is not used.
+                // Nothing about bonds is used, so a note names only the kind.
                 let is_bonded = !name.starts_with("particles/") && !name.starts_with("log/");
                 let part = name.split('/').next().filter(|_| is_bonded).unwrap_or(name);
                 unused.insert(shown(part.as_bytes()));

@@ -14,7 +14,7 @@ use crate::load::table::{Table, TableColumn};
 use pinhole::internals::parallel;
 use pinhole::internals::text::shortened;
 
-/// Text of the file that stands in the wrong place or cannot be read, with what is wrong about it.
+/// The error of a text in the wrong place, or one that cannot be read; `what` is the end of the sentence.
 fn wrong_text(line: usize, text: &[u8], what: &str) -> LoadError {
     let text = shortened(&String::from_utf8_lossy(text.trim_ascii()));
     LoadError::line(line, format!("`{text}` {what}"))
@@ -25,7 +25,7 @@ fn too_few_atoms(line: usize, declared: usize, found: usize) -> LoadError {
     LoadError::line(line, message)
 }
 
-/// How the three lines of a box are written.
+/// The layout of the three lines of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shape {
     /// Low and high end along x, y and z.
@@ -87,7 +87,7 @@ impl Cell {
             Shape::Orthogonal => Self::tilted([a[0], b[0], c[0]], [a[1], b[1], c[1]], [0.0; 3]),
             Shape::Triclinic => {
                 let [xy, xz, yz] = [a[2], b[2], c[2]];
-                // What a dump has is the box around the cell.
+                // A dump has the bounds of the box around the cell.
                 let ends = [0.0, xy, xz, xy + xz];
                 let least = ends.into_iter().fold(f64::INFINITY, f64::min);
                 let most = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -107,7 +107,7 @@ impl Cell {
         Self { origin: low, edges: [[x, 0.0, 0.0], [xy, y, 0.0], [xz, yz, z]] }
     }
 
-    /// The place with these fractions of the edges.
+    /// The point with these coordinates as fractions of the edges.
     fn place(&self, fractions: [f64; 3]) -> [f64; 3] {
         let [a, b, c] = self.edges;
         let [u, v, w] = fractions;
@@ -115,8 +115,8 @@ impl Cell {
     }
 }
 
-/// Sorts the rows by the column `id`, if there is one. Returns for each row the one that it was in the file; `None` if
-/// they are in order.
+/// Sorts the rows by the column `id`, if there is one. Returns the former index of each row; `None` if the rows were
+/// in order.
 fn by_id(table: &mut Table) -> Option<Vec<u32>> {
     let ids = table.columns.iter().find_map(|column| match &column.values {
         ColumnValues::Numbers(ids) if column.name == "id" => Some(ids.as_slice()),
@@ -140,13 +140,13 @@ fn by_id(table: &mut Table) -> Option<Vec<u32>> {
     Some(order)
 }
 
-/// The order if the ids are consecutive whole numbers, as they are where no atom was lost or left out.
+/// Returns the order if the ids are consecutive whole numbers, as they are if no atom was lost or left out.
 fn of_consecutive(ids: &[f64]) -> Option<Vec<u32>> {
     let least = ids.iter().copied().fold(f64::INFINITY, f64::min);
     let mut order = vec![u32::MAX; ids.len()];
     for (row, id) in ids.iter().enumerate() {
         let place = id - least;
-        // Casts saturate, so that a place which is no whole number or too large is noticed.
+        // Casts saturate, so that a place is refused if it is not a whole number or is too large.
         let index = place as usize;
         let slot = order.get_mut(index).filter(|slot| **slot == u32::MAX)?;
         if (index as f64 - place).abs() > 0.0 || !place.is_finite() {

@@ -1,8 +1,8 @@
 //! Reads LAS files, clouds of points of laser scanners (LAS 1.0 to 1.4, point formats 0 to 10).
 //!
-//! Of a point its position, intensity, number and count of returns, class, time and colour are read. LAZ, which is LAS
-//! compressed, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes asks for
-//! 50 GB of memory, which ends the program.
+//! The reader uses position, intensity, number and count of returns, class, time and colour of a point. LAZ, which is
+//! compressed LAS, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes
+//! asks for 50 GB of memory, which ends the program.
 
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, LoadErrorKind};
@@ -13,7 +13,7 @@ use pinhole::internals::parallel;
 /// Bytes of a point of each format, by the specification of LAS 1.4 (R15, tables 7 to 17).
 const LENGTHS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
-/// The most that a colour of eight bits is, which many programs write into the sixteen bits of LAS.
+/// The largest value of an eight-bit colour, which many programs write into the sixteen bits of LAS.
 const EIGHT_BITS: f64 = 255.0;
 
 pub(super) fn starts(bytes: &[u8]) -> bool {
@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     Ok(loaded)
 }
 
-/// The points of a file, and what its header says of them.
+/// The points of a file, with their layout from its header.
 struct Points<'a> {
     bytes: &'a [u8],
     count: usize,
@@ -166,7 +166,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Says what the largest value of colours is; none are left if they are all black, as where there are no photographs.
+/// Sets the range of colours. Returns none if all are black, which means that there were no photographs.
 fn with_range(mut colors: Vec<TableColumn>, notes: &mut Vec<String>) -> Vec<TableColumn> {
     let largest = colors.iter().map(TableColumn::largest).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -178,7 +178,7 @@ fn with_range(mut colors: Vec<TableColumn>, notes: &mut Vec<String>) -> Vec<Tabl
     colors
 }
 
-/// The bytes at this place; zeros if there are too few, which readers check before.
+/// Returns the bytes at this offset; zeros if there are too few, which readers check before.
 fn chunk<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     bytes.get(at..).and_then(<[u8]>::first_chunk).copied().unwrap_or([0; N])
 }

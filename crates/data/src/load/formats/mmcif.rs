@@ -1,11 +1,11 @@
 //! Reads mmCIF files, and CIF files of small molecules.
 //!
-//! Atoms are the rows of the loop with the positions of `_atom_site`. A frame is a model; those of several data blocks
-//! follow each other. Columns and the choice between alternate locations are those of PDB files, so that an entry in either
-//! format gives the same: where the authors' names and numbers (`auth_…`) differ from those of the dictionary (`label_…`),
-//! they count. Lengths are taken as they are, in Å.
+//! Atoms are the rows of the loop with the positions of `_atom_site`. A frame is a model; models of several data blocks
+//! follow each other. Columns and the choice between alternate locations are those of PDB files, so that an entry in
+//! either format gives the same result. Where the authors' names and numbers (`auth_…`) differ from those of the
+//! dictionary (`label_…`), the authors' count. Lengths are taken as they are, in Å.
 //!
-//! Positions that are fractions of the cell give the atoms that the file lists; its symmetry is not applied.
+//! Positions that are fractions of the cell are those of the atoms that the file lists. Symmetry is not applied.
 
 mod tokens;
 
@@ -34,7 +34,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     first.and_then(|line| line.get(..5)).is_some_and(|name| name.eq_ignore_ascii_case(b"data_"))
 }
 
-/// Finds the models. The whole file is in memory for that, because a row may go over several lines.
+/// Finds the models. The whole file must be in memory, because a row may go over several lines.
 fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIndex, LoadError> {
     let mut text = Vec::new();
     source.seek(SeekFrom::Start(0))?;
@@ -59,13 +59,13 @@ fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIn
     })
 }
 
-/// Reads models, whose names of columns and cells stand in the text around them.
+/// Reads models. The text around them has the names of their columns, and the cell.
 #[derive(Debug)]
 struct MmCif {
     models: Vec<FrameSpan>,
-    /// The end of the file.
+    /// Size of the file in bytes.
     end: u64,
-    /// Whether the last model is followed by what may follow it.
+    /// Whether the file is valid after its last model.
     is_whole: bool,
 }
 
@@ -79,7 +79,7 @@ impl FrameReader for MmCif {
     ) -> Result<Dataset, LoadError> {
         let frames = &self.models;
         let FrameSpan { bytes: rows, lines_before } = span;
-        // Models of a block follow each other without a gap; the text between blocks has their names and cells.
+        // Models of a block follow each other without a gap. The text between blocks has their names and cells.
         let is_first =
             |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
         let first = (0..=wanted).rev().find(|frame| is_first(*frame)).unwrap_or_default();
@@ -119,7 +119,7 @@ fn no_atoms() -> LoadError {
     )
 }
 
-/// Where a value begins, and the value.
+/// The values of an atom, each with its position in the text.
 type Values<'a> = [(Place, &'a [u8]); SLOTS.len()];
 
 fn read_rows(
@@ -129,7 +129,7 @@ fn read_rows(
     cell: Option<[[f64; 3]; 3]>,
 ) -> Result<Dataset, LoadError> {
     let mut tokens = Tokens::new(text, lines_before);
-    // Rows are hardly ever shorter.
+    // Rows are hardly ever shorter than this.
     let mut atoms = Atoms::with_capacity(text.len() / 80);
     let none = Place { offset: 0, lines_before, column: 0 };
     let mut values: Values<'_> = [(none, &b"."[..]); SLOTS.len()];
@@ -204,7 +204,7 @@ fn push(
     Ok(())
 }
 
-/// The letters with which a text begins, at most two, as a symbol in its field.
+/// The first letters of a text, at most two, as a symbol in its field.
 fn symbol_of(text: &[u8]) -> [u8; 2] {
     match text {
         [a, b, rest @ ..]
@@ -223,8 +223,8 @@ fn symbol_of(text: &[u8]) -> [u8; 2] {
     }
 }
 
-/// The name as in a PDB file, where a name of up to three characters begins in the second column unless its symbol has two
-/// letters, as that of an ion has, which is called as its residue.
+/// The name as in a PDB file. There, a name of up to three characters begins in the second column, unless it is the
+/// name of an ion, which equals that of its residue and begins in the first.
 fn field_of(name: &[u8], residue: &[u8]) -> [u8; 4] {
     let mut field = [b' '; 4];
     let skipped = usize::from(name.len() < 4 && name != residue);
@@ -232,7 +232,7 @@ fn field_of(name: &[u8], residue: &[u8]) -> [u8; 4] {
     field
 }
 
-/// A model's rows.
+/// Range and first line of a model's rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Model {
     start: usize,
@@ -240,7 +240,7 @@ struct Model {
     lines_before: usize,
 }
 
-/// The models of a text, and what is wrong after them.
+/// Returns the models of a text, and the fault after them.
 fn models_of(text: &[u8]) -> (Vec<Model>, Option<LoadError>) {
     let mut models = Vec::new();
     let problem = search(text, &mut models).err();
@@ -281,7 +281,7 @@ struct Rows<'a, 'c> {
     first: Place,
 }
 
-/// The models of a loop so far.
+/// The models of a loop that were found so far.
 struct LoopModels<'a> {
     models: Vec<Model>,
     names: HashSet<&'a [u8]>,
@@ -316,8 +316,8 @@ impl<'a> LoopModels<'a> {
 }
 
 impl<'a> Rows<'a, '_> {
-    /// Finds models where each row is a line that ends with the number of its model, as the archives of the wwPDB have them;
-    /// `None` if the rows are not like this.
+    /// Finds models where each row is a line that ends with the model's number, as in the archives of the wwPDB; `None`
+    /// if the rows are different.
     fn by_lines(&self, models: &mut Vec<Model>) -> Result<Option<Tokens<'a>>, LoadError> {
         let Self { text, columns, first } = *self;
         if columns.model != Some(columns.count - 1) || first.column != 0 {
@@ -338,7 +338,7 @@ impl<'a> Rows<'a, '_> {
             if found.models.is_empty() || last != found.current {
                 let mut tokens = Tokens::new(line, 0);
                 let mut values = 0;
-                // What is wrong in the line is found value by value, which knows its number.
+                // A fault in the line is found later value by value, with its place.
                 while let Ok(Some(Token::Value(_))) = tokens.next() {
                     values += 1;
                 }
@@ -356,7 +356,7 @@ impl<'a> Rows<'a, '_> {
         }
         let mut tokens = Tokens::new(text, 0);
         tokens.go_to(at, lines_before);
-        // What follows must not be a value, or rows are not lines.
+        // A value must not follow, or else rows are not lines.
         tokens.place();
         if let Some(Token::Value(_)) = tokens.clone().next()? {
             return Ok(None);

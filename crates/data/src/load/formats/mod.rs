@@ -1,5 +1,5 @@
-//! The table of file formats, one row for each, in which formats are looked up by name, extension or content, and which
-//! says to which of them options apply.
+//! The table of file formats, one row for each. Formats are looked up by name, extension or content, and each row says
+//! which options apply to the format.
 
 use std::io;
 use std::io::Read as _;
@@ -25,7 +25,7 @@ pub mod raw;
 mod vtk;
 pub mod xyz;
 
-/// The row of a format without a name, a header and extras, to which the others add what they have.
+/// A format without a name, a header and extras. The rows of the table override what they have.
 const RAW: Format = Format {
     name: "raw-f32x4",
     extensions: &[],
@@ -218,11 +218,11 @@ impl Format {
         FORMATS.iter().find(|format| (format.starts)(bytes))
     }
 
-    /// Returns the format of a file by its extension or else, of a regular file, by its first bytes, which may be
-    /// compressed with gzip. Nothing else is opened: a pipe can be read only once.
+    /// Returns the format of a file by its extension, or else by the first bytes of a regular file, which may be
+    /// compressed with gzip. Other files are not opened, because a pipe can be read only once.
     ///
     /// # Errors
-    /// If the first bytes are needed and cannot be read.
+    /// Returns an error if the first bytes are needed and cannot be read.
     pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
         const FIRST_BYTES: u64 = 1 << 12;
         let format = Self::of_file_name(path);
@@ -234,7 +234,7 @@ impl Format {
         Ok(Self::of_content(&first))
     }
 
-    /// Returns the format with the extension of a file's name, before which `.gz` is taken away.
+    /// Returns the format with the extension of a file's name, without `.gz`.
     fn of_file_name(path: &Path) -> Option<&'static Self> {
         without_gz(path).extension()?.to_str().and_then(Self::of_extension)
     }
@@ -245,7 +245,7 @@ impl Format {
         format.ok_or_else(Self::unknown)
     }
 
-    /// The error of a file of which neither the name nor the content shows the format.
+    /// The error of a file whose format neither the name nor the content shows.
     #[must_use]
     pub fn unknown() -> LoadError {
         let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();

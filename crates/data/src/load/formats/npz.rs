@@ -1,7 +1,7 @@
 //! Reads spheres from an `.npz` file: a zip archive of NumPy arrays, as `savez` and `savez_compressed` write it.
 //!
-//! One array has the positions, or `x`, `y` and `z` do. The others, with a row for each sphere, are columns whose names say
-//! what they mean, as in all tables: `radius`, `colors`, `opacity` and so on.
+//! One array has the positions, or `x`, `y` and `z` do. Other arrays with a row for each sphere are columns. Their
+//! names have the same meaning as in all tables: `radius`, `colors`, `opacity` and so on.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -18,7 +18,7 @@ use crate::load::format::Options;
 use crate::load::table::Table;
 use pinhole::internals::text::{one_line, shortened};
 
-/// Names that mark the array of positions among several; the first name that occurs counts.
+/// Names that mark the array of positions among several. The first name in this list that occurs counts.
 const NAMES: [&str; 9] = [
     "spheres",
     "positions",
@@ -39,10 +39,10 @@ const MAX_RATIO: u64 = 1032;
 
 /// Reads spheres from the array called `spheres` or `positions`, or from the only one, as [`super::npy::read`] does; or
 /// from `x`, `y` and `z`. Other arrays with a row for each sphere are radii, colours, opacities or columns, by their
-/// names. A note lists arrays that are not used.
+/// names. A note lists unused arrays.
 ///
 /// # Errors
-/// If no array has positions, an array is damaged, or they do not make spheres.
+/// Returns an error if no array has positions, an array is damaged, or the arrays do not make spheres.
 pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let entries = entries(&archive, bytes.len() as u64)?;
@@ -116,7 +116,7 @@ pub(super) fn array_of(bytes: &[u8], wanted: &'static str) -> Result<Vec<u8>, Lo
     }
 }
 
-/// An array in its archive: where it is, and how it is compressed.
+/// An array in its archive: its place and compression.
 struct Entry {
     name: String,
     wayfinder: rawzip::ZipArchiveEntryWayfinder,
@@ -159,7 +159,7 @@ impl Entry {
                     wrong(&format!("there is not enough memory for its {size} bytes"))
                 })?;
                 let reader = entry.verifying_reader(DeflateDecoder::new(data));
-                // One byte more, so that the reader reaches the end of the data and verifies the checksum.
+                // One more byte is asked for, so that the reader reaches the end of the data and verifies the checksum.
                 reader
                     .take(size.saturating_add(1))
                     .read_to_end(&mut inflated)
@@ -184,7 +184,7 @@ impl Entry {
     }
 }
 
-/// Lists the arrays of an archive. If two have the same name, the later one counts, as in NumPy.
+/// Lists the arrays of an archive. The later of two arrays with the same name counts, as in NumPy.
 fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, LoadError> {
     let mut entries: Vec<Entry> = Vec::new();
     let mut compressed = 0_u64;
@@ -194,7 +194,7 @@ fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, Lo
         let Some(name) = array_name_from_file_name(&name) else { continue };
         let (name, wayfinder) = (name.to_owned(), entry.wayfinder());
         compressed = compressed.saturating_add(wayfinder.compressed_size_hint());
-        // Arrays that lie over each other could take much more memory than the file.
+        // Overlapping arrays could take much more memory than the file.
         if entries.len() == MAX_ARRAYS || compressed > size {
             let message =
                 format!("it has more than {MAX_ARRAYS} arrays, or arrays that lie over each other");
@@ -206,10 +206,10 @@ fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, Lo
     Ok(entries)
 }
 
-/// The array that says how many spheres there are.
+/// The array that determines the number of spheres.
 struct Main {
     index: usize,
-    /// Whether it has all of their positions, as opposed to one coordinate.
+    /// Whether the array has complete positions, as opposed to one coordinate.
     is_alone: bool,
 }
 
@@ -234,12 +234,12 @@ fn main_array(entries: &[Entry]) -> Result<Main, LoadError> {
     }
 }
 
-/// The file is not a zip archive, or is damaged.
+/// The error of a file that is not a zip archive, or is damaged.
 fn broken(error: &impl ToString) -> LoadError {
     LoadError::new(format!("this is not a complete .npz file: {}", one_line(&error.to_string())))
 }
 
-/// Puts the name of an array before what is wrong with it.
+/// Puts the name of an array before an error.
 pub(super) fn of_array(name: &str) -> impl Fn(LoadError) -> LoadError {
     let name = shortened(&one_line(name));
     move |error| LoadError {

@@ -7,8 +7,8 @@
 //! The columns are `species`, `name`, `residue`, `chain`, `residue_number`, `b_factor`, `occupancy` and
 //! `record`. One location of an atom with alternate locations is kept.
 //!
-//! Many programs deviate from the format, so this reader accepts more than it allows: residue names of four
-//! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
+//! Many programs deviate from the format, so this reader also accepts residue names of four characters,
+//! residue numbers in hybrid-36, and lines that end after the coordinates.
 
 mod record;
 
@@ -28,14 +28,14 @@ use record::{Kind, Lines, Record, cell_of, hybrid36};
 /// [`Dataset::frames`] is known, but atoms of other models are not checked.
 ///
 /// # Errors
-/// If the text is not a valid PDB file, or has no such frame.
+/// Returns an error if the text is not a valid PDB file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
 pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
-/// Finds frames by their MODEL records, and checks the order of all of them. The lines before the first are read with
+/// Finds frames by their MODEL records, and checks the order of all records. The lines before the first are read with
 /// every frame.
 fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> {
     let mut found = FrameIndex { is_whole: true, ..FrameIndex::default() };
@@ -74,7 +74,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
 fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
-    // Few lines of atoms are shorter: they end after the B-factor, which is in columns 61 to 66.
+    // Lines of atoms are rarely shorter than this: they end after the B-factor, which is in columns 61 to 66.
     let atoms = Atoms::with_capacity(text.len() / 67);
     let mut reader = Reader { atoms, ..Reader::default() };
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
@@ -84,7 +84,7 @@ fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> 
     reader.finish(frame.index)
 }
 
-/// Whether the first line is one of those that PDB files start with.
+/// Whether the first line is one with which PDB files start.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     const FIRST: [&[u8]; 10] = [
         b"HEADER", b"TITLE ", b"REMARK", b"COMPND", b"CRYST1", b"MODEL ", b"ATOM  ", b"HETATM",
@@ -112,7 +112,7 @@ struct Reader {
     first_atom: Option<usize>,
     /// Whether a file without models has reached an END or ENDMDL record after its atoms.
     ended: bool,
-    /// Line of the first atom after this end.
+    /// Line of the first atom after this record.
     after_end: Option<usize>,
     cell: Option<[[f64; 3]; 3]>,
     atoms: Atoms,
@@ -144,7 +144,7 @@ impl Reader {
         }
     }
 
-    /// Refuses mmCIF by the first line that is neither blank nor a comment of that format.
+    /// Refuses mmCIF, which is recognised by the first line that is neither blank nor a comment of that format.
     fn begin(&mut self, text: &[u8]) -> Result<(), LoadError> {
         let text = text.trim_ascii_start();
         self.begun = !(text.is_empty() || text.starts_with(b"#"));
@@ -200,7 +200,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Returns the atoms of the frame, which is the one with this index in the file.
+    /// Returns the atoms of the frame, which has this index in the file.
     fn finish(self, index: usize) -> Result<Dataset, LoadError> {
         if self.atoms.is_empty() {
             let message = format!(
@@ -224,7 +224,7 @@ fn no_atoms() -> LoadError {
     LoadError::new("there are no ATOM or HETATM records; a PDB file has one for each atom")
 }
 
-/// The file is of the successor of PDB.
+/// The error of a file in mmCIF, the successor of PDB.
 fn mmcif() -> LoadError {
     LoadError::new(
         "this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif",
@@ -275,7 +275,7 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
         name: record.bytes::<4>(13).trim_ascii(),
         name_field: record.bytes(13),
         symbol: record.bytes(77),
-        // The format has residue names of three characters and a blank column 21; other programs use all four.
+        // The format has residue names of three characters and a blank column 21. Other programs use all four columns.
         residue: record.bytes::<4>(18).trim_ascii(),
         chain: record.bytes::<1>(22).trim_ascii(),
         record: record.name.as_bytes(),

@@ -1,9 +1,9 @@
 //! Reads the vertices of PLY files: text, and binary data in either byte order.
 //!
-//! The properties of the element `vertex` are columns: `x`, `y` and `z` are the centres; a radius, colours and opacities
-//! are used as in every table. Other elements, such as faces, are not used, and a note says so. Those after the vertices
-//! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
-//! one by one, such as the crate ply-rs-bw, would take more memory and time.
+//! The properties of the element `vertex` are columns: `x`, `y` and `z` are the centres; a radius, colours and
+//! opacities are used as in every table. Other elements, such as faces, are not used, and a note says so. Elements
+//! after the vertices are not even looked at, and vertices are stored only as numbers in the columns. A reader that
+//! hands out elements one by one, such as the crate ply-rs-bw, would take more memory and time.
 
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, LoadErrorKind, Place};
@@ -86,7 +86,7 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
             let first = number()?;
             match values {
                 Some(values) => values.push(first),
-                // A list starts with its length; the numbers in it must be there.
+                // A list starts with its length; the line must have all of its numbers.
                 None => {
                     for _ in 0..first as u64 {
                         number()?;
@@ -181,18 +181,18 @@ fn too_many(place: Place, Element { name, count, .. }: &Element) -> LoadError {
     LoadError::at(place, message)
 }
 
-/// Goes through elements, hands over every number that is not in a list with the index of its property, and returns what
-/// follows them.
+/// Goes through elements, calls `number` with the index of the property for every number that is not in a list, and
+/// returns the data after them.
 ///
 /// # Errors
-/// Returns the index of the first element that is not there as a whole.
+/// Returns the index of the first element that is incomplete.
 fn walk<'a>(
     data: &'a [u8],
     element: &Element,
     order: Order,
     mut number: impl FnMut(usize, f64),
 ) -> Result<&'a [u8], u64> {
-    // A number of elements without properties takes no bytes, so it could be any.
+    // Elements without properties take no bytes, so the file may declare any number of them.
     if element.properties.is_empty() {
         return Ok(data);
     }
@@ -214,7 +214,7 @@ fn walk<'a>(
     Ok(rest)
 }
 
-/// How the data after the header are stored.
+/// The encoding of the data after the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Encoding {
     Ascii,
@@ -226,7 +226,7 @@ enum Encoding {
 struct Property {
     name: String,
     scalar: Scalar,
-    /// The type of the number of values, if this is a list.
+    /// The type of a list's length, if the property is a list.
     list: Option<Scalar>,
 }
 
@@ -262,7 +262,7 @@ fn scalar_of_name(name: &str) -> Option<Scalar> {
 }
 
 impl Element {
-    /// The number of bytes of each, if all have the same.
+    /// The number of bytes of an element, if all elements have the same.
     fn size(&self) -> Option<usize> {
         let is_list = self.properties.iter().any(|property| property.list.is_some());
         (!is_list).then(|| self.properties.iter().map(|property| property.scalar.size()).sum())

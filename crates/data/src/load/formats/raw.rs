@@ -12,7 +12,7 @@ const SPHERE_BYTES: usize = 16;
 /// Reads spheres of 16 bytes each: x, y, z and radius in little-endian f32.
 ///
 /// # Errors
-/// If the number of bytes is not a multiple of 16, or there is not enough memory.
+/// Returns an error if the number of bytes is not a multiple of 16, or there is not enough memory.
 pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, LoadError> {
     if !bytes.len().is_multiple_of(SPHERE_BYTES) {
         let (bytes, whole, left) =
@@ -40,8 +40,8 @@ pub(super) struct Layout {
     pub(super) by_column: bool,
 }
 
-/// Decodes the rows; `radius` is the fourth number of each if there are only three columns. If there are fewer
-/// `bytes` than the layout needs, the result is empty: readers check that themselves and name the fault.
+/// Decodes the rows; `radius` is the fourth number of each if there are only three columns. The result is
+/// empty if there are fewer `bytes` than the layout needs, which readers check themselves and report.
 pub(super) fn rows<T: Copy + Send + Sync, const WIDTH: usize>(
     bytes: &[u8],
     layout: Layout,
@@ -53,7 +53,7 @@ pub(super) fn rows<T: Copy + Send + Sync, const WIDTH: usize>(
     if rows.checked_mul(columns).is_none_or(|wanted| numbers.len() < wanted) {
         return Ok(Vec::new());
     }
-    // One loop for each layout, so that the compiler can make it a copy.
+    // There is one loop for each layout, so that the compiler can turn it into a copy.
     match (columns, by_column) {
         (4, false) => parallel::try_map(rows, |row| {
             let start = row * 4;

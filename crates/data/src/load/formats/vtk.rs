@@ -24,7 +24,7 @@ use pinhole::internals::text::{one_line, shortened, without_byte_order_mark};
 
 const LEGACY: &[u8] = b"# vtk DataFile";
 
-/// Whether the first bytes are XML with the element `VTKFile`, or those of a legacy file, which is refused with advice.
+/// Whether the first bytes are XML with the element `VTKFile`, or a legacy file, which is refused with advice.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     const NAME: &[u8] = b"<VTKFile";
     let text = without_byte_order_mark(bytes).trim_ascii_start();
@@ -74,7 +74,7 @@ fn columns(
         let message = format!("it must have 3 components, but has {}", positions.components);
         return Err(in_array(index, "Points", &message));
     }
-    // A name that comes again would be read with the array of the first.
+    // A repeated name would be read with the array of the first.
     let mut names = HashSet::new();
     let mut kept: Vec<&Array<'_>> = Vec::new();
     kept.extend(first.arrays.iter().filter(|array| names.insert(array.name.as_str())));
@@ -135,7 +135,7 @@ fn component_name(Array { name, components, .. }: &Array<'_>, component: usize) 
     }
 }
 
-/// The numbers of an array of one piece, component by component.
+/// Returns the numbers of an array of one piece, component by component.
 fn group(
     document: &Document<'_>,
     piece: usize,
@@ -218,7 +218,7 @@ fn numbers(
 
 fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let components = array.components;
-    // Each number takes two bytes, so a count that is too large shows before there are lists.
+    // Each number takes at least two bytes, so a count that is too large is noticed before lists are allocated.
     if count > text.len() {
         return Err(format!(
             "it must have {count} numbers, but its text of {} bytes is too short for them",
@@ -244,11 +244,11 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
     }
 }
 
-/// Bytes that may be written in base64.
+/// Bytes that may be encoded in base64.
 struct Stream<'a> {
     rest: &'a [u8],
     is_base64: bool,
-    /// Bytes that are decoded, but not taken yet.
+    /// Decoded bytes that were not taken yet.
     decoded: Vec<u8>,
 }
 
@@ -269,7 +269,7 @@ impl Stream<'_> {
                 return Err(cut_off());
             }
             let (now, rest) = self.rest.split_at(digits);
-            // The lengths may have padding of their own before the data, which is no error of this decoder.
+            // The lengths before the data may have padding of their own, which is not an error for this decoder.
             let bytes = BASE64.decode(now).map_err(|error| {
                 format!("its data are not base64: {}", one_line(&error.to_string()))
             })?;
@@ -280,7 +280,7 @@ impl Stream<'_> {
         Ok(taken.into())
     }
 
-    /// Takes numbers of the type of lengths.
+    /// Takes numbers of the type that lengths have.
     fn lengths<const N: usize>(&mut self, encoding: Encoding) -> Result<[usize; N], String> {
         let scalar = if encoding.is_wide { Scalar::U64 } else { Scalar::U32 };
         let bytes = self.take(N * scalar.size())?;
@@ -308,13 +308,13 @@ impl Stream<'_> {
         if blocks == 0 {
             return if wanted == 0 { Ok(Cow::Borrowed(&[])) } else { Err(other(0)) };
         }
-        // The last block is shorter, if it has a length of its own.
+        // The last block is shorter if it has a length of its own.
         let full = if last == 0 { blocks } else { blocks - 1 };
         let found = full.saturating_mul(size).saturating_add(last);
         if found != wanted {
             return Err(other(found));
         }
-        // Each length takes bytes of the file.
+        // Each length takes at least one byte of the file.
         if blocks > self.rest.len() {
             return Err(format!(
                 "it declares {blocks} compressed blocks, but its data are cut off after {} bytes",
@@ -326,7 +326,7 @@ impl Stream<'_> {
             let [length] = self.lengths(encoding)?;
             lengths.push(length);
         }
-        // Lengths and blocks are two pieces of base64, and what padding left of the first is nothing.
+        // Lengths and blocks are encoded in base64 separately, and padding leaves no bytes of the first part.
         let mut all = Vec::new();
         for (block, length) in lengths.into_iter().enumerate() {
             let compressed = self.take(length)?;

@@ -2,10 +2,10 @@
 //!
 //! A frame of an XYZ file is a line with the number of atoms, a comment line, and a line `species x y z …` for each
 //! atom. A trajectory is several frames, one after the other. In an extended XYZ file the comment line names the
-//! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. A property of several numbers is several columns:
-//! `forces:R:3` is `forces.x`, `forces.y` and `forces.z`. What they mean follows from their names, as in all tables: of
-//! `species` (or `Z`), `pos`, `radius`, `color` and others spheres are made, and the rest become columns of
-//! [`Dataset`]. `Lattice` is the cell, which starts at `Origin`. Lengths are taken as they are, in Å.
+//! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. A property of several numbers is several
+//! columns: `forces:R:3` is `forces.x`, `forces.y` and `forces.z`. Names mean the same as in all tables: `species` (or
+//! `Z`), `pos`, `radius`, `color` and others make spheres, and the rest become columns of [`Dataset`]. `Lattice` is the
+//! cell, which starts at `Origin`. Lengths are taken as they are, in Å.
 
 use std::io;
 
@@ -24,7 +24,7 @@ use pinhole::internals::text::{one_line, shortened, without_byte_order_mark};
 /// The lines of other frames are counted but not checked.
 ///
 /// # Errors
-/// If the text is not a valid XYZ file, or has no such frame.
+/// Returns an error if the text is not a valid XYZ file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
@@ -39,7 +39,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 
 pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
-/// Finds frames by their numbers of atoms; the lines of atoms are only counted.
+/// Finds frames by their numbers of atoms. The lines of atoms are only counted.
 fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameIndex> {
     let mut found = FrameIndex::default();
     // The last frame, its line, and its number of atoms.
@@ -101,7 +101,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadE
             break;
         }
     }
-    // The comment may have any encoding; the part that is read is ASCII.
+    // The comment may have any encoding; the used part is ASCII.
     let comment = String::from_utf8_lossy(lines.next().unwrap_or_default());
     lines_before += 1;
     let refused = |message: String| LoadError::line(lines_before, one_line(&message));
@@ -135,7 +135,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadE
 /// The columns of the lines of atoms.
 struct Columns {
     fields: Vec<Field>,
-    /// Whether the comment names no columns, so that a line begins with `species x y z`.
+    /// Whether the comment names no columns, so that lines begin with `species x y z`.
     is_plain: bool,
 }
 
@@ -178,7 +178,7 @@ impl Columns {
 }
 
 fn add_fields(name: &str, kind: &str, count: usize, fields: &mut Vec<Field>) -> Result<(), String> {
-    /// More than any program writes, and few enough to be listed.
+    /// Maximum number of columns: more than any program writes, and few enough to be listed.
     const MAX_COLUMNS: usize = 1024;
     let kind = match kind {
         "S" | "L" => Kind::Text,
@@ -228,7 +228,7 @@ fn value_of<'a>(key: &str, comment: &'a str) -> Option<&'a str> {
     }
 }
 
-/// The periodic cell of a comment line: `Lattice` has the three components of each edge vector, one edge after the other.
+/// The periodic cell of a comment line. `Lattice` has the three edge vectors, one after the other.
 fn cell_of(comment: &str) -> Result<Option<[[f64; 3]; 3]>, String> {
     let Some(text) = value_of("Lattice", comment) else {
         return Ok(None);

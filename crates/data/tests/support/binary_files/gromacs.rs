@@ -2,7 +2,7 @@
 
 pub(crate) const ATOMS: usize = 12;
 
-/// The coordinate with an index among those of all atoms, in nm.
+/// A coordinate in nm.
 pub(crate) fn coordinate(frame: usize, index: usize) -> f64 {
     frame as f64 + (index * 7 % 31) as f64 * 0.125
 }
@@ -19,7 +19,7 @@ pub(crate) fn reals(values: impl IntoIterator<Item = f64>, is_double: bool) -> V
     values.into_iter().flat_map(encode).collect()
 }
 
-/// A frame of a TRR file. `parts` says which of box, positions, velocities and forces it has.
+/// Writes a frame of a TRR file; `parts` says whether it has box, positions, velocities and forces.
 pub(crate) fn trr_frame(frame: usize, parts: [bool; 4], is_double: bool) -> Vec<u8> {
     let [cell, x, v, f] = parts;
     let edges = [2.0, 0.0, 0.0, 0.5, 3.0, 0.0, 0.0, 0.25, 4.0];

@@ -47,7 +47,7 @@ pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
     }
     list.resize(list.len().next_multiple_of(64), 0);
     let index_at = 256 + list.len() as u64;
-    // The index has one entry more than needed. An empty entry marks the end.
+    // The index has one more entry, because an empty one marks its end.
     let entries = chunks.len() as u64 + 1;
     let (mut index, mut data) = (Vec::new(), Vec::new());
     for Chunk { frame, name, columns, data: numbers } in chunks {
@@ -74,7 +74,7 @@ pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
     [head, list, index, data].concat()
 }
 
-/// Chunks of three frames. The second moves, and the third has one particle less.
+/// Three frames: the particles move in the second, and the third has one particle less.
 pub(crate) fn chunks() -> Vec<Chunk> {
     let positions = |frame: u16, count: u16| {
         Data::F32((0..3 * count).map(|index| f32::from(100 * frame + index)).collect())

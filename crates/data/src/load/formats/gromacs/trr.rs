@@ -12,9 +12,9 @@ use crate::load::topology::{Positions, Topology};
 pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 const MAGIC: i32 = 1993;
-/// The text that follows: its length with and without a NUL, and itself.
+/// The text that starts a frame, after its length with and without a NUL.
 const NAME: &[u8] = b"\0\0\0\x0d\0\0\0\x0cGMX_trn_file";
-/// Names of the parts of a frame, in their order. Those before the box and those of topology and symbols were never used.
+/// Names of the parts of a frame, in order. The first two, the topology and the symbols were never used.
 const PARTS: [&str; 10] = [
     "the input record",
     "the energies",
@@ -50,7 +50,7 @@ fn find(
 }
 
 struct Header {
-    /// Bytes of each part.
+    /// Number of bytes of each part.
     sizes: [u64; 10],
     atoms: usize,
     is_double: bool,
@@ -98,12 +98,12 @@ impl Header {
                 sizes[BOX]
             )));
         }
-        // Step and number of records of the energy, then time and lambda.
+        // The header ends with the step and the number of energy records, then the time and lambda.
         let is_double = !is_of(4);
         let rest = if is_double { 24 } else { 16 };
         reader.check(rest, what)?;
         reader.seek(reader.offset + rest)?;
-        // Atoms are no more than a frame of this size can have.
+        // The number of atoms is plausible, because a frame of this size can hold them.
         Ok(Self { sizes, atoms: atoms as usize, is_double })
     }
 }
@@ -147,7 +147,7 @@ fn read(
                     return Err(wrong_position(byte, frame, atom, axis, found));
                 }
             }
-            // Forces are energies for a length.
+            // Velocities are lengths per time, and forces are energies per length.
             8 => positions.columns.extend(columns("velocity", &values, ANGSTROMS)),
             _ => positions.columns.extend(columns("force", &values, 1.0 / ANGSTROMS)),
         }

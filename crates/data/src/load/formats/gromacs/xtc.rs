@@ -13,13 +13,13 @@ pub(crate) const FRAMES: Frames = Frames::Positions { find };
 
 /// The usual number at the start of a frame.
 const MAGIC: i32 = 1995;
-/// That number where the count of compressed bytes has 64 bits.
+/// The number at the start of a frame where the count of compressed bytes has 64 bits.
 const LONG_MAGIC: i32 = 2023;
 const HEADER_BYTES: u64 = 56;
-/// So few positions are not compressed.
+/// Up to this number of atoms, positions are not compressed.
 const FEW: usize = 9;
 
-/// Whether the first bytes are those of an XTC file: its number, and a number of atoms that is there twice.
+/// Whether the first bytes are those of an XTC file: its magic number, and the number of atoms twice.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     let is_magic = |magic: i32| bytes.starts_with(&magic.to_be_bytes());
     (is_magic(MAGIC) || is_magic(LONG_MAGIC))
@@ -43,9 +43,9 @@ fn find(
 struct Header {
     atoms: usize,
     cell: [f64; 9],
-    /// How positions are compressed, unless they are few.
+    /// The parameters of the compression; `None` if there are few positions, which are not compressed.
     packed: Option<Packing>,
-    /// Bytes of the positions, which follow, with those that pad them.
+    /// Number of bytes of the positions after the header, with padding.
     bytes: u64,
 }
 
@@ -92,7 +92,7 @@ impl Header {
             MAGIC => reader.number::<u32>(&what)?.into(),
             _ => reader.number(&what)?,
         };
-        // Not even one bit for each atom: memory depends on their number.
+        // Compressed positions take at least one bit for each atom. Memory depends on the number of atoms.
         if atoms as u64 / 8 > bytes {
             return Err(wrong(offset, format!("{bytes} bytes are too few for {atoms} atoms")));
         }
@@ -131,7 +131,7 @@ fn read(
     Ok(Positions { centers: centers.collect(), cell, ..Positions::default() })
 }
 
-/// The sizes of differences: about 2^(n/3), so that three of them fit into n bits.
+/// The sizes of differences between positions: about 2^(n/3), so that three differences fit into n bits.
 #[rustfmt::skip]
 const SIZES: [u32; 73] = [
     0, 0, 0, 0, 0, 0, 0, 0, 0, 8, 10, 12, 16, 20, 25, 32, 40, 50, 64, 80, 101, 128, 161, 203, 256, 322, 406, 512, 645,
@@ -139,19 +139,19 @@ const SIZES: [u32; 73] = [
     52015, 65536, 82570, 104031, 131072, 165140, 208063, 262144, 330280, 416127, 524287, 660561, 832255, 1048576,
     1321122, 1664510, 2097152, 2642245, 3329021, 4194304, 5284491, 6658042, 8388607, 10568983, 13316085, 16777216,
 ];
-/// The first size that is one.
+/// Index of the first size that is not zero.
 const FIRST_SIZE: usize = 9;
-/// Ranges that are larger have their three numbers written by themselves.
+/// Above this range, the three numbers of a position are written separately.
 const LARGEST_MIXED: u64 = 0xff_ffff;
 
-/// How the positions of a frame are compressed.
+/// The parameters of a frame's compressed positions.
 #[derive(Clone, Copy, Debug)]
 struct Packing {
-    /// What a nm is as a whole number.
+    /// The whole number that 1 nm becomes.
     precision: f32,
     lowest: [i32; 3],
     highest: [i32; 3],
-    /// Index of the first size of differences.
+    /// Index in `SIZES` of the first size of differences.
     size: u32,
 }
 
@@ -182,10 +182,10 @@ impl Packing {
     }
 }
 
-/// What is wrong with compressed positions.
+/// An error in compressed positions.
 #[derive(Debug)]
 struct UnpackError {
-    /// Which byte, from the first of the positions.
+    /// Index of the wrong byte, from the first byte of the positions.
     byte: u64,
     message: String,
 }
@@ -257,10 +257,10 @@ fn bit_length(number: u128) -> u32 {
     u128::BITS - number.leading_zeros()
 }
 
-/// Bits of a piece of a file, the highest of each byte first.
+/// Bits of a range of bytes, the highest bit of each byte first.
 struct Bits<'a> {
     bytes: &'a [u8],
-    /// In bits.
+    /// Index of the next bit.
     position: usize,
 }
 
@@ -281,7 +281,7 @@ impl Bits<'_> {
         Ok(all >> (8 * last - end) & ((1 << count) - 1))
     }
 
-    /// Takes three numbers that are written as one of so many bits: its lowest byte first, and then the next.
+    /// Takes three numbers that are written as one number of `count` bits, the lowest byte first.
     fn mixed(&mut self, count: u32, ranges: [u64; 3]) -> Result<[i64; 3], UnpackError> {
         let mut all = 0_u128;
         for byte in 0..count / 8 {
@@ -321,7 +321,7 @@ mod tests {
                     bit_length(ranges.iter().map(|range| u128::from(*range)).product()),
                     count
                 );
-                // After three bits: the lowest byte first, and the rest in as many bits as it has.
+                // After three other bits: the lowest byte first, and the rest in as many bits as it has.
                 let mut bits = vec![1, 0, 1];
                 for byte in 0..count.div_ceil(8) {
                     let width = (count - 8 * byte).min(8);

@@ -1,8 +1,8 @@
 //! The file layer of GSD: which chunks of data each frame has, and where they are.
 //!
 //! A file has a header of 256 bytes, a list of names, an index with an entry of 32 bytes for each chunk, ascending by
-//! frames, and the chunks, all in little endian. Versions 1 and 2 differ in how the list of names is filled: every name
-//! in 64 bytes, or one after the other. <https://gsd.readthedocs.io/en/stable/file-layer.html>
+//! frames, and the chunks, all in little endian. Versions 1 and 2 fill the list of names differently: with every name
+//! in 64 bytes, or with one after the other. <https://gsd.readthedocs.io/en/stable/file-layer.html>
 
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ pub(super) struct Index {
     names: Vec<String>,
     ids: HashMap<String, u16>,
     chunks: Vec<Chunk>,
-    /// What is wrong after the last frame whose chunks are all there.
+    /// The fault after the last frame whose chunks are complete.
     pub(super) problem: Option<LoadError>,
 }
 
@@ -33,14 +33,14 @@ pub(super) struct Chunk {
     pub(super) frame: u64,
     pub(super) rows: u64,
     pub(super) columns: u32,
-    /// Where its numbers are.
+    /// Byte at which the numbers begin.
     pub(super) location: u64,
     id: u16,
     kind: u8,
 }
 
 impl Chunk {
-    /// The type of its numbers; `None` if it is not known.
+    /// The type of the numbers; `None` if it is not known.
     fn scalar(self) -> Option<Scalar> {
         Some(match self.kind {
             1 | 11 => Scalar::U8,
@@ -57,12 +57,12 @@ impl Chunk {
         })
     }
 
-    /// Bytes of all of its numbers; `None` if the type is not known or there are more than any file has.
+    /// Number of bytes of all numbers; `None` if the type is not known or the number is larger than any file.
     pub(super) fn bytes(self) -> Option<u64> {
         self.rows.checked_mul(self.columns.into())?.checked_mul(self.scalar()?.size() as u64)
     }
 
-    /// Reads its numbers, row by row.
+    /// Reads all numbers, row by row.
     pub(super) fn numbers(
         self,
         reader: &mut Reader<'_>,
@@ -74,7 +74,7 @@ impl Chunk {
         Ok(numbers.map(|number| scalar.decode(number, Order::Little)).collect())
     }
 
-    /// Reads its rows of text, each of which ends with a NUL unless it fills its row.
+    /// Reads all rows as text. Each ends with a NUL unless the text fills the row.
     pub(super) fn texts(
         self,
         reader: &mut Reader<'_>,
@@ -105,7 +105,7 @@ impl Index {
         let names_entries: u64 = reader.number("the header")?;
         reader.seek(reader.offset + 4)?;
         let version: u32 = reader.number("the header")?;
-        // Version 0.3 was the last before 1.0, and is the same.
+        // Version 0.3 was the last before 1.0, and has the same layout.
         if !matches!(version >> 16, 1 | 2) && version != 3 {
             let message = format!(
                 "the file has the version {}.{}; 1 and 2 can be read",
@@ -142,7 +142,7 @@ impl Index {
                 Ok(Some(chunk)) => index.chunks.push(chunk),
                 Ok(None) => break,
                 Err((frame, message)) => {
-                    // A frame without one of its chunks is not complete.
+                    // A frame that lacks one of its chunks is not complete.
                     index.chunks.retain(|chunk| chunk.frame < frame);
                     index.problem = Some(LoadError::byte(offset, message));
                     break;
@@ -152,7 +152,7 @@ impl Index {
         Ok(index)
     }
 
-    /// Reads the next entry; `None` at the end. What is wrong with it comes with the frame that it belongs to.
+    /// Reads the next entry; `None` at the end. The inner error has the frame that a bad entry belongs to.
     #[allow(clippy::type_complexity, reason = "used once")]
     fn next(
         &self,
@@ -181,7 +181,7 @@ impl Index {
             )));
         };
         let name = shown(name.as_bytes());
-        // A frame can have no chunk at all, if nothing changed, but no more frames than bytes are plausible.
+        // A frame without changes has no chunk at all. More frames than bytes are not plausible.
         if frame < previous || frame > size {
             return Ok(Err((
                 frame.min(previous),

@@ -1,5 +1,5 @@
-//! Reads data files: a header with counts and the box, and sections, of which the atoms and what their types are make
-//! spheres.
+//! Reads data files: a header with counts and the box, and sections. Spheres are made from the sections with atoms
+//! and the descriptions of their types.
 
 use std::collections::HashMap;
 
@@ -26,7 +26,7 @@ pub(crate) fn starts(bytes: &[u8]) -> bool {
 
 pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let mut file = File { lines: Lines::new(without_byte_order_mark(bytes)), line: 0 };
-    // The first line is a comment, whatever it is.
+    // The first line is always a comment.
     file.next();
     let (mut count, mut ends, mut tilt) = (None, [None; 3], [0.0; 3]);
     let (mut atoms, mut velocities, mut types) = (None, None, Types::default());
@@ -61,7 +61,7 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
             }
             continue;
         }
-        // These sections have a line for each atom, so a second one contradicts the first.
+        // These sections have a line for each atom, so a second section contradicts the first.
         if let Some(section) =
             ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
             && let Some(first_line) = lines_of_sections.insert(section, line)
@@ -125,7 +125,7 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     Ok(loaded)
 }
 
-/// Adds the velocities of the atoms with the same ids. Returns a note if there are others.
+/// Adds the velocities of the atoms with the same ids. Returns a note if there are velocities of other ids.
 fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, LoadError> {
     let fields = ["id", "vx", "vy", "vz"].map(|name| Field::new(name, Kind::Number));
     let rows = Rows { may_be_longer: true, ..rows };
@@ -147,7 +147,7 @@ fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, L
     Ok(None)
 }
 
-/// The lines of the file, which it counts.
+/// The lines of the file, with the number of lines read.
 struct File<'a> {
     lines: Lines<'a>,
     line: usize,
@@ -160,7 +160,7 @@ impl<'a> File<'a> {
         Some(line)
     }
 
-    /// The next line, without its comment, if it is one of a section.
+    /// Returns the next line, without its comment, if it belongs to a section.
     fn peek(&self) -> Option<&'a [u8]> {
         let line = without_comment(self.lines.clone().next()?);
         (!line.is_empty() && !is_section(line)).then_some(line)
@@ -178,7 +178,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Calls a function with the line and the first two values of each line of a section.
+    /// Calls a function for each line of a section, with the line's number and its first two values.
     fn each_pair(
         &mut self,
         mut each: impl FnMut(usize, &[u8], &[u8]) -> Result<(), LoadError>,
@@ -194,7 +194,7 @@ impl<'a> File<'a> {
         Ok(())
     }
 
-    /// Takes lines, or returns how many there are before the end of the file.
+    /// Takes this number of lines, or returns how many there are before the end of the file.
     fn take_rows(&mut self, count: usize) -> Result<Rows<'a>, usize> {
         let (start, lines_before) = (self.lines.rest, self.line);
         for found in 0..count {
@@ -235,7 +235,7 @@ fn is_section(line: &[u8]) -> bool {
     NAMES.contains(&line) || line.ends_with(b" Coeffs") || line.ends_with(b" Type Labels")
 }
 
-/// The number before a word that ends the line, if it ends it.
+/// Returns the number before a word that ends the line; `None` if the line does not end with this word.
 fn count_of<'a>(line: &'a [u8], word: &[u8]) -> Option<Result<usize, &'a [u8]>> {
     let text = line
         .strip_suffix(word)?
@@ -285,13 +285,13 @@ fn columns_of(style: &str) -> Option<Vec<&'static str>> {
     Some(columns.split(' ').collect())
 }
 
-/// The columns of a style by its name, for messages.
+/// Lists the columns of a style by its name, for messages.
 fn listed(style: &str) -> String {
     columns_of(style).unwrap_or_default().join(",")
 }
 
-/// Returns the columns of the rows: those that are given, or those of the style, or those of the only style that they can
-/// be of. Three whole numbers behind them count how often the atom has crossed the box.
+/// Returns the columns of the rows: the given ones, or those of the style, or those of the only style that fits. Three
+/// further whole numbers count how often the atom has crossed the box.
 fn fields_of(
     rows: Rows<'_>,
     style: Option<&str>,
@@ -305,7 +305,7 @@ fn fields_of(
     let is_whole =
         |value: &&[u8]| std::str::from_utf8(value).is_ok_and(|text| text.parse::<i64>().is_ok());
     let has_images = |count: usize| found == count + 3 && first[count..].iter().all(is_whole);
-    // A hybrid style has the columns of its parts in an order that only their names tell.
+    // The order of a hybrid style's columns follows from the names of its parts; the first part decides.
     let style = style.and_then(|style| style.split_whitespace().next()).map(str::to_owned);
     let names: Vec<String> = if given.is_empty() {
         let columns = match &style {
@@ -348,10 +348,10 @@ fn fields_of(
     Ok(names.iter().map(String::as_str).chain(images.iter().copied()).map(field).collect())
 }
 
-/// What a data file says about types. Types are numbers, as text, or labels.
+/// The descriptions of types in a data file. A type is a number, as text, or a label.
 #[derive(Debug, Default)]
 struct Types {
-    /// The mass of each type, by its number or label. Of several the first counts.
+    /// The mass of each type, by its number or label. The first of several masses counts.
     masses: Vec<(String, f64)>,
     /// The label of each number.
     labels: HashMap<String, String>,
@@ -372,14 +372,14 @@ impl Types {
 
     /// The symbol of each type, by its label or else by its mass.
     fn symbols_of(&self, names: &[String]) -> Vec<Option<String>> {
-        // The place of a mass in the file, by the number or label that it has there and by the label of the number.
+        // The index of a mass, by the number or label in the file and by the label of the number.
         let mut places = HashMap::new();
         for (place, (name, _)) in self.masses.iter().enumerate() {
             for name in [name, self.label_of(name)] {
                 places.entry(name).or_insert(place);
             }
         }
-        // Where nothing has another mass than 1, masses are in units of their own.
+        // If all masses are 1, they are in units of the simulation and name no elements.
         let has_masses = self.masses.iter().any(|(_, mass)| (mass - 1.0).abs() >= 1e-9);
         let symbol = |name: &String| {
             let label = self.label_of(name);
@@ -398,9 +398,9 @@ impl Types {
     }
 }
 
-/// Gives the types their labels, and the atoms the elements that these or the masses tell. Returns a note.
+/// Gives the types their labels, and the atoms the elements that labels or masses identify. Returns a note.
 fn name_types(table: &mut Table, types: &Types) -> Option<String> {
-    /// How many types the note names.
+    /// Maximum number of types in the note.
     const MOST: usize = 16;
     let column = table.columns.iter().find(|column| column.name == "type")?;
     let ColumnValues::Labels(labels) = &column.values else { return None };
@@ -434,11 +434,11 @@ fn name_types(table: &mut Table, types: &Types) -> Option<String> {
     (!shown.is_empty()).then_some(note)
 }
 
-/// A column of text from another one, with other texts in place of its names.
+/// Makes a column of text from another one by replacing its names.
 fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
     let ColumnValues::Labels(labels) = &column.values else { return None };
     let mut labels = labels.clone();
-    // Several types may be of one element.
+    // Several types may be of the same element.
     let mut unique = LabelsBuilder::default();
     let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
     labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);

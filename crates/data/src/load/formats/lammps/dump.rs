@@ -24,7 +24,7 @@ const POSITIONS: [([&str; 3], bool); 4] = [
     (["xsu", "ysu", "zsu"], true),
 ];
 
-/// Whether the first item is one that begins a dump.
+/// Whether the first item is one with which a dump begins.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     let bytes = without_byte_order_mark(bytes).trim_ascii_start();
     [&b"ITEM: TIMESTEP"[..], b"ITEM: UNITS", b"ITEM: TIME"]
@@ -32,7 +32,7 @@ pub(crate) fn starts(bytes: &[u8]) -> bool {
         .any(|item| bytes.starts_with(item))
 }
 
-/// Finds frames by their items; the lines of atoms are only counted.
+/// Finds frames by their items. The lines of atoms are only counted.
 fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameIndex> {
     let mut found = FrameIndex::default();
     let (mut first, mut atoms, mut previous) = (None, None, None);
@@ -162,7 +162,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
     Ok(loaded)
 }
 
-/// The file ends within the frame that begins in this line.
+/// The error of a file that ends within the frame that begins in this line.
 fn cut_off(line: usize) -> LoadError {
     LoadError::line(line, "the file ends within the frame that begins here, before its atoms")
 }
@@ -171,7 +171,7 @@ fn missing(line: usize, item: &str) -> LoadError {
     LoadError::line(line, format!("{item} is missing before ITEM: ATOMS"))
 }
 
-/// What the columns are. Types are text, whether they are numbers or labels; of others the first line decides.
+/// Chooses the kinds of the columns. Types are always text; the first line decides on other columns.
 fn fields(names: Vec<String>, text: &[u8]) -> Vec<Field> {
     let first = Lines::new(text).next().unwrap_or_default();
     let mut values = Values { rest: first };
@@ -188,7 +188,7 @@ fn fields(names: Vec<String>, text: &[u8]) -> Vec<Field> {
     names.into_iter().zip(kinds).map(|(name, kind)| Field { name, kind }).collect()
 }
 
-/// Calls the best positions x, y and z, where they are not yet, and makes them of fractions of the box.
+/// Renames the preferred positions to x, y and z, and converts them if they are fractions of the box.
 fn make_positions(table: &mut Table, cell: &Cell) {
     let indices = |names: [&str; 3]| {
         let index = |name| table.columns.iter().position(|column| column.name == name);
@@ -217,7 +217,7 @@ fn make_positions(table: &mut Table, cell: &Cell) {
     }
 }
 
-/// Takes types as chemical elements if there is no column of elements and all types are symbols of such.
+/// Takes types as chemical elements if there is no column of elements and all types are symbols of elements.
 fn types_as_elements(table: &mut Table) -> bool {
     if table.columns.iter().any(|column| column.name == "element") {
         return false;

@@ -1,5 +1,5 @@
-//! The text of a CIF file: its tokens, as its syntax 1.1 describes them, and what stands around the rows of atoms: the
-//! names of their columns, and the cell.
+//! The text of a CIF file: its tokens, as syntax 1.1 of CIF describes them, and the text around the rows of atoms,
+//! with the names of their columns and the cell.
 
 use memchr::{memchr, memmem};
 
@@ -25,15 +25,15 @@ pub(super) enum Token<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Tokens<'a> {
     text: &'a [u8],
-    /// Where the next token is searched.
+    /// Offset at which the search for the next token begins.
     pub(super) at: usize,
-    /// Number of line ends before that.
+    /// Number of line ends before this offset.
     lines: usize,
-    /// Where the line of the next token begins.
+    /// Offset of the line of the next token.
     line_start: usize,
 }
 
-/// Where a token begins.
+/// The start of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) offset: usize,
@@ -54,12 +54,12 @@ impl<'a> Tokens<'a> {
         Self { text, at: 0, lines: lines_before, line_start: 0 }
     }
 
-    /// Goes on at the start of a line.
+    /// Continues at the start of a line.
     pub(super) fn go_to(&mut self, offset: usize, lines_before: usize) {
         (self.at, self.lines, self.line_start) = (offset, lines_before, offset);
     }
 
-    /// Skips white space and comments. Returns where the next token begins.
+    /// Skips white space and comments, and returns the start of the next token.
     #[inline]
     pub(super) fn place(&mut self) -> Place {
         while let Some(byte) = self.text.get(self.at) {
@@ -99,7 +99,7 @@ impl<'a> Tokens<'a> {
         }
         let end = rest.iter().position(|byte| *byte <= b' ').unwrap_or(rest.len());
         let word = &rest[..end];
-        // No other byte ends a token, so a control character is not skipped either.
+        // Only white space ends a token. A control character is a token of its own, so it is not skipped either.
         self.at += end.max(1);
         Ok(Some(match first {
             b'_' => Token::Name(word),
@@ -108,7 +108,7 @@ impl<'a> Tokens<'a> {
         }))
     }
 
-    /// A quote ends a text only where white space follows, or the text does.
+    /// Reads a quoted text. A quote ends it only before white space or at the end of the file.
     fn quoted(&mut self, quote: u8, place: Place) -> Result<Token<'a>, LoadError> {
         let rest = &self.text[self.at + 1..];
         let mut from = 0;
@@ -127,7 +127,7 @@ impl<'a> Tokens<'a> {
         Err(LoadError::at(place.of_error(), message))
     }
 
-    /// A text of several lines begins and ends with `;` at the start of a line.
+    /// Reads a text of several lines, which begins and ends with `;` at the start of a line.
     fn lines_of_text(&mut self, place: Place) -> Result<Token<'a>, LoadError> {
         let rest = &self.text[self.at + 1..];
         let end = memmem::find(rest, b"\n;").ok_or_else(|| {
@@ -160,7 +160,7 @@ fn reserved(word: &[u8]) -> Token<'_> {
     }
 }
 
-/// The last row of the loop has too few values.
+/// The error of a loop whose last row has too few values.
 pub(super) fn cut_row(place: Place, values: usize, columns: usize) -> LoadError {
     let message = format!(
         "the row of _atom_site that begins here has {values} values, but the loop names {columns} columns; a value is \
@@ -174,7 +174,7 @@ pub(super) fn not_a_number(text: &[u8], place: Place, what: &str) -> LoadError {
     LoadError::at(place.of_error(), format!("{what} is `{found}`, which is not a finite number"))
 }
 
-/// Values of an atom that the reader uses, each with its names in the order of preference: those that the authors gave
+/// Values of an atom that the reader uses, each with its names in the order of preference. Names given by the authors
 /// come first, because PDB files have them.
 pub(super) const SLOTS: [&[&str]; 17] = [
     &["cartn_x"],
@@ -200,13 +200,13 @@ pub(super) const SLOTS: [&[&str]; 17] = [
 #[derive(Debug)]
 pub(super) struct Columns {
     pub(super) count: usize,
-    /// For each column, the slot that its values go to.
+    /// For each column, the slot for its values.
     pub(super) slots: Vec<Option<usize>>,
     /// The column with the number of the model.
     pub(super) model: Option<usize>,
     /// Whether positions are fractions of the cell.
     pub(super) is_fractional: bool,
-    /// Which slots have a column.
+    /// For each slot, whether it has a column.
     pub(super) has: [bool; SLOTS.len()],
 }
 
@@ -245,7 +245,7 @@ fn item_of(name: &[u8], category: &str) -> Option<String> {
     Some(item.to_owned())
 }
 
-/// What the text before the rows of a block, or after them, says.
+/// The columns and the cell, from the text before or after the rows of a block.
 #[derive(Debug, Default)]
 pub(super) struct Header {
     pub(super) columns: Option<Columns>,
@@ -254,14 +254,14 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads a text that ends where rows begin. What belongs to an earlier block is forgotten.
+    /// Reads a text that ends where rows begin. Values of an earlier block are forgotten.
     pub(super) fn before(text: &[u8], lines_before: usize) -> Result<Self, LoadError> {
         let mut header = Self::default();
         header.read(text, lines_before, false)?;
         Ok(header)
     }
 
-    /// Adds what stands after the rows, up to the next block.
+    /// Adds values from the text after the rows, up to the next block.
     pub(super) fn add_after(&mut self, text: &[u8], lines_before: usize) -> Result<(), LoadError> {
         let columns = self.columns.take();
         let mut after = Self::default();
@@ -274,7 +274,7 @@ impl Header {
         Ok(())
     }
 
-    /// Another block ends the text, or what was read before it is forgotten.
+    /// Reads a text. Another block ends it if `to_block` is true; otherwise values before the block are forgotten.
     fn read(&mut self, text: &[u8], lines_before: usize, to_block: bool) -> Result<(), LoadError> {
         let mut tokens = Tokens::new(text, lines_before);
         let mut name = None;
@@ -308,7 +308,7 @@ impl Header {
         Ok(())
     }
 
-    /// Keeps a value of the cell.
+    /// Stores a value of the cell.
     fn set(&mut self, name: &str, value: &[u8]) -> Result<(), &'static str> {
         let (place, what) = match name {
             "length_a" => (&mut self.lengths[0], "_cell.length_a"),
@@ -337,12 +337,12 @@ impl Header {
     }
 }
 
-/// Whether a value says that there is none.
+/// Whether a value stands for an unknown or missing one.
 pub(super) fn is_unknown(value: &[u8]) -> bool {
     matches!(value, b"." | b"?")
 }
 
-/// A finite number, after which its uncertainty may stand in parentheses: `0.1234(5)`.
+/// Parses a finite number. Its uncertainty may follow in parentheses: `0.1234(5)`.
 #[inline]
 pub(super) fn decimal(text: &[u8]) -> Option<f64> {
     let text = match text {

@@ -13,12 +13,12 @@ pub(super) struct Dtype {
     /// NumPy's name of the type.
     pub(super) name: String,
     kind: char,
-    /// Bytes of an element.
+    /// Number of bytes of an element.
     pub(super) size: usize,
     order: Order,
 }
 
-/// Where the values of a column are in the data of an array.
+/// The place of a column's values in the data of an array.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// Byte of the first value.
@@ -35,7 +35,7 @@ impl Dtype {
         let order = if name.starts_with('>') { Order::Big } else { Order::Little };
         let mut letters = rest.chars();
         let kind = letters.next().filter(char::is_ascii_alphabetic)?;
-        // Dates have their unit after the size.
+        // Dates have their unit in brackets after the size.
         let digits = letters.as_str().split('[').next()?;
         let size: usize = match (kind, digits) {
             ('O', "") => 8,
@@ -46,12 +46,12 @@ impl Dtype {
         Some(Self { name: name.to_owned(), kind, size, order })
     }
 
-    /// Whether its elements are real numbers.
+    /// Whether the elements are real numbers.
     pub(super) fn is_real(&self) -> bool {
         (self.kind, self.size) == ('f', 2) || self.scalar().is_some()
     }
 
-    /// Whether its elements can be a column: real numbers, truth values as 0 and 1, or text.
+    /// Whether the elements can be a column: real numbers, truth values as 0 and 1, or text.
     pub(super) fn is_column(&self) -> bool {
         self.is_real() || (self.kind == 'b' && self.size == 1) || (self.is_text() && self.size > 0)
     }
@@ -60,7 +60,7 @@ impl Dtype {
         matches!(self.kind, 'S' | 'a' | 'U')
     }
 
-    /// The type of its elements, if other formats have it as well.
+    /// The type of the elements as other formats have it; `None` if it exists only in NumPy.
     fn scalar(&self) -> Option<Scalar> {
         Some(match (self.kind, self.size) {
             ('f', 4) => Scalar::F32,
@@ -77,7 +77,7 @@ impl Dtype {
         })
     }
 
-    /// Decodes a column. The type must be one that [`Dtype::is_column`] and the data must have the place.
+    /// Decodes a column. The type must satisfy [`Dtype::is_column`], and the data must contain the place.
     pub(super) fn column(&self, name: String, data: &[u8], place: Place) -> TableColumn {
         let values = (0..place.rows).map(|row| {
             let first = place.first + row * place.stride;
@@ -133,7 +133,7 @@ impl Dtype {
         for value in values {
             let index = *known.entry(value).or_insert_with(|| {
                 labels.names.push(self.text(value));
-                // There are no more names than spheres, which are fewer than 2³².
+                // There are no more names than spheres, whose number is less than 2³².
                 labels.names.len() as u32 - 1
             });
             labels.indices.push(index);
@@ -142,7 +142,7 @@ impl Dtype {
     }
 }
 
-/// The number whose bits in half precision these are.
+/// Decodes a number in half precision from its bits.
 fn half(bits: u16) -> f64 {
     let fraction = f64::from(bits & 0x3ff) / 1024.0;
     let size = match i32::from(bits >> 10 & 0x1f) {

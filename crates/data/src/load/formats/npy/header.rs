@@ -1,8 +1,8 @@
 //! Reads the header of an `.npy` file, as NumPy Enhancement Proposal 1 defines it.
 //!
 //! The crate npyz reads headers too, but trusts them: it multiplies the dimensions of a shape before it gives access
-//! to them, and allocates as many bytes as the header's length says. Only the parser of the header's text,
-//! `py_literal`, is shared with it.
+//! to them, and allocates as many bytes as the header declares. Only the parser of the header's text, `py_literal`,
+//! is the same.
 
 use py_literal::Value;
 
@@ -30,25 +30,25 @@ pub(super) struct Header {
     pub(super) shape: Vec<u64>,
 }
 
-/// What the elements of an array are.
+/// The elements of an array.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Elements {
-    /// Values of one type, by its name.
+    /// Values of one type, with the type's name.
     Plain(String),
     /// Structures with named fields.
     Structures {
         fields: Vec<Field>,
-        /// Bytes of a structure.
+        /// Number of bytes of a structure.
         size: usize,
     },
 }
 
-/// A field of a structure. Fields of several values or fields are as many fields, such as `pos.x`.
+/// A field of a structure. A field of several values or fields becomes several fields, such as `pos.x`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     pub(super) name: String,
     pub(super) dtype: Dtype,
-    /// Bytes before it in its structure.
+    /// Offset of the field in its structure, in bytes.
     pub(super) offset: usize,
 }
 
@@ -62,7 +62,7 @@ impl Elements {
     }
 }
 
-/// Adds the fields of a structure that begins at `offset`, and returns where it ends; an error is the end of a sentence.
+/// Adds the fields of a structure that begins at `offset`, and returns its end. An error is the end of a sentence.
 fn add_fields(
     list: &[Value],
     prefix: &str,
@@ -80,7 +80,7 @@ fn add_fields(
         };
         let name = match name {
             Value::String(name) => name,
-            // A title stands before the name.
+            // A title may precede the name.
             Value::Tuple(both) => both.get(1).and_then(Value::as_string).ok_or_else(bad)?,
             _ => return Err(bad()),
         };
@@ -96,7 +96,7 @@ fn add_fields(
         let too_many = || format!("has more than {MAX_COLUMNS} columns");
         let count = count.filter(|count| *count <= MAX_COLUMNS).ok_or_else(too_many)?;
         for name in component_names(name, count) {
-            // Fields without fields of their own count too.
+            // Fields that consist of nothing are counted too.
             *steps += 1;
             if *steps > 2 * MAX_COLUMNS {
                 return Err(too_many());
@@ -106,7 +106,7 @@ fn add_fields(
                 Value::String(of) => {
                     let dtype = Dtype::parse(of).ok_or_else(bad)?;
                     let size = dtype.size;
-                    // What has no name only fills a gap.
+                    // A field without a name only fills a gap.
                     if !name.is_empty() {
                         let name = shortened(&one_line(&full));
                         fields.push(Field { name, dtype, offset });

@@ -17,7 +17,7 @@ use header::{Elements, Header};
 use pinhole::internals::text::{one_line, shortened};
 use pinhole::scene::sphere_array::SphereArray;
 
-/// Names of the columns of plain arrays with these numbers of columns.
+/// Names of the columns of plain arrays with 3 to 7 columns.
 const COLUMNS: [&[&str]; 5] = [
     &["x", "y", "z"],
     &["x", "y", "z", "radius"],
@@ -26,16 +26,16 @@ const COLUMNS: [&[&str]; 5] = [
     &["x", "y", "z", "radius", "red", "green", "blue"],
 ];
 
-/// More components of a vector than this are not made columns.
+/// Vectors with more components than this do not become columns.
 const MOST_COMPONENTS: u64 = 64;
 
 /// Reads an `.npy` file of any type of floating-point numbers or integers, in either byte order, in C or Fortran order.
 ///
-/// The columns are x, y, z; x, y, z, radius, and a value after that; or x, y, z, perhaps a radius, red, green, blue. An array of structures has named columns, of which all that make
-/// no spheres are kept. Spheres without a radius get `radius`, or else one that follows from their spacing, with a note.
+/// The columns are x, y, z; x, y, z, radius, perhaps a value; or x, y, z, perhaps radius, red, green, blue. Other
+/// fields of structures are kept. Spheres without radii get `radius`, or else one from their spacing, with a note.
 ///
 /// # Errors
-/// If the file is not such an array, or has fewer or more bytes than its header says.
+/// Returns an error if the file is not such an array, or has fewer or more bytes than its header says.
 pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     let array = Array::open(bytes)?;
     let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     })
 }
 
-/// Returns how many bytes reading takes in addition to the file: columns are f64.
+/// Returns the bytes of memory that reading takes in addition to the file, because columns are f64.
 pub(super) fn extra_bytes(bytes: &[u8]) -> u64 {
     Array::open(bytes).map_or(0, |array| match &array.header.elements {
         Elements::Plain(_) => 0,
@@ -67,7 +67,7 @@ pub(super) struct Array<'a> {
     dtype: Option<Dtype>,
 }
 
-/// What an array says of spheres.
+/// The spheres of an array, or a table from which to make them.
 pub(super) enum Spheres {
     /// Spheres, with radii or without.
     Ready { spheres: SphereArray, have_radii: bool },
@@ -111,11 +111,11 @@ impl<'a> Array<'a> {
         if self.data.is_empty() {
             return 0;
         }
-        // This fits, because there are not fewer bytes than rows.
+        // This fits, because there are at least as many bytes as rows.
         self.header.shape.first().map_or(0, |rows| *rows as usize)
     }
 
-    /// Whether it has at least one dimension.
+    /// Whether the array has at least one dimension.
     pub(super) fn has_rows(&self) -> bool {
         !self.header.shape.is_empty()
     }
@@ -124,7 +124,7 @@ impl<'a> Array<'a> {
         tuple(&self.header.shape)
     }
 
-    /// The array as spheres.
+    /// Returns the array as spheres, or as a table.
     pub(super) fn spheres(&self, radius: Option<f64>) -> Result<Spheres, LoadError> {
         let Some(dtype) = &self.dtype else {
             let [_] = *self.header.shape else {
@@ -177,8 +177,8 @@ impl<'a> Array<'a> {
         Ok(Spheres::Columns { columns, notes: Vec::new() })
     }
 
-    /// Rows of three or four numbers in f32 or f64, without a detour; `None` for other types. Without a fourth number,
-    /// radii are 0.
+    /// Reads rows of three or four numbers in f32 or f64 directly; `None` for other types. Radii are 0 if there is no
+    /// fourth number.
     fn plain(&self, dtype: &Dtype, columns: usize) -> Option<Result<SphereArray, TryReserveError>> {
         let layout = Layout { rows: self.rows(), columns, by_column: self.header.fortran_order };
         let data = self.data;
@@ -191,7 +191,7 @@ impl<'a> Array<'a> {
         })
     }
 
-    /// The columns of an array with one row, or one value, for each sphere; or what keeps it from having them.
+    /// Returns the columns of an array with one row, or one value, for each sphere. An error is the end of a sentence.
     pub(super) fn columns(&self, name: &str) -> Result<Vec<TableColumn>, String> {
         let Some(dtype) = &self.dtype else {
             return match *self.header.shape {
@@ -225,7 +225,7 @@ impl<'a> Array<'a> {
         named.map(|(column, name)| dtype.column(name, self.data, place(column))).collect()
     }
 
-    /// The fields of structures, and the names of those that cannot be columns.
+    /// Returns the fields of structures, and the names of fields that cannot be columns.
     fn fields(&self, prefix: &str) -> (Vec<TableColumn>, Vec<String>) {
         let Elements::Structures { fields, size } = &self.header.elements else {
             return Default::default();
@@ -241,7 +241,7 @@ impl<'a> Array<'a> {
     }
 }
 
-/// The elements are not real numbers.
+/// The error of elements that are not real numbers.
 fn no_numbers(dtype: &str) -> LoadError {
     LoadError::new(format!(
         "the array has the type {}, but it must be of floating-point numbers or integers; save it as a.astype('float32')",

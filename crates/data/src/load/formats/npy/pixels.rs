@@ -23,7 +23,7 @@ const NUMBERS: &str = "must be (height, width), with at most 8388608 pixels a si
 const VECTORS: &str = "must be (height, width, 3), with at most 8388608 pixels a side";
 
 impl Array<'_> {
-    /// The sides of a picture whose pixels have `components` values; `None` for another shape.
+    /// Width and height of a picture with `components` values for each pixel; `None` for another shape.
     fn sides(&self, components: u64) -> Option<[u32; 2]> {
         let (height, width) = match *self.header.shape {
             [height, width] if components == 1 => (height, width),
@@ -44,7 +44,7 @@ impl Array<'_> {
         LoadError::new(format!("the array has the shape {}, but {wanted}", self.shape()))
     }
 
-    /// The type of the elements, which is to be one of `names` in either byte order.
+    /// Returns the type of the elements, which must be one of `names` in either byte order.
     fn is_of(&self, names: &[&str], wanted: &'static str) -> Result<&Dtype, LoadError> {
         let is_one = |dtype: &&Dtype| {
             let (order, rest) = dtype.name.split_at_checked(1).unwrap_or_default();
@@ -56,7 +56,7 @@ impl Array<'_> {
         })
     }
 
-    /// Decodes values in C order, whatever the order in the file is.
+    /// Decodes values in C order from either order of the file.
     fn values<T>(
         &self,
         size: [u32; 2],
@@ -90,7 +90,7 @@ impl Array<'_> {
 /// is -1 or the largest number of the type, and becomes [`NO_ID`].
 ///
 /// # Errors
-/// If the file is not such an array, or a number is neither an id nor a miss.
+/// Returns an error if the file is not such an array, or a number is neither an id nor a miss.
 pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, LoadError> {
     let array = Array::open(bytes)?;
     let wanted = "ids must be of the type uint32, int32, uint64 or int64 with a byte order; save them as \
@@ -120,7 +120,7 @@ pub fn ids(bytes: &[u8]) -> Result<Pixels<u32>, LoadError> {
 /// Reads one number for each pixel: float32 or float64 of shape (height, width), in either byte order.
 ///
 /// # Errors
-/// If the file is not such an array.
+/// Returns an error if the file is not such an array.
 pub fn numbers(bytes: &[u8]) -> Result<Pixels<f64>, LoadError> {
     let wanted = "depths must be of the type float32 or float64";
     Array::open(bytes)?.floats(1, wanted)
@@ -129,7 +129,7 @@ pub fn numbers(bytes: &[u8]) -> Result<Pixels<f64>, LoadError> {
 /// Reads a vector for each pixel: float32 or float64 of shape (height, width, 3), in either byte order.
 ///
 /// # Errors
-/// If the file is not such an array.
+/// Returns an error if the file is not such an array.
 pub fn vectors(bytes: &[u8]) -> Result<Pixels<[f64; 3]>, LoadError> {
     let wanted = "vectors must be of the type float32 or float64";
     let Pixels { size, values } = Array::open(bytes)?.floats(3, wanted)?;
@@ -140,7 +140,7 @@ pub fn vectors(bytes: &[u8]) -> Result<Pixels<[f64; 3]>, LoadError> {
 /// `origins`, of the same shape, or of shape (3,) if all rays start at one point; float32 or float64.
 ///
 /// # Errors
-/// If the archive has no such arrays.
+/// Returns an error if the archive has no such arrays.
 pub fn rays(archive: &[u8]) -> Result<Pixels<Ray>, LoadError> {
     let data = array_of(archive, "directions")?;
     let Pixels { size, values: directions } = vectors(&data).map_err(of_array("directions"))?;

@@ -13,13 +13,13 @@ pub(super) enum Kind {
     Model,
     Endmdl,
     End,
-    /// A name of mmCIF, which appears there before the atoms. It is not a PDB record.
+    /// A name of mmCIF, which stands before the atoms of such files. It is not a PDB record.
     AtomSite,
     Other,
 }
 
 impl Kind {
-    /// Returns the kind of a line by the record name in columns 1 to 6.
+    /// Returns the kind of a line from the record name in columns 1 to 6.
     ///
     /// A serial number of six digits may begin in column 6.
     pub(super) fn of(line: &[u8]) -> Self {
@@ -40,7 +40,7 @@ impl Kind {
     }
 }
 
-/// The lines of a file without their line ends, with their numbers from 1.
+/// The lines of a file without their line ends, each with its number from 1.
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
     line: usize,
@@ -71,7 +71,7 @@ impl<'a> Iterator for Lines<'a> {
 pub(super) struct Record<'a> {
     pub(super) line: usize,
     pub(super) name: &'static str,
-    /// Only ASCII.
+    /// The text of the line, which is only ASCII.
     text: &'a [u8],
 }
 
@@ -110,13 +110,13 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Returns the text of a field without the blanks around it; it is empty where the line has ended.
+    /// Returns the text of a field without the blanks around it; it is empty if the line ends before the field.
     pub(super) fn text(&self, first: usize, last: usize) -> &'a [u8] {
         let last = last.min(self.text.len());
         self.text.get(first - 1..last).unwrap_or_default().trim_ascii()
     }
 
-    /// Returns the bytes of a field with the blanks around it; there are blanks where the line has ended.
+    /// Returns the bytes of a field with the blanks around it; bytes after the end of the line are blanks.
     pub(super) fn bytes<const WIDTH: usize>(&self, first: usize) -> [u8; WIDTH] {
         let rest = self.text.get(first - 1..).unwrap_or_default();
         rest.first_chunk().copied().unwrap_or_else(|| {
@@ -149,14 +149,14 @@ impl<'a> Record<'a> {
         first: usize,
         last: usize,
     ) -> Result<f64, LoadError> {
-        // Few fields are blank, so they are looked at again only where there is no number.
+        // Few fields are blank, so that is tested only if there is no number.
         self.number(what, first, last).or_else(|error| {
             if self.text(first, last).is_empty() { Ok(absent) } else { Err(error) }
         })
     }
 }
 
-/// The end of a sentence about the ASCII text of a field.
+/// Ends a sentence about the ASCII text of a field that is not valid.
 pub(super) fn not_valid(text: &[u8], kind: &str) -> String {
     match text {
         b"" => "blank".to_owned(),
@@ -167,7 +167,7 @@ pub(super) fn not_valid(text: &[u8], kind: &str) -> String {
     }
 }
 
-/// Count of the four-digit numbers in base 36 that begin with a given digit.
+/// The number of four-digit numbers in base 36 with the same first digit.
 const BLOCK: i32 = 36 * 36 * 36;
 
 /// Decodes a field that has no blanks around it; `None` if it is not a valid number.

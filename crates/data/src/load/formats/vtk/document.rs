@@ -1,4 +1,4 @@
-//! The XML of a VTK file: which arrays there are, and where their numbers are.
+//! The XML of a VTK file: its arrays, and the places of their numbers.
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -14,22 +14,22 @@ use pinhole::internals::text::{one_line, shortened};
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Encoding {
     pub(super) order: Order,
-    /// Whether lengths before the data are u64, and not u32.
+    /// Whether lengths before the data are u64 rather than u32.
     pub(super) is_wide: bool,
     pub(super) is_compressed: bool,
 }
 
-/// What a file says of its points.
+/// The parts of a file that describe its points.
 #[derive(Debug, Default)]
 pub(super) struct Document<'a> {
     pub(super) encoding: Encoding,
     pub(super) pieces: Vec<Piece<'a>>,
-    /// Arrays that are not of points, and other things that are not used, as the start of a sentence.
+    /// Unused parts of the file, such as arrays that are not about points, each as the start of a sentence.
     pub(super) unused: Vec<String>,
-    /// The data behind the XML, from where offsets count.
+    /// The data after the XML; offsets count from its start.
     pub(super) appended: &'a [u8],
     pub(super) appended_is_base64: bool,
-    /// How many of the appended bytes arrays have taken. Arrays do not overlap, or a small file could take any memory.
+    /// Number of appended bytes that arrays have taken. Arrays must not overlap, or a small file could take any memory.
     pub(super) taken: Cell<usize>,
 }
 
@@ -52,11 +52,11 @@ pub(super) struct Array<'a> {
 pub(super) enum Data<'a> {
     Ascii(Cow<'a, str>),
     Base64(Cow<'a, str>),
-    /// Where it starts in the appended data.
+    /// Offset of the data in the appended data.
     Appended(u64),
 }
 
-/// Arrays with more components are not used: each would be a column with a name.
+/// Arrays with more components are not used, because each component would become a column.
 const MOST_COMPONENTS: usize = 64;
 
 const APPENDED: &[u8] = b"<AppendedData";
@@ -78,7 +78,7 @@ fn scalar_of_name(name: &str) -> Option<Scalar> {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, LoadError> {
-    // What is appended may be anything but XML.
+    // Appended data need not be XML.
     let end = bytes.windows(APPENDED.len()).position(|window| window == APPENDED);
     let xml = &bytes[..end.unwrap_or(bytes.len())];
     let xml = std::str::from_utf8(xml)
@@ -177,7 +177,7 @@ impl<'a> Parser<'a> {
                 for kind in ["NumberOfLines", "NumberOfStrips", "NumberOfPolys"] {
                     self.cells = self.cells.saturating_add(number(element, kind)?.unwrap_or(0));
                 }
-                // A grid of particles has one cell for each point.
+                // A grid of particles has a cell for each point, which needs no note.
                 let cells = number(element, "NumberOfCells")?.unwrap_or_default();
                 self.cells = self.cells.saturating_add(if cells == points { 0 } else { cells });
                 self.document.pieces.push(Piece { points, ..Piece::default() });
@@ -249,9 +249,9 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// Takes the text of an array that is inline.
+    /// Takes the text of an inline array.
     fn text(&mut self, text: Cow<'a, str>) {
-        // An array may have elements of its own, whose text is something else.
+        // An array may contain other elements, whose text is not data.
         let is_data = self.is_in_array && self.open.last().is_some_and(|name| name == "DataArray");
         let Some(piece) = self.document.pieces.last_mut().filter(|_| is_data) else {
             return;
@@ -268,7 +268,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// What is wrong with an element: an error as it is, or a message without its place.
+/// A fault of an element: a complete error, or a message without its place.
 enum Problem {
     Error(LoadError),
     Message(String),
@@ -305,7 +305,7 @@ fn number(element: &BytesStart<'_>, name: &str) -> Result<Option<u64>, Problem> 
     parsed.transpose()
 }
 
-/// Reads the attributes of an array. The inner error says of an array that is not used what it is.
+/// Reads the attributes of an array. The inner error describes an array that is not used.
 fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Problem> {
     let name = attribute(element, "Name")?.unwrap_or_default();
     let shown = match name.is_empty() {
