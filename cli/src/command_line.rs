@@ -71,8 +71,8 @@ mod tests {
                 "certify",
                 "rays",
                 &[
-                    "path", "format", "radius", "color", "frame", "topology", "columns", "id",
-                    "depth", "depth_is", "normal", "rays", "at_most", "json", "help",
+                    "path", "format", "radius", "color", "frame", "topology", "columns", "set",
+                    "id", "depth", "depth_is", "normal", "rays", "at_most", "json", "help",
                 ],
             ),
         ] {

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::placement::{Placement, PoseParameters, refused};
 use super::{
-    Camera, CameraError, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera, PanoramaCamera,
-    PinholeCamera, Pose, ThinLensCamera, camera_table, checked_length, framing,
+    Camera, CameraError, CameraKind, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera,
+    PanoramaCamera, PinholeCamera, Pose, ThinLensCamera, Viewpoint, camera_table, checked_length,
+    framing,
 };
 use crate::exact::{List, Table};
 use crate::geometry::subject::Subject;
@@ -46,10 +47,29 @@ macro_rules! define_camera_parameters {
 
             fn place(&self) -> Result<Placement, CameraError> {
                 match self.0 {
-                    $(ByKind::$variant(Table($parameters { eye, look_at, direction, up, .. })) => {
-                        PoseParameters { eye, look_at, direction, up }.placement()
+                    $(ByKind::$variant(Table(table)) => table.pose().placement(DVec3::Y),)+
+                }
+            }
+
+            /// Says where the camera stands, if nothing says it: outside the scene at the `automatic` viewpoint, if there
+            /// is one. `up` is the direction that is up in a view if no parameter says what is.
+            ///
+            /// # Errors
+            /// Returns an error if parameters exclude each other.
+            pub fn standing(
+                mut self,
+                automatic: Option<Viewpoint>,
+                up: DVec3,
+            ) -> Result<Self, CameraError> {
+                match &mut self.0 {
+                    $(ByKind::$variant(Table(table)) => {
+                        let automatic = automatic.filter(|_| CameraKind::$variant.is_linear());
+                        let pose = table.pose().standing(automatic, up)?;
+                        (table.direction, table.up) = (pose.direction, pose.up);
+                        (table.view, table.turn) = (None, None);
                     })+
                 }
+                Ok(self)
             }
 
             fn set_place(&mut self, eye: DVec3, Placement { direction, up, .. }: Placement) {
@@ -57,6 +77,7 @@ macro_rules! define_camera_parameters {
                 match &mut self.0 {
                     $(ByKind::$variant(Table(table)) => {
                         (table.eye, table.direction, table.up) = (eye, direction, up);
+                        (table.view, table.turn) = (None, None);
                     })+
                 }
             }
@@ -64,6 +85,18 @@ macro_rules! define_camera_parameters {
     };
 }
 camera_table!(define_camera_parameters);
+
+macro_rules! define_pose {
+    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        $(impl $parameters {
+            fn pose(&self) -> PoseParameters {
+                let Self { eye, look_at, direction, up, view, turn, .. } = *self;
+                PoseParameters { eye, look_at, direction, up, view, turn }
+            }
+        })+
+    };
+}
+camera_table!(define_pose);
 
 impl CameraParameters {
     /// Returns this camera with its position, direction and `up` direction filled in, so that it no longer depends on
@@ -178,6 +211,8 @@ struct PinholeParameters {
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
+    view: Option<Viewpoint>,
+    turn: Option<f64>,
     /// Distance of the view plane from the eye.
     distance: Option<f64>,
     /// Half width and half height of the view plane.
@@ -231,6 +266,8 @@ struct OrthographicParameters {
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
+    view: Option<Viewpoint>,
+    turn: Option<f64>,
     /// Half width and half height of the view plane.
     half_extent: Option<List<2>>,
     /// The fraction of the picture that a camera without an eye leaves free beside the scene, from 0 to 0.45.
@@ -273,6 +310,8 @@ struct ThinLensParameters {
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
+    view: Option<Viewpoint>,
+    turn: Option<f64>,
     distance: Option<f64>,
     half_extent: Option<List<2>>,
     vertical_fov: Option<f64>,
@@ -344,6 +383,8 @@ struct PanoramaParameters {
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
+    view: Option<Viewpoint>,
+    turn: Option<f64>,
     /// The settings of two eyes.
     stereo: Option<StereoParameters>,
 }
@@ -366,6 +407,8 @@ struct FisheyeParameters {
     look_at: Option<List<3>>,
     direction: Option<List<3>>,
     up: Option<List<3>>,
+    view: Option<Viewpoint>,
+    turn: Option<f64>,
     /// The angle across the whole disk, in degrees.
     angle: Option<f64>,
 }

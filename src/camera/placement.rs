@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{CameraError, Pose};
+use super::{CameraError, Pose, Viewpoint, turned};
 use crate::exact::List;
 
 /// The eye, target and `up`, which the tables of all cameras have. Without an eye, the camera is placed so that it sees
@@ -16,6 +16,10 @@ pub(super) struct PoseParameters {
     pub(super) direction: Option<List<3>>,
     /// The `up` direction in the picture. By default it is +y, or another axis in a view along y.
     pub(super) up: Option<List<3>>,
+    /// Where a camera without an eye stands, instead of `direction`.
+    pub(super) view: Option<Viewpoint>,
+    /// The angle in degrees by which a camera without an eye is turned about `up`, counter-clockwise seen from above.
+    pub(super) turn: Option<f64>,
 }
 
 /// The pose that [`PoseParameters`] give, and how it was found.
@@ -28,7 +32,42 @@ pub(super) struct Placement {
 }
 
 impl PoseParameters {
-    pub(super) fn placement(&self) -> Result<Placement, CameraError> {
+    /// Turns `view` and `turn` into a direction. A camera that has neither an eye nor a direction stands at the
+    /// `automatic` viewpoint. A view has `default_up` up if `up` is not given.
+    pub(super) fn standing(
+        mut self,
+        automatic: Option<Viewpoint>,
+        default_up: DVec3,
+    ) -> Result<Self, CameraError> {
+        let is_placed = self.eye.is_some() || self.look_at.is_some() || self.direction.is_some();
+        if self.view.is_some() && is_placed {
+            return refused("`view` excludes `eye`, `look_at` and `direction`; keep one");
+        }
+        if self.turn.is_some() && self.eye.is_some() {
+            return refused(
+                "`turn` applies only to a camera that frames the scene; remove `turn` or `eye`",
+            );
+        }
+        let turn = self.turn.take().unwrap_or(0.0);
+        if !turn.is_finite() {
+            return refused("`turn` must be a finite angle");
+        }
+        let up = self.up.map_or(default_up, |List(up)| up.into());
+        if let Some(view) = self.view.take().or(automatic.filter(|_| !is_placed)) {
+            let axes = view.axes(up, turn).map(|axis| Some(List(axis.to_array())));
+            [self.direction, self.up] = axes;
+        } else if turn != 0.0 {
+            let direction = self.direction.map_or(DVec3::NEG_Z, |List(direction)| direction.into());
+            self.direction = Some(List(turned(direction, up, turn).to_array()));
+        }
+        Ok(self)
+    }
+
+    pub(super) fn placement(self, default_up: DVec3) -> Result<Placement, CameraError> {
+        self.standing(None, default_up)?.placed()
+    }
+
+    fn placed(&self) -> Result<Placement, CameraError> {
         let Self { eye, look_at, direction, .. } = *self;
         let (eye, toward) = match (eye, look_at, direction) {
             (Some(List(eye)), Some(List(look_at)), None) => {

@@ -10,7 +10,8 @@ use glam::{DQuat, DVec3};
 /// The text is `x`, `-x`, `y`, `-y`, `z`, `-z`, `iso` (azimuth 45, elevation 35.26: all three axes are equally
 /// foreshortened), or `AZIMUTH,ELEVATION` in degrees. With +y up, the azimuth is counted from +z towards +x, and the
 /// elevation from the horizon upwards. Molecule viewers begin with `z`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(try_from = "String", into = "String")]
 #[non_exhaustive]
 pub enum Viewpoint {
     /// On the positive or negative side of an axis (0, 1 or 2) of the world.
@@ -89,6 +90,20 @@ impl fmt::Display for Viewpoint {
             _ if *self == Self::ISOMETRIC => f.write_str("iso"),
             Self::Angles { azimuth, elevation } => write!(f, "{azimuth},{elevation}"),
         }
+    }
+}
+
+impl From<Viewpoint> for String {
+    fn from(view: Viewpoint) -> Self {
+        view.to_string()
+    }
+}
+
+impl TryFrom<String> for Viewpoint {
+    type Error = ViewpointError;
+
+    fn try_from(text: String) -> Result<Self, ViewpointError> {
+        text.parse()
     }
 }
 

@@ -280,7 +280,7 @@ fn other_files_and_other_versions() {
         let error =
             run_file::read(&with_header(&bytes, "\"pinhole_run\":\"5\"", &other)).unwrap_err();
         assert_eq!(error, RunFileError::Version(version.to_owned()));
-        let words = "this program reads version 5; record it again with `verify --save`";
+        let words = "this program reads version 6; record it again with `verify --save`";
         assert_eq!(error.to_string(), format!("run file of version {version}; {words}"));
     }
     let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");

@@ -39,7 +39,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let sources = if args.scenes.is_empty() {
         DEFAULT.into_iter().map(BenchSource::Standard).collect()
     } else {
-        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args, size));
+        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args));
         sources.collect::<Result<Vec<_>, _>>()?
     };
     let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.iter().copied());
@@ -229,11 +229,7 @@ pub(crate) enum BenchSource {
 
 impl BenchSource {
     /// Finds the standard scene of this name, or else takes the name as the path of a file.
-    pub(crate) fn new(
-        named: &Path,
-        args: &BenchArgs,
-        size: Option<(u32, u32)>,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn new(named: &Path, args: &BenchArgs) -> Result<Self, Failure> {
         let standard = Standard::ALL.iter().find(|standard| named == Path::new(standard.name()));
         match standard {
             Some(standard) => Ok(Self::Standard(*standard)),
@@ -245,9 +241,7 @@ impl BenchSource {
                     names.join(", ")
                 )))
             }
-            None => {
-                Ok(Self::File(named.to_path_buf(), Box::new(Source::of_bench(named, args, size)?)))
-            }
+            None => Ok(Self::File(named.to_path_buf(), Box::new(Source::of_bench(named, args)?))),
         }
     }
 

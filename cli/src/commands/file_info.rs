@@ -7,9 +7,10 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::bricks;
+use crate::flags::settings::Given;
+use crate::input::Source;
 use crate::input::data::{self, DataOptions, as_usage, format_parser};
 use crate::input::read_file;
-use crate::input::{self, Source};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::answer;
 use crate::terminal::text;
@@ -58,18 +59,27 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
         Some(format) => read_file::Format::Data(format),
         None => read_file::Format::of(path).map_err(Failure::Usage)?,
     };
-    let options = DataOptions {
-        frame: args.frame,
-        radius: args.radius,
-        color: None,
-        topology: args.topology.clone(),
-        columns: args.columns.clone(),
-    };
-    input::check_flags(format, &options)?;
+    let topology = args.topology.as_ref().map(|file| file.to_string_lossy().into_owned());
+    let given = Given::default()
+        .with("frame", args.frame.map(|frame| frame.to_string()))
+        .with("radius", args.radius.map(|radius| radius.to_string()))
+        .with("topology", topology)
+        .with("columns", (!args.columns.is_empty()).then(|| args.columns.join(",")));
     match format {
-        read_file::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
+        read_file::Format::Data(format) => {
+            let given = given.with("format", Some(format.name.to_owned()));
+            Source::new(path, &given)?;
+            let options = DataOptions {
+                frame: args.frame,
+                radius: args.radius,
+                color: None,
+                topology: args.topology.clone(),
+                columns: args.columns.clone(),
+            };
+            of_data(path, format, &options).map_err(as_usage)
+        }
         // Files of bricks have a report of their own.
-        read_file::Format::Scene | BRICKS => of_scene(path, &options),
+        read_file::Format::Scene | BRICKS => of_scene(path, &given),
     }
 }
 
@@ -144,8 +154,8 @@ fn with_spheres(path: &Path, kind: Kind, loaded: &Dataset) -> Report {
     }
 }
 
-fn of_scene(path: &Path, options: &DataOptions) -> Result<Report, Failure> {
-    if let Some(flag) = options.given() {
+fn of_scene(path: &Path, given: &Given) -> Result<Report, Failure> {
+    if let Some(flag) = given.first_in(u32::MAX) {
         return Err(Failure::usage(format!(
             "{}: {flag} applies to data files, but this is a scene file; remove {flag}",
             path.display()

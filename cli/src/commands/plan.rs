@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::flags::common::{AccelArgs, AdapterArgs, InputArgs};
-use crate::flags::light::{LightArgs, LightFlags};
+use crate::flags::settings::{LOOK, SettingArgs};
 use crate::input::{Input, Source};
 use crate::render;
 use crate::render::device::{AdapterReport, WantedAdapter, explained};
@@ -33,7 +33,7 @@ pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) input: InputArgs,
     #[command(flatten)]
-    pub(crate) light: LightArgs,
+    pub(crate) light: SettingArgs<LOOK>,
     #[command(flatten)]
     pub(crate) adapter: AdapterArgs,
     #[command(flatten)]
@@ -110,7 +110,10 @@ struct LimitsReport {
 }
 
 pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light, None)?);
+    let source = {
+        let InputArgs { path, view } = &args.input;
+        Source::lit(path, &view.given.clone().and(&args.light.given), None)?
+    };
     let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
         let layer = name.parse::<Layer>();
         layer

@@ -18,9 +18,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
-use pinhole::image::encoding::Encoding;
 use pinhole::internals::text::one_line;
-use pinhole_figure::annotate::AnnotationPlan;
 use pinhole_figure::scene_file::{Contents, write};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -58,8 +56,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if args.report.print_scene {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
-        let encoding = job.encoding.apply_to(input.encoding);
-        return Ok(print(&input, encoding, job.annotation.plan_over(&input.annotations))?);
+        return Ok(print(&input)?);
     }
     // The driver is loaded while the file is read, to save time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
@@ -104,11 +101,11 @@ fn said(quiet: bool, input: &Input, started: Instant) {
 
 /// Writes the scene file to standard output. `encoding` and `annotations` include the flags about the picture's file
 /// and about annotations.
-pub(crate) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPlan) -> Result<()> {
+pub(crate) fn print(input: &Input) -> Result<()> {
     let contents = Contents {
         film: input.film,
-        encoding,
-        annotations,
+        encoding: input.encoding,
+        annotations: input.annotations.clone(),
         camera: input.parameters,
         settings: &input.settings,
         sky_image: input.sky_image.as_deref().map(named).transpose()?,

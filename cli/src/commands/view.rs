@@ -6,10 +6,8 @@ use std::process::Command;
 use anyhow::Context;
 use clap::Args;
 
-use crate::flags::annotation::EncodingArgs;
 use crate::flags::common::{AccelArgs, DeviceArgs, InputArgs};
-use crate::flags::data::{ColorArgs, StructureArgs};
-use crate::flags::light::LightArgs;
+use crate::flags::settings::{PICTURE, SettingArgs};
 use crate::terminal::failure::Failure;
 
 /// The flags of `render` that say what is seen. The viewer reads them itself; here they are parsed for the help and
@@ -23,13 +21,7 @@ pub(crate) struct ViewArguments {
     #[command(flatten)]
     pub(crate) input: InputArgs,
     #[command(flatten)]
-    encoding: EncodingArgs,
-    #[command(flatten)]
-    structure: StructureArgs,
-    #[command(flatten)]
-    color: ColorArgs,
-    #[command(flatten)]
-    light: LightArgs,
+    look: SettingArgs<PICTURE>,
     #[command(flatten)]
     device: DeviceArgs,
     #[command(flatten)]

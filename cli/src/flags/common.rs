@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, Id, ValueEnum};
 
-use crate::flags::camera::CameraArgs;
-use crate::input::data::format_parser;
+use crate::flags::settings::{SettingArgs, VIEW, names};
 use crate::terminal::text::one_of;
 use pinhole::accel::AccelChoice;
 use pinhole_data::load::Format;
+use pinhole_figure::settings::flags::Group;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Stereo {
@@ -24,7 +24,7 @@ pub(crate) struct InputArgs {
     #[arg(value_name = "SCENE_OR_DATA", help = input_help())]
     pub(crate) path: PathBuf,
     #[command(flatten)]
-    pub(crate) view: ViewArgs,
+    pub(crate) view: SettingArgs<VIEW>,
 }
 
 /// The help of the input, which lists the extensions of all formats.
@@ -34,34 +34,6 @@ fn input_help() -> String {
          automatically and which may be compressed (.gz); `-` for standard input, with --format",
         Format::extensions_of(|_| true)
     )
-}
-
-/// Flags for reading the input, and for the camera.
-#[derive(Debug, Default, Args)]
-pub(crate) struct ViewArgs {
-    /// Format of the data file, whatever its extension is
-    #[arg(long, value_parser = format_parser())]
-    pub(crate) format: Option<&'static Format>,
-    /// File that says what the spheres of a trajectory are, for formats that have positions alone
-    #[arg(long, value_name = "FILE")]
-    pub(crate) topology: Option<PathBuf>,
-    /// Names of the columns of a table without a header, such as x,y,z,radius
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub(crate) columns: Vec<String>,
-    /// Radius of all spheres, for data without radii
-    #[arg(long, value_name = "R", allow_hyphen_values = true)]
-    pub(crate) radius: Option<f64>,
-    /// CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]
-    #[arg(long, value_name = "CSS")]
-    pub(crate) color: Option<String>,
-    /// Frame of a trajectory, counted from 0 [default: the scene's, or 0]
-    #[arg(long, value_name = "N")]
-    pub(crate) frame: Option<usize>,
-    /// Width and height of the picture in pixels, such as 800x600 [default: the scene's, or 800x600]
-    #[arg(long, value_name = "WxH")]
-    pub(crate) size: Option<String>,
-    #[command(flatten)]
-    pub(crate) camera: CameraArgs,
 }
 
 #[derive(Debug, Args)]
@@ -133,5 +105,5 @@ pub(crate) fn ids<A: Args>() -> impl Iterator<Item = Id> {
 
 /// Arguments that describe the camera and the size of the picture.
 pub(crate) fn camera_ids() -> impl Iterator<Item = Id> {
-    ids::<CameraArgs>().chain(["size".into()])
+    names(Group::Camera as u32).chain(["size"]).map(Id::from)
 }

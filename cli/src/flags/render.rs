@@ -4,10 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::flags::annotation::EncodingArgs;
 use crate::flags::common::{AccelArgs, DeviceArgs, InputArgs, Stereo};
-use crate::flags::data::{ColorArgs, StructureArgs};
-use crate::flags::light::LightArgs;
+use crate::flags::settings::{PICTURE, SettingArgs};
 use crate::frames::args::FramesArgs;
 use crate::output::report::ReportArgs;
 use crate::render::stop_rule::StopArgs;
@@ -24,13 +22,7 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) frames: FramesArgs,
     #[command(flatten)]
-    pub(crate) encoding: EncodingArgs,
-    #[command(flatten)]
-    pub(crate) structure: StructureArgs,
-    #[command(flatten)]
-    pub(crate) color: ColorArgs,
-    #[command(flatten)]
-    pub(crate) light: LightArgs,
+    pub(crate) look: SettingArgs<PICTURE>,
     #[command(flatten)]
     pub(crate) stop_rule: StopArgs,
     #[command(flatten)]

@@ -204,6 +204,6 @@ impl Notes {
 }
 
 pub(crate) fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
-    source.options.frame = Some(number);
+    source.frame = Some(number);
     source.contents().map_err(|failure| in_frame(failure, number))
 }

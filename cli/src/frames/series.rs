@@ -71,7 +71,7 @@ pub(super) fn frames(
 ) -> Result<Start, Failure> {
     let missing = overview.colors.missing();
     let kinds = overview.kinds(source)?;
-    source.color.joined = overview.colors.clone();
+    source.joined = overview.colors.clone();
     source.kinds = kinds;
     let framed = overview.scene().with_context(|| source.name())?;
     let mut contents = frame(source, first)?;

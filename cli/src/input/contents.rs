@@ -1,6 +1,6 @@
 //! Reads what an input file holds: a scene file with its data, or a data file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
@@ -12,7 +12,6 @@ use crate::input::source::{Source, default_color};
 use crate::input::{extension, read};
 use crate::terminal::failure::Failure;
 use crate::terminal::{profile, progress};
-use pinhole::camera::film::Film;
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
 use pinhole_data::added::Additions;
@@ -20,7 +19,7 @@ use pinhole_data::load::{self, Column, Dataset};
 use pinhole_data::select::{KeptSpheres, Selection};
 use pinhole_figure::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole_figure::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
-use pinhole_figure::settings::{Layer, Sources};
+use pinhole_figure::settings::flags::Group;
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {
@@ -30,7 +29,6 @@ pub(crate) struct Contents {
 }
 
 /// Details of a file that was read, beside its spheres.
-#[derive(Default)]
 pub(crate) struct Details {
     pub(crate) notes: Vec<String>,
     pub(crate) files: Vec<PathBuf>,
@@ -40,6 +38,8 @@ pub(crate) struct Details {
     pub(crate) color_key: Option<ColorKey>,
     /// The colors by kind that no flag asked for.
     pub(crate) kinds: Option<ColorBy>,
+    /// The color of spheres without one.
+    pub(crate) color: LinearRgb,
     /// Where the size of the picture comes from.
     pub(crate) size_from: String,
     pub(crate) kept: Option<KeptSpheres>,
@@ -47,6 +47,24 @@ pub(crate) struct Details {
     /// The columns of the data that is drawn, if they were asked for.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
     pub(crate) columns: Vec<Column>,
+}
+
+impl Default for Details {
+    fn default() -> Self {
+        Self {
+            notes: Vec::new(),
+            files: Vec::new(),
+            sky_image: None,
+            has_atoms: false,
+            color_key: None,
+            kinds: None,
+            color: default_color(),
+            size_from: String::new(),
+            kept: None,
+            bonds: None,
+            columns: Vec::new(),
+        }
+    }
 }
 
 /// Where the data of a scene file is, and the options for reading it.
@@ -68,87 +86,37 @@ impl Source {
     /// Reads the spheres, but not the image of the sky.
     pub(crate) fn contents(&self) -> Result<Contents, Failure> {
         let _phase = profile::phase("read");
-        let path = &self.path;
-        progress::stage(format!("reading {}", path.display()));
-        if let Some(bricks) = &self.bricks {
-            return self.contents_of_bricks(bricks);
+        progress::stage(format!("reading {}", self.path.display()));
+        match (&self.bricks, self.format) {
+            (Some(bricks), _) => self.contents_of_bricks(bricks),
+            (None, Format::Scene) => self.contents_of_text(&self.text()?),
+            (None, _) => self.contents_of(self.scene_of_data()?),
         }
-        let Format::Data(format) = self.format else {
-            return self.contents_of_text(&self.text()?);
-        };
-        let mut loaded = self.read_data(path, format, &self.options).map_err(as_usage)?;
-        let has_atoms = loaded.labels("species").is_some();
-        let file_name = || path.display().to_string();
-        let selected = self.structure.select.as_ref().map(|select| select.apply(&mut loaded));
-        let kept = selected.transpose().context("--select").with_context(file_name)?;
-        let columns = self.columns_of(&loaded, None);
-        let mut mapping = self.color.apply_to(&Mapping::default())?;
-        loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
-        let mut notes = std::mem::take(&mut loaded.notes);
-        notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
-        let kinds = self.kinds.clone().or_else(|| by_kind(&loaded, &self.options));
-        let kinds = kinds.filter(|_| mapping.color.is_none());
-        if let Some(by) = &kinds {
-            notes.push(format!("{}: {}", path.display(), note(by)));
-            let mut by = by.clone();
-            self.color.join(&mut by);
-            mapping.color = Some(by);
-        }
-        let color = self.color_of_all();
-        let keeps_radii = self.options.radius.is_some();
-        let additions = self.structure.additions(&Additions::default(), keeps_radii);
-        let made = mapping.scene_with(loaded, color, &additions);
-        let (scene, mapped, added) = made.with_context(file_name)?;
-        notes.extend_from_slice(mapped.notes());
-        notes.extend_from_slice(added.notes());
-        let bonds = additions.bonds.as_ref().map(|_| added.bonds());
-        let color_key = mapped.key().cloned();
-        if scene.is_empty() {
-            notes.push(format!(
-                "{}: the file has no spheres, so the picture shows only the background",
-                path.display()
-            ));
-        }
-        let file = self.scene_of_data()?;
-        let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
-        let details = Details {
-            notes,
-            files,
-            has_atoms,
-            color_key,
-            kinds,
-            kept,
-            bonds,
-            columns,
-            ..Details::default()
-        };
-        self.prepared(file, scene, details)
     }
 
     /// The spheres that stand for all of a file of bricks.
     fn contents_of_bricks(&self, bricks: &BrickFile) -> Result<Contents, Failure> {
-        if let Some(flag) = self.structure.given().or(self.color.given()) {
+        let file = self.scene_of_data()?;
+        let of_columns = Group::Structure as u32 | Group::Color as u32;
+        if let Some(flag) = self.given.first_in(of_columns) {
             return Err(Failure::usage(format!(
                 "{}: {flag} needs columns of the data or all spheres in memory, and bricks have neither; render the data \
                  that was sorted",
                 self.path.display()
             )));
         }
-        if self.options.color.is_some() && bricks.has_colors() {
+        let color = file.data().and_then(|data| data.color);
+        if color.is_some() && bricks.has_colors() {
             return Err(Failure::usage(format!(
                 "{}: --color applies only to data without colors; remove it",
                 self.path.display()
             )));
         }
-        let scene = bricks.stand_in(self.color_of_all())?;
+        let color = color.unwrap_or_else(default_color);
+        let scene = bricks.stand_in(color)?;
         let (files, has_atoms) = (vec![self.path.clone()], bricks.has_atoms());
-        let details = Details { files, has_atoms, ..Details::default() };
-        self.prepared(self.scene_of_data()?, scene, details)
-    }
-
-    /// The color of spheres without one.
-    pub(crate) fn color_of_all(&self) -> LinearRgb {
-        self.options.color.unwrap_or_else(default_color)
+        let details = Details { files, has_atoms, color, ..Details::default() };
+        Ok(self.prepared(file, scene, details))
     }
 
     /// Copies the columns of the spheres that `select` keeps, if they are asked for.
@@ -175,125 +143,117 @@ impl Source {
 
     /// Reads a scene from the text of a scene file, and its data.
     pub(crate) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
-        let file = self.parsed(text)?;
-        let (scene, details) = self.scene_of(&file)?;
-        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
-        let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
+        self.contents_of(self.parsed(text)?)
+    }
+
+    fn contents_of(&self, file: SceneFile) -> Result<Contents, Failure> {
+        self.check_camera(&file)?;
+        let (scene, mut details) = self.scene_of(&file)?;
+        if scene.is_empty() && matches!(self.format, Format::Data(_)) {
+            details.notes.push(format!(
+                "{}: the file has no spheres, so the picture shows only the background",
+                self.path.display()
+            ));
+        }
+        let kept = file.kept_from_style();
+        if !kept.is_empty() {
+            details.notes.push(format!(
+                "{}: --style leaves the values as they are that the scene gives itself, {}; --set KEY=VALUE changes one",
+                self.path.display(),
+                kept.join(", ")
+            ));
+        }
+        let sky_file = file.sky_image().filter(|_| file.kind() == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
-        let data_file = file.data().map(|data| self.resolve(&data.file));
-        let topology = file.data().and_then(|data| data.topology.as_ref());
-        let topology =
-            self.options.topology.clone().or_else(|| topology.map(|file| self.resolve(file)));
-        let files = [Some(self.path.clone()), data_file, topology, sky_image.clone()];
+        let data = self.keys_of_data(&file);
+        let data_file = data.as_ref().map(|data| self.resolve(&data.file));
+        let topology = data.as_ref().and_then(|data| self.options(&file, data).topology);
+        let scene_file = (self.format == Format::Scene).then(|| self.path.clone());
+        let files = [scene_file, data_file, topology, sky_image.clone()];
         let files = files.into_iter().flatten().collect();
-        self.prepared(file, scene, Details { files, sky_image, ..details })
+        Ok(self.prepared(file, scene, Details { files, sky_image, ..details }))
     }
 
-    /// The scene file that stands for a data file: its style.
-    pub(crate) fn scene_of_data(&self) -> Result<SceneFile> {
-        let file = SceneFile::read(&Sources { style: Some(self.style), ..Sources::default() });
-        file.with_context(|| self.path.display().to_string())
+    fn prepared(&self, file: SceneFile, scene: Scene, details: Details) -> Contents {
+        let size_from = self.size_from(&file);
+        Contents { file: Arc::new(file), scene, details: Details { size_from, ..details } }
     }
 
-    pub(crate) fn parsed(&self, text: &str) -> Result<SceneFile> {
-        let style = self
-            .light
-            .style()
-            .map(|style| Layer { flag: "--style", text: format!("style = \"{}\"", style.name()) });
-        let file = SceneFile::read(&Sources { file: text, flags: style.as_slice(), style: None });
-        file.with_context(|| self.path.display().to_string())
-    }
-
-    /// Applies the flags for the film and the background.
-    fn prepared(
-        &self,
-        file: SceneFile,
-        scene: Scene,
-        details: Details,
-    ) -> Result<Contents, Failure> {
-        let (file, size_from) = self.with_film(file)?;
-        Ok(Contents { file: Arc::new(file), scene, details: Details { size_from, ..details } })
-    }
-
-    /// Gives a scene file the film and the background of the flags. Also returns where the film's size comes from.
-    pub(crate) fn with_film(&self, mut file: SceneFile) -> Result<(SceneFile, String), Failure> {
-        let (film, size_from) = self.film(file.film)?;
-        file.film = film;
-        file.background = self.light.background().unwrap_or(file.background);
-        Ok((file, size_from))
-    }
-
-    /// Returns the film, and where its size comes from.
-    fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
-        let Some((width, height)) = self.size else {
-            return Ok((from_file, self.path.display().to_string()));
-        };
-        let film = Film::new(width, height)
-            .map_err(|error| Failure::usage(format!("--size: {error}")))?
-            .with_y_axis(from_file.y_axis());
-        Ok((film, "--size".to_owned()))
+    /// Where the size of the picture comes from: a flag or the file.
+    pub(crate) fn size_from(&self, file: &SceneFile) -> String {
+        let flag = file.flag_of("film.width").or(file.flag_of("film.height"));
+        flag.map_or_else(|| self.path.display().to_string(), str::to_owned)
     }
 
     /// Reads a data file, or one of its frames.
-    fn read_data(
-        &self,
-        path: &Path,
-        format: &'static load::Format,
-        options: &DataOptions,
-    ) -> Result<Dataset> {
+    fn read_data(&self, place: &DataPlace) -> Result<Dataset> {
         match &self.frames {
-            Some(frames) => frames.read(options),
-            None => data::read(path, format, options),
+            Some(frames) => frames.read(&place.options),
+            None => data::read(&place.path, place.format, &place.options),
         }
     }
 
     /// Makes the scene of a scene file, and of its data if it has any.
     fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Details), Failure> {
         let file_name = || self.path.display().to_string();
-        let Some(DataPlace { data, path, format, options }) = self.data_place(file)? else {
-            let flags = &self.options;
-            let given = [
-                ("--frame", flags.frame.is_some()),
-                ("--radius", flags.radius.is_some()),
-                ("--color", flags.color.is_some()),
-                ("--topology", flags.topology.is_some()),
-                ("--columns", !flags.columns.is_empty()),
-            ];
-            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
-            return match given.or(self.color.given()).or(self.structure.given()) {
-                Some(flag) => Err(Failure::usage(format!(
-                    "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
-                    self.path.display()
-                ))),
-                None => Ok((file.scene(&[]).with_context(file_name)?, Details::default())),
-            };
+        let Some(place) = self.data_place(file)? else {
+            return Ok((file.scene(&[]).with_context(file_name)?, Details::default()));
         };
         let in_scene = || self.in_scene();
-        let loaded =
-            self.read_data(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        let read = self.read_data(&place);
+        let is_data = matches!(self.format, Format::Data(_));
+        let mut loaded =
+            if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
+        let mut data = place.data;
+        let color = data.color.unwrap_or_else(default_color);
         let has_atoms = loaded.labels("species").is_some();
-        let data = self.with_flags(data)?;
         let columns = self.columns_of(&loaded, data.select.as_ref());
-        let AppliedData { spheres, color_key, notes, kept, added, .. } =
+        let kinds = self.kinds.clone().or_else(|| ColorBy::of_kinds(&loaded));
+        let colors_itself = data.mapping.color.is_some() || data.color.is_some();
+        let kinds = kinds.filter(|_| is_data && !colors_itself);
+        let mut notes = Vec::new();
+        if let Some(by) = &kinds {
+            notes.push(format!("{}: {}", self.path.display(), note(by)));
+            let mut by = by.clone();
+            self.joined.apply_to(&mut by);
+            data.mapping.color = Some(by);
+        }
+        let details = Details { has_atoms, columns, kinds, color, ..Details::default() };
+        if is_data && data.is_plain() {
+            let selected = data.select.as_ref().map(|select| select.apply(&mut loaded));
+            let kept = selected.transpose().context("--select").with_context(file_name)?;
+            let Mapping { color: by, radius, .. } = &data.mapping;
+            let has_colors = by.is_some() && details.kinds.is_none();
+            loaded.correct_notes(has_colors, radius.is_some(), |_| false);
+            let mut all = std::mem::take(&mut loaded.notes);
+            all.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
+            all.append(&mut notes);
+            let additions = Additions { keeps_radii: data.radius.is_some(), ..data.additions };
+            let made = data.mapping.scene_with(loaded, color, &additions);
+            let (scene, mapped, added) = made.with_context(file_name)?;
+            all.extend_from_slice(mapped.notes());
+            all.extend_from_slice(added.notes());
+            let bonds = additions.bonds.as_ref().map(|_| added.bonds());
+            let color_key = mapped.key().cloned();
+            return Ok((scene, Details { notes: all, color_key, kept, bonds, ..details }));
+        }
+        let AppliedData { spheres, color_key, notes: all, kept, added, .. } =
             data.apply(loaded).with_context(in_scene)?;
-        let scene = file.scene_of(spheres, data.color.unwrap_or_else(default_color));
+        notes.splice(0..0, all);
+        let scene = file.scene_of(spheres, color);
         let scene = scene.with_context(file_name)?.with_added(added.len());
         let bonds = data.additions.bonds.is_some().then_some(added.bonds());
-        let details =
-            Details { notes, has_atoms, color_key, kept, bonds, columns, ..Details::default() };
-        Ok((scene, details))
+        Ok((scene, Details { notes, color_key, kept, bonds, ..details }))
     }
 
     /// Finds the data of a scene file; `None` if it has none.
     pub(crate) fn data_place(&self, file: &SceneFile) -> Result<Option<DataPlace>, Failure> {
-        let flags = self.options.clone();
-        let Some(data) = file.data() else { return Ok(None) };
+        let Some(data) = self.keys_of_data(file) else { return Ok(None) };
         let path = self.resolve(&data.file);
         let in_scene = || self.in_scene();
-        let extension = extension(&path);
         let named = data.format.as_deref().and_then(load::Format::of_name);
-        let Some(format) = named.or_else(|| data_format(&path)) else {
-            let problem = if extension.as_deref() == Some("toml") {
+        let Some(format) = self.data_format().or(named).or_else(|| data_format(&path)) else {
+            let problem = if extension(&path).as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else {
                 anyhow!(
@@ -304,31 +264,24 @@ impl Source {
             };
             return Err(problem.context(in_scene()).into());
         };
-        let keys = DataOptions {
-            frame: data.frame,
-            radius: data.radius,
-            color: data.color,
-            topology: data.topology.as_ref().map(|file| self.resolve(file)),
-            columns: data.columns.clone(),
-        };
-        flags.check(format, "--").map_err(Failure::usage)?;
-        keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
-        let options = flags.or(keys);
-        Ok(Some(DataPlace { data: data.clone(), path, format, options }))
+        let options = self.options(file, &data);
+        options.check(format, file).map_err(|(message, is_flag)| match is_flag {
+            true => Failure::usage(message),
+            false => anyhow!(message).context(in_scene()).into(),
+        })?;
+        Ok(Some(DataPlace { data, path, format, options }))
     }
 
     /// The place of the data in a scene file, for messages.
     fn in_scene(&self) -> String {
-        format!("{}: `data`", self.path.display())
+        match self.format {
+            Format::Data(_) => self.path.display().to_string(),
+            _ => format!("{}: `data`", self.path.display()),
+        }
     }
 }
 
-/// The column that colors the spheres of a data file where neither the file nor a flag does; see [`ColorBy::of_kinds`].
-pub(crate) fn by_kind(loaded: &Dataset, options: &DataOptions) -> Option<ColorBy> {
-    ColorBy::of_kinds(loaded).filter(|_| options.color.is_none())
-}
-
-/// The note about such colors.
+/// The note about the colors by kind of a data file where neither the file nor a flag gives colors.
 pub(crate) fn note(by: &ColorBy) -> String {
     let column = &by.column;
     format!(

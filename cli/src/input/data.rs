@@ -12,6 +12,7 @@ use pinhole::LinearRgb;
 use pinhole_data::load::{
     Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
 };
+use pinhole_figure::scene_file::SceneFile;
 
 /// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Debug, Default)]
@@ -39,39 +40,25 @@ impl DataOptions {
         options
     }
 
-    /// A flag about reading data that was given.
-    pub(crate) fn given(&self) -> Option<&'static str> {
-        let given = [
-            ("--frame", self.frame.is_some()),
-            ("--radius", self.radius.is_some()),
-            ("--topology", self.topology.is_some()),
-            ("--columns", !self.columns.is_empty()),
-        ];
-        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
-    }
-
-    /// Refuses options that do not apply to the format. The keys of a scene file have the same names as the flags, but
-    /// without the `prefix`.
-    pub(crate) fn check(&self, format: &Format, prefix: &str) -> Result<(), String> {
-        format.check(&self.to_read()).map_err(|error| format!("{prefix}{error}"))?;
+    /// Refuses options that do not apply to the format. Returns the error, and whether a flag is wrong.
+    pub(crate) fn check(&self, format: &Format, file: &SceneFile) -> Result<(), (String, bool)> {
+        let refused = |key: &str, rest: &str| match file.flag_of(key) {
+            Some(flag) => (format!("{flag}{rest}"), true),
+            None => (format!("{key}{rest}"), false),
+        };
+        format.check(&self.to_read()).map_err(|error| {
+            let error = error.to_string();
+            // The error begins with the key.
+            let end = error.find(' ').unwrap_or(error.len());
+            refused(&error[..end], &error[end..])
+        })?;
         if self.color.is_some() && format.has_colors {
-            return Err(format!(
-                "{prefix}color applies only to data without colors; remove it, because atoms have the colors of \
-                 their elements"
+            return Err(refused(
+                "color",
+                " applies only to data without colors; remove it, because atoms have the colors of their elements",
             ));
         }
         Ok(())
-    }
-
-    /// Takes these options, which flags gave, and fills in missing ones from a scene file.
-    pub(crate) fn or(self, file: Self) -> Self {
-        Self {
-            frame: self.frame.or(file.frame),
-            radius: self.radius.or(file.radius),
-            color: self.color.or(file.color),
-            topology: self.topology.or(file.topology),
-            columns: if self.columns.is_empty() { file.columns } else { self.columns },
-        }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::terminal::failure::Failure;
 use pinhole::camera::CameraPath;
 use pinhole::glam::DVec3;
 use pinhole_data::load;
+use pinhole_figure::settings::flags::Group;
 
 impl Source {
     /// Reads the file, and the data files that it names.
@@ -45,7 +46,11 @@ impl Source {
     pub(crate) fn open_frames(&mut self) -> Result<Result<FoundFrames, String>, Failure> {
         let (path, format, options) = match self.format {
             Format::Bricks => return Ok(Err("files of bricks have one frame".to_owned())),
-            Format::Data(format) => (self.path.clone(), format, self.options.clone()),
+            Format::Data(format) => {
+                let file = self.scene_of_data()?;
+                let options = file.data().map(|data| self.options(&file, data));
+                (self.path.clone(), format, options.unwrap_or_default())
+            }
             Format::Scene => match self.data_place(&self.parsed(&self.text()?)?)? {
                 Some(place) => (place.path, place.format, place.options),
                 None => return Ok(Err("this scene has no `data`".to_owned())),
@@ -73,16 +78,16 @@ impl Source {
 
     /// Whether a flag chooses one frame of the data.
     pub(crate) fn has_frame(&self) -> bool {
-        self.options.frame.is_some()
+        self.given.get("frame").is_some()
     }
 
     /// The path along which the camera of a scene file moves, and whether flags replace that camera.
     pub(crate) fn camera_path(&self) -> Result<Option<(CameraPath, bool)>, Failure> {
-        if matches!(self.format, Format::Data(_) | Format::Bricks) {
+        if self.is_data() {
             return Ok(None);
         }
         let file = self.parsed(&self.text()?)?;
-        Ok(file.camera_path().map(|path| (path.clone(), self.has_camera_of_flags())))
+        Ok(file.camera_path().map(|path| (path.clone(), self.has_camera_of_flags(&file))))
     }
 
     /// The path, for messages.
@@ -92,6 +97,10 @@ impl Source {
 
     /// The direction that is up for the flags; `None` if the camera is that of a scene file.
     pub(crate) fn up(&self) -> Option<DVec3> {
-        self.has_camera_of_flags().then(|| self.camera.up().unwrap_or_else(|| self.default_up()))
+        let is_of_flags = self.is_data() || self.given.first_in(Group::Camera as u32).is_some();
+        let numbers = |text: &str| text.split(',').map(|part| part.trim().parse().ok()).collect();
+        let up = self.given.get("up").and_then(|text| -> Option<Vec<f64>> { numbers(text) });
+        let up = up.and_then(|up| <[f64; 3]>::try_from(up).ok()).map(DVec3::from);
+        is_of_flags.then(|| up.unwrap_or_else(|| self.default_up()))
     }
 }

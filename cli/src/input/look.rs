@@ -7,13 +7,16 @@ use anyhow::{Context, Error, Result};
 
 use super::Input;
 use super::read;
+use crate::flags::camera::CameraTable;
 use crate::input::contents::{Contents, Details};
 use crate::input::read_file::Format;
 use crate::input::source::Source;
+use crate::output::picture::PictureFormat;
 use crate::output::report::Report;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
-use pinhole::camera::{Camera, CameraParameters, Viewpoint};
+use pinhole::camera::{Camera, CameraError, CameraKind, CameraParameters, Viewpoint};
+use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::render::RenderSettings;
@@ -21,6 +24,7 @@ use pinhole::scene::Scene;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::read::environment;
 use pinhole_figure::scene_file::SceneFile;
+use pinhole_figure::settings::flags::Group;
 
 /// A camera with its eyes, and settings, which were chosen for some spheres.
 pub(crate) struct Look {
@@ -47,6 +51,28 @@ impl<'a> FramedScene<'a> {
     }
 }
 
+/// Returns the flags that show how a camera is turned, to be used again; `None` if there is nothing to say.
+fn view_in_flags(asked: &CameraParameters, automatic: Option<Viewpoint>) -> Option<String> {
+    let camera = CameraTable::new(asked)?;
+    let number = |key: &str| camera.table.get(key).and_then(toml::Value::as_float);
+    let turn = match number("turn").unwrap_or(0.0) {
+        0.0 => String::new(),
+        turn => format!(" --turn {turn}"),
+    };
+    if let Some(view) = camera.table.get("view").and_then(toml::Value::as_str) {
+        return Some(format!("--view {view}{turn}"));
+    }
+    if camera.vector("eye").is_some() {
+        return None;
+    }
+    match camera.vector("direction") {
+        Some(DVec3 { x, y, z }) => Some(format!("--direction {x},{y},{z}{turn}")),
+        None => automatic
+            .filter(|_| CameraKind::ALL.iter().any(|k| k.name() == camera.kind && k.is_linear()))
+            .map(|view| format!("--view {view}{turn}")),
+    }
+}
+
 /// Changes a camera that has its position.
 pub(crate) type Turn<'a> = &'a dyn Fn(&CameraParameters) -> Result<CameraParameters>;
 
@@ -60,43 +86,69 @@ impl Source {
         turn: Option<Turn<'_>>,
     ) -> Result<Look, Failure> {
         let file_name = || self.path.display().to_string();
-        let has_flags = self.has_camera_of_flags();
-        let free_sides = self.annotation.free_sides(&file.annotations, key, file.film);
+        let free_sides = match self.output {
+            PictureFormat::Exr => [0.0; 4],
+            PictureFormat::Png => file.annotations.free_sides(key, file.film),
+        };
         let subject = scene.subject().with_free_sides(free_sides);
         let aspect = file.film.aspect();
         // A scene file says where its camera stands.
-        let facing = matches!(self.format, Format::Data(_) | Format::Bricks).then(|| {
+        let facing = self.is_data().then(|| {
             subject
                 .flat_axis()
                 .map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
         });
-        let parameters = if has_flags {
-            self.camera.parameters(facing, self.default_up()).map_err(Failure::usage)?
-        } else {
-            file.camera_parameters()
-        };
+        let asked = file.camera_parameters();
         let made = |parameters: CameraParameters| {
             let camera = parameters.camera(aspect, &subject)?;
             Ok((camera, parameters.stereo_pair(aspect, &subject)?))
         };
-        let mut placed = parameters.placed(aspect, &subject);
+        let standing = asked.standing(facing, self.default_up());
+        let mut placed = standing.and_then(|standing| standing.placed(aspect, &subject));
         if let (Ok(placed), Some(turn)) = (&mut placed, turn) {
             *placed = turn(placed).with_context(file_name)?;
         }
         let cameras = placed.and_then(|placed| Ok((placed, made(placed)?)));
-        let (parameters, (camera, eyes)) = match cameras {
-            Ok(cameras) => cameras,
-            // The scene file knows the place of the error.
-            Err(error) if has_flags => return Err(Error::new(error).context(file_name()).into()),
-            Err(error) => {
-                return Err(Error::new(file.at_camera(&error)).context(file_name()).into());
+        let (parameters, (camera, eyes)) = cameras.map_err(|error| {
+            if self.has_camera_of_flags(file) {
+                Error::new(error).context(file_name()).into()
+            } else {
+                self.failure(file.at_camera(&error))
             }
-        };
-        let kind = self.light.integrator(file.integrator());
-        let settings = file.settings(kind, scene, camera.as_ref(), sky);
-        let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
-        let view = if has_flags { self.camera.view_in_flags(facing) } else { None };
+        })?;
+        let settings = file.settings(file.kind(), scene, camera.as_ref(), sky);
+        let settings = settings.map_err(|error| self.failure(error))?;
+        let has_view = self.has_camera_of_flags(file);
+        let view = if has_view { view_in_flags(&asked, facing) } else { None };
         Ok(Look { camera, eyes, settings, parameters, view })
+    }
+
+    /// Checks the camera of flags as far as is possible without a scene.
+    pub(crate) fn check_camera(&self, file: &SceneFile) -> Result<(), Failure> {
+        if self.given.first_in(Group::Camera as u32).is_none() {
+            return Ok(());
+        }
+        let asked = file.camera_parameters();
+        // An error in the flags themselves shows with any scene, so these bounds are arbitrary.
+        let subject = &Bounds::of_sphere(DVec3::ZERO, 1.0).into();
+        let standing = asked.standing(Some(Viewpoint::OBLIQUE), self.default_up());
+        let checked = standing.and_then(|camera| {
+            camera.camera(1.0, subject)?;
+            camera.stereo_pair(1.0, subject).map(drop)
+        });
+        // Without an eye, the distance at which a lens is sharp depends on the scene.
+        let is_framed = self.given.get("eye").is_none();
+        let is_open = |error: &CameraError| match error {
+            CameraError::Range { parameter, .. } => *parameter == "`aperture_radius`",
+            CameraError::Length { .. } => self.given.get("camera") == Some("thin-lens"),
+            _ => false,
+        };
+        match checked {
+            Err(error) if !(is_framed && is_open(&error)) => {
+                Err(self.failure(file.at_camera(&error)))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The direction that is up if no flag and no scene file says what is.
@@ -109,8 +161,8 @@ impl Source {
     }
 
     /// Whether the flags say what the camera is, and not the scene file.
-    pub(super) fn has_camera_of_flags(&self) -> bool {
-        self.camera.is_given || matches!(self.format, Format::Data(_) | Format::Bricks)
+    pub(super) fn has_camera_of_flags(&self, file: &SceneFile) -> bool {
+        self.is_data() || file.has_camera_of_flags()
     }
 
     /// Makes the input from what was read and from the look of the picture.
@@ -126,6 +178,7 @@ impl Source {
             size_from,
             kept,
             bonds,
+            color,
             ..
         } = details;
         let report = Report {
@@ -142,7 +195,7 @@ impl Source {
             color_by: kinds.as_ref().map(|by| by.column.clone()),
         };
         let (film, encoding, annotations) = (file.film, file.encoding, file.annotations.clone());
-        let data = self.data(&file, kinds)?;
+        let data = self.data(&file, kinds);
         let own_spheres = file.spheres().collect();
         let Look { camera, eyes, settings, parameters, .. } = look;
         Ok(Input {
@@ -163,7 +216,7 @@ impl Source {
             own_spheres,
             sky_image,
             bricks: self.bricks.clone(),
-            color: self.color_of_all(),
+            color,
         })
     }
 

@@ -8,7 +8,7 @@ pub(crate) use crate::input::look::{FramedScene, Look};
 pub(crate) use crate::input::read_file::{extension, read};
 #[cfg(feature = "gpu")]
 pub(crate) use crate::input::source::OpenFrames;
-pub(crate) use crate::input::source::{FoundFrames, Source, check_flags, default_color};
+pub(crate) use crate::input::source::{FoundFrames, Source, default_color};
 use crate::output::report::Report;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};

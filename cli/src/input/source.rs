@@ -3,61 +3,40 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 
 #[cfg(feature = "gpu")]
 use crate::bench::args::BenchArgs;
 use crate::bricks::BrickFile;
-use crate::flags::annotation::AnnotationFlags;
-use crate::flags::camera::CameraFlags;
-use crate::flags::common::{InputArgs, ViewArgs};
-use crate::flags::data::{ColorFlags, StructureFlags};
-use crate::flags::light::LightFlags;
+use crate::flags::settings::Given;
 use crate::input::data::{self, DataOptions};
-use crate::input::read_file::{Format, data_format, parse_size};
+use crate::input::read_file::{Format, data_format};
+use crate::output::picture::PictureFormat;
 use crate::terminal::failure::Failure;
 use pinhole::image::color::LinearRgb;
-use pinhole_data::css;
 use pinhole_data::load::{self, Dataset, Trajectory};
-use pinhole_figure::color_by::ColorBy;
-use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile};
+use pinhole_figure::color_by::{ColorBy, JoinedKeys};
+use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile, SceneFileError, quoted};
+use pinhole_figure::settings::{Layer, Sources};
 use pinhole_figure::style::Style;
 
-/// Checks that flags apply to a file of this format.
-pub(crate) fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
-    if let Some(radius) = options.radius
-        && !(radius.is_finite() && radius > 0.0)
-    {
-        return Err(Failure::usage(format!(
-            "--radius {radius}: a radius must be finite and greater than 0"
-        )));
-    }
-    match format {
-        Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
-        Format::Scene => Ok(()),
-        Format::Bricks => match options.given() {
-            Some(flag) => Err(Failure::usage(format!(
-                "{flag} applies when data is sorted into bricks; give it to `pinhole sort`"
-            ))),
-            None => Ok(()),
-        },
-    }
-}
-
 /// An input file with its flags, checked as far as is possible before the file is read.
+#[derive(Clone)]
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) format: Format,
-    pub(crate) size: Option<(u32, u32)>,
-    pub(crate) options: DataOptions,
-    pub(crate) camera: CameraFlags,
-    pub(crate) light: LightFlags,
+    pub(crate) given: Given,
+    /// The settings of the flags.
+    pub(crate) layers: Vec<Layer>,
     /// The style of data files.
     pub(crate) style: Style,
-    pub(crate) color: ColorFlags,
-    pub(crate) structure: StructureFlags,
-    pub(crate) annotation: AnnotationFlags,
-    /// The colors by kind that all frames of a movie have, although no flag asks for them.
+    /// The kind of the file that will be written.
+    pub(crate) output: PictureFormat,
+    /// The frame of a movie, which takes the place of the one in the settings.
+    pub(crate) frame: Option<usize>,
+    /// The colour keys shared by all frames of a movie.
+    pub(crate) joined: JoinedKeys,
+    /// The colours by kind that all frames of a movie have, although no flag asks for them.
     pub(crate) kinds: Option<ColorBy>,
     /// The open file, if several of its frames are read.
     pub(crate) frames: Option<Arc<OpenFrames>>,
@@ -68,58 +47,55 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    pub(crate) fn new(InputArgs { path, view }: &InputArgs) -> Result<Self, Failure> {
-        Self::of_view(path, view)
-    }
-
-    /// Makes a source from a path and its flags.
-    pub(crate) fn of_view(path: &Path, args: &ViewArgs) -> Result<Self, Failure> {
-        let format = match args.format {
+    /// Makes a source from a path and its flags. Data files have one ray for each pixel, unless a flag asks for another
+    /// style.
+    pub(crate) fn new(path: &Path, given: &Given) -> Result<Self, Failure> {
+        let named = given.get("format").and_then(load::Format::of_name);
+        let format = match named {
             Some(format) => Format::Data(format),
             None => Format::of(path).map_err(Failure::Usage)?,
         };
-        let color = args.color.as_deref().map(css::color).transpose();
-        let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
-        let (topology, columns) = (args.topology.clone(), args.columns.clone());
-        let options =
-            DataOptions { frame: args.frame, radius: args.radius, color, topology, columns };
-        check_flags(format, &options)?;
         let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
-        Ok(Self {
-            bricks,
-            path: path.to_path_buf(),
-            format,
-            size: args.size.as_deref().map(parse_size).transpose()?,
-            options,
-            camera: args.camera.flags()?,
-            ..Self::of_scene(path)
-        })
+        let layers = given.layers()?;
+        let source = Self { format, given: given.clone(), layers, bricks, ..Self::of_scene(path) };
+        source.check()?;
+        Ok(source)
     }
 
-    /// Returns this source with light flags. Without them, data files have one ray for each pixel.
-    pub(crate) fn with_light(self, light: LightFlags) -> Self {
-        let style = match &self.bricks {
+    /// Makes a source for a picture with light. `open_end` is the flag that leaves the number of samples open, if there
+    /// is one.
+    pub(crate) fn lit(
+        path: &Path,
+        given: &Given,
+        open_end: Option<&'static str>,
+    ) -> Result<Self, Failure> {
+        let source = Self::new(path, given)?;
+        let style = match given.get("integrator") {
+            Some("primary") => Style::Fast,
+            Some("path") => Style::Path,
+            Some(_) => Style::Default,
             // Bricks have one ray for each pixel, unless a flag asks for light, which is refused with a reason.
-            Some(_) => light.style_of_bricks(),
-            None => light.style_of_data(),
+            None if source.bricks.is_some() => Style::Fast,
+            None => Style::Default,
         };
-        Self { light, style, ..self }
+        // Any number of samples, unless a flag limits it.
+        let open_end =
+            open_end.map(|flag| Layer { flag, text: format!("sampling.samples = {}", 1 << 24) });
+        let layers = open_end.into_iter().chain(source.layers.iter().cloned()).collect();
+        Ok(Self { layers, style, ..source })
     }
 
     /// Makes a source from a scene file without flags.
     pub(crate) fn of_scene(path: &Path) -> Self {
-        let options = DataOptions::default();
         Self {
             path: path.to_path_buf(),
             format: Format::Scene,
-            size: None,
-            options,
-            camera: CameraFlags::default(),
-            light: LightFlags::default(),
+            given: Given::default(),
+            layers: Vec::new(),
             style: Style::Fast,
-            color: ColorFlags::default(),
-            structure: StructureFlags::default(),
-            annotation: AnnotationFlags::default(),
+            output: PictureFormat::Png,
+            frame: None,
+            joined: JoinedKeys::default(),
             kinds: None,
             frames: None,
             keeps_columns: false,
@@ -127,81 +103,111 @@ impl Source {
         }
     }
 
-    /// Returns this source with the size of a picture, such as `800x600`.
+    /// Returns this source with a size, such as `800x600`.
     pub(crate) fn with_size(self, size: Option<&str>) -> Result<Self, Failure> {
-        Ok(Self { size: size.map(parse_size).transpose()?, ..self })
+        let given = self.given.with("size", size.map(str::to_owned));
+        Ok(Self { layers: given.layers()?, given, ..self })
     }
 
     /// Returns this source with a size, if it is a data file, and no flag gives its size.
-    pub(crate) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Self {
-        match (self.format, self.size) {
+    pub(crate) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Result<Self, Failure> {
+        match (self.format, self.given.get("size")) {
             (Format::Data(_) | Format::Bricks, None) => {
-                Self { size: Some((width, height)), ..self }
+                self.with_size(Some(&format!("{width}x{height}")))
             }
-            _ => self,
+            _ => Ok(self),
         }
     }
 
     /// Makes a source from a file that `bench` measures.
     #[cfg(feature = "gpu")]
-    pub(crate) fn of_bench(
-        path: &Path,
-        args: &BenchArgs,
-        size: Option<(u32, u32)>,
-    ) -> Result<Self, Failure> {
-        let format = match args.format {
-            Some(format) if Format::of(path).ok() != Some(Format::Scene) => Format::Data(format),
-            _ => Format::of(path).map_err(Failure::Usage)?,
-        };
-        let options = DataOptions { radius: args.radius, ..DataOptions::default() };
-        check_flags(format, &options)?;
-        let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
-        let source = Self { format, size, options, bricks, ..Self::of_scene(path) };
-        source.without_bricks("`bench`")
+    pub(crate) fn of_bench(path: &Path, args: &BenchArgs) -> Result<Self, Failure> {
+        let is_data = Format::of(path).ok() != Some(Format::Scene);
+        let format = args.format.filter(|_| is_data);
+        let given = Given::default()
+            .with("format", format.map(|format| format.name.to_owned()))
+            .with("radius", args.radius.map(|radius| radius.to_string()))
+            .with("size", args.size.clone());
+        Self::new(path, &given)?.without_bricks("`bench`")
     }
 
-    /// Returns the data with its keys, over which flags take precedence.
-    pub(crate) fn data(
-        &self,
-        file: &SceneFile,
-        kinds: Option<ColorBy>,
-    ) -> Result<Option<Data>, Failure> {
-        let data = match self.format {
-            Format::Data(format) => Data {
-                format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
-                ..Data::of_file(self.path.to_string_lossy())
-            },
-            Format::Bricks => return Ok(None),
-            Format::Scene => {
-                let Some(data) = file.data().cloned() else { return Ok(None) };
-                let resolved = |file: &String| self.resolve(file).to_string_lossy().into_owned();
-                Data {
-                    file: resolved(&data.file),
-                    topology: data.topology.as_ref().map(resolved),
-                    ..data
-                }
-            }
-        };
-        let mut data = self.with_flags(data)?;
-        data.mapping.color = data.mapping.color.or(kinds);
-        Ok(Some(data))
-    }
-
-    /// Returns the keys of data with the flags in their place.
-    pub(super) fn with_flags(&self, mut data: Data) -> Result<Data, Failure> {
-        let flags = self.options.clone();
-        data.frame = flags.frame.or(data.frame);
-        data.radius = flags.radius.or(data.radius);
-        data.color = flags.color.or(data.color);
-        let topology = flags.topology.map(|file| file.to_string_lossy().into_owned());
-        data.topology = topology.or(data.topology);
-        if !flags.columns.is_empty() {
-            data.columns = flags.columns;
+    /// Checks the flags for a file that is not a scene file.
+    fn check(&self) -> Result<(), Failure> {
+        if self.format == Format::Scene {
+            return Ok(());
         }
-        data.mapping = self.color.apply_to(&data.mapping)?;
-        data.select = self.structure.select.clone().or(data.select);
-        data.additions = self.structure.additions(&data.additions, false);
-        Ok(data)
+        let file = self.scene_of_data()?;
+        let names = ["frame", "radius", "topology", "columns"];
+        if let (Format::Bricks, Some(flag)) = (self.format, self.given.first_of(&names)) {
+            return Err(Failure::usage(format!(
+                "{flag} applies when data is sorted into bricks; give it to `pinhole sort`"
+            )));
+        }
+        if let (Format::Data(format), Some(data)) = (self.format, file.data()) {
+            self.options(&file, data)
+                .check(format, &file)
+                .map_err(|(error, _)| Failure::usage(error))?;
+        }
+        self.check_camera(&file)
+    }
+
+    /// The scene file that stands for a data file.
+    pub(crate) fn scene_of_data(&self) -> Result<SceneFile, Failure> {
+        let text = format!("data = {}", quoted(&self.path.to_string_lossy()));
+        let sources = Sources { file: &text, flags: &self.layers, style: Some(self.style) };
+        SceneFile::read(&sources).map_err(|error| self.failure(error))
+    }
+
+    /// Reads the text of a scene file, with the flags.
+    pub(crate) fn parsed(&self, text: &str) -> Result<SceneFile, Failure> {
+        let sources = Sources { file: text, flags: &self.layers, style: None };
+        SceneFile::read(&sources).map_err(|error| self.failure(error))
+    }
+
+    /// The failure for an error in a scene file, or in a flag, which is wrong usage.
+    pub(crate) fn failure(&self, error: SceneFileError) -> Failure {
+        match error.flag {
+            Some(_) => Failure::usage(error.to_string()),
+            None => Error::new(error).context(self.path.display().to_string()).into(),
+        }
+    }
+
+    /// The options for reading the data of a scene.
+    pub(crate) fn options(&self, file: &SceneFile, data: &Data) -> DataOptions {
+        let topology = data.topology.as_ref().map(|name| match file.flag_of("topology") {
+            Some(_) => PathBuf::from(name),
+            None => self.resolve(name),
+        });
+        DataOptions {
+            frame: self.frame.or(data.frame),
+            radius: data.radius,
+            color: data.color,
+            topology,
+            columns: data.columns.clone(),
+        }
+    }
+
+    /// Returns the data with its keys and paths as the program finds them.
+    pub(crate) fn data(&self, file: &SceneFile, kinds: Option<ColorBy>) -> Option<Data> {
+        let mut data = self.keys_of_data(file)?;
+        let options = self.options(file, &data);
+        data.topology = options.topology.map(|path| path.to_string_lossy().into_owned());
+        match self.format {
+            Format::Bricks => return None,
+            Format::Scene => data.file = self.resolve(&data.file).to_string_lossy().into_owned(),
+            Format::Data(format) if data_format(&self.path) == Some(format) => data.format = None,
+            Format::Data(_) => {}
+        }
+        data.mapping.color = data.mapping.color.or(kinds);
+        Some(data)
+    }
+
+    /// Returns the keys of the data, for the frame of a movie if there is one.
+    pub(super) fn keys_of_data(&self, file: &SceneFile) -> Option<Data> {
+        let mut data = file.data()?.clone();
+        data.frame = self.frame.or(data.frame);
+        data.mapping.color.iter_mut().for_each(|color| self.joined.apply_to(color));
+        Some(data)
     }
 
     pub(crate) fn data_format(&self) -> Option<&'static load::Format> {
@@ -211,7 +217,12 @@ impl Source {
         }
     }
 
-    /// Refuses a file of bricks, for what needs all spheres at once.
+    /// Whether the input is a file of data, which the program frames and gives a style.
+    pub(crate) fn is_data(&self) -> bool {
+        matches!(self.format, Format::Data(_) | Format::Bricks)
+    }
+
+    /// Refuses a file of bricks, for work that needs all spheres at once.
     pub(crate) fn without_bricks(self, what: &str) -> Result<Self, Failure> {
         match self.bricks {
             None => Ok(self),
@@ -224,7 +235,10 @@ impl Source {
 
     /// Resolves a path that is relative to the folder of the scene file.
     pub(crate) fn resolve(&self, path: &str) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(path)
+        match self.format {
+            Format::Scene => self.path.parent().unwrap_or(Path::new("")).join(path),
+            Format::Data(_) | Format::Bricks => PathBuf::from(path),
+        }
     }
 }
 

@@ -7,7 +7,8 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::flags::common::{ViewArgs, camera_ids};
+use crate::flags::common::camera_ids;
+use crate::flags::settings::{SettingArgs, VIEW};
 use crate::input::{Input, Source, read};
 use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed};
 use crate::proof::verify::report::{Scene, command_line};
@@ -49,7 +50,7 @@ pub(crate) struct CertifyArgs {
     #[arg(value_name = "SCENE_OR_DATA")]
     path: PathBuf,
     #[command(flatten)]
-    view: ViewArgs,
+    view: SettingArgs<VIEW>,
     /// The sphere of each pixel
     #[arg(long, value_name = "ID.npy")]
     id: PathBuf,
@@ -91,8 +92,8 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     check(args)?;
     threads::start()?;
     let ids = array(&args.id, pixels::ids)?;
-    let source = Source::of_view(&args.path, &args.view)?.without_bricks("`certify`")?;
-    let input = source.with_size_of_data(ids.size).load()?;
+    let source = Source::new(&args.path, &args.view.given)?.without_bricks("`certify`")?;
+    let input = source.with_size_of_data(ids.size)?.load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
     let note = progress::notes(false);

@@ -7,12 +7,10 @@ use std::sync::Once;
 use anyhow::Context;
 
 use crate::bricks;
-use crate::flags::annotation::{AnnotationFlags, EncodingFlags};
-use crate::flags::common::Stereo;
-use crate::flags::data::{ColorFlags, StructureFlags};
-use crate::flags::light::LightFlags;
+use crate::flags::common::{InputArgs, Stereo};
 use crate::flags::render::RenderArgs;
 use crate::input::{Input, Source};
+use crate::output::annotations;
 use crate::output::picture::Outputs;
 #[cfg(feature = "gpu")]
 use crate::render::device::explained;
@@ -47,8 +45,6 @@ pub(crate) mod with_scene;
 pub(crate) struct Job {
     pub(crate) source: Source,
     pub(crate) outputs: Outputs,
-    pub(crate) encoding: EncodingFlags,
-    pub(crate) annotation: AnnotationFlags,
     pub(crate) stop_rule: StopRule,
     pub(crate) device: Device,
     pub(crate) stereo: Option<Stereo>,
@@ -61,24 +57,13 @@ impl Job {
 
     pub(crate) fn with_outputs(args: &RenderArgs, outputs: Outputs) -> Result<Self, Failure> {
         let stop_rule = StopRule::new(&args.stop_rule)?;
-        let light = LightFlags::new(&args.light, stop_rule.open_end())?;
-        let color = ColorFlags::new(&args.color)?;
-        let annotation = AnnotationFlags::new(
-            &args.color.annotation,
-            outputs.format,
-            color.mapping.color.is_some(),
-        )?;
-        let structure = StructureFlags::new(&args.structure)?;
-        let source = Source::new(&args.input)?.with_light(light);
+        let InputArgs { path, view } = &args.input;
+        let given = view.given.clone().and(&args.look.given);
+        annotations::check(&given, outputs.format)?;
+        let source = Source::lit(path, &given, stop_rule.open_end())?;
         Ok(Self {
-            source: Source { color, structure, annotation: annotation.clone(), ..source },
+            source: Source { output: outputs.format, ..source },
             stop_rule,
-            encoding: EncodingFlags::new(
-                &args.encoding,
-                args.color.annotation.dpi,
-                outputs.format,
-            )?,
-            annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
@@ -92,14 +77,14 @@ impl Job {
         input: &mut Input,
         note: impl Fn(&dyn std::fmt::Display),
     ) -> Result<(Encoding, Annotations), Failure> {
-        let mut encoding = self.encoding.apply_to(input.encoding);
+        let mut encoding = input.encoding;
         encoding.background = input.settings.visible_background();
         input.settings.is_transparent = encoding.transparent;
         if input.settings.integrator.is_primary() {
             self.stop_rule.check_without_light()?;
         }
         input.settings.notes(&input.scene).iter().for_each(|text| note(text));
-        Ok((encoding, self.annotation.for_input(input, note)?))
+        Ok((encoding, annotations::for_input(input, self.outputs.format, note)?))
     }
 }
 

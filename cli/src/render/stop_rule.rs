@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use crate::flags::light::HEADING;
+use crate::flags::settings::LOOK_HEADING;
 use crate::terminal::failure::Failure;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{self, tell};
@@ -14,10 +14,10 @@ use pinhole::render::{Decision, Progress};
 #[derive(Debug, Args)]
 pub(crate) struct StopArgs {
     /// Take samples for this time in seconds, or such as 20s, 1.5m or 2h, but at most --samples
-    #[arg(long, help_heading = HEADING, value_name = "TIME")]
+    #[arg(long, help_heading = LOOK_HEADING, value_name = "TIME")]
     time: Option<String>,
     /// Take samples until the noise is at most this fraction of the light, such as 0.01, but at most --samples
-    #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
+    #[arg(long, help_heading = LOOK_HEADING, value_name = "PART", allow_hyphen_values = true)]
     noise: Option<f64>,
     /// On Ctrl-C, write the lit picture from the samples taken so far. With --time, also wait until every pixel has a
     /// sample. A second Ctrl-C ends without a picture

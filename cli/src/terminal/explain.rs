@@ -6,9 +6,9 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 
 use crate::command_line::Arguments;
-use crate::flags::data;
 use crate::terminal::failure;
 use crate::terminal::progress::{answer, tell, tell_all};
+use pinhole_figure::settings::flags::{Flag, Group};
 
 /// Prints the help or the version as clap formats it, or an error on one line. `arguments` are those of the program,
 /// without its name.
@@ -109,7 +109,7 @@ pub(crate) fn unknown_message(error: &clap::Error, arguments: &[String]) -> Opti
             let others = others.filter(|other| flags(other).any(|f| f == *flag));
             let others: Vec<_> = others.map(|other| format!("`{}`", other.get_name())).collect();
             match nearest(flag, command) {
-                _ if is_of_columns(flag, &program) && SCENES.contains(&command.get_name()) => {
+                _ if is_of_columns(flag) && SCENES.contains(&command.get_name()) => {
                     format!(
                         "it is a flag of `render`; with --print-scene, `pinhole render` writes a scene file that has it, for \
                      `{}`",
@@ -126,11 +126,9 @@ pub(crate) fn unknown_message(error: &clap::Error, arguments: &[String]) -> Opti
     Some(format!("error: unexpected argument '{flag}' found; {hint}"))
 }
 
-fn is_of_columns(flag: &str, program: &Command) -> bool {
-    let render = program.find_subcommand("render");
-    let of_columns = |arg: &&clap::Arg| arg.get_help_heading() == Some(data::HEADING);
-    let mut names = render.into_iter().flat_map(Command::get_opts).filter(of_columns);
-    names.any(|arg| arg.get_long().is_some_and(|name| flag.strip_prefix("--") == Some(name)))
+fn is_of_columns(flag: &str) -> bool {
+    let flag = flag.strip_prefix("--").and_then(Flag::of_name);
+    flag.is_some_and(|flag| matches!(flag.group, Group::Color | Group::Annotation))
 }
 
 /// The long flags of a command, with both dashes.

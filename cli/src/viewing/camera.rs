@@ -2,12 +2,15 @@
 
 use toml::Value;
 
-use crate::flags::camera::{CameraArgs, CameraTable, list};
+use crate::flags::camera::{CameraTable, list};
 use crate::viewing::ViewError;
 use crate::viewing::flags::RenderFlags;
 use pinhole::camera::CameraParameters;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
+use pinhole_figure::scene_file::SceneFile;
+use pinhole_figure::settings::flags::{FLAGS, Flag, Group};
+use pinhole_figure::settings::{Layer, Sources};
 
 /// A camera of any kind that has a position, stored as camera flags that a viewer changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +112,9 @@ impl ViewCamera {
         if self.0.kind != "pinhole" {
             flags.set("camera", &self.0.kind);
         }
-        for (key, flag, _) in CameraArgs::default().keys() {
+        let is_camera = |flag: &&Flag| flag.group == Group::Camera && flag.key != "camera";
+        for Flag { key, flag, .. } in FLAGS.iter().filter(is_camera) {
+            let key = key.trim_start_matches("camera.*.");
             let value = match key.split_once('.') {
                 None => self.0.table.get(key),
                 Some((table, key)) => self
@@ -144,8 +149,12 @@ impl RenderFlags {
         if self.get("eye").is_none() {
             return Ok(None);
         }
-        let flags = self.render_args("-")?.input.view.camera.flags()?;
-        let parameters = flags.parameters(None, DVec3::Y).map_err(ViewError::usage)?;
+        let layers = self.render_args("-")?.input.view.given.layers()?;
+        let layers: Vec<Layer> =
+            layers.into_iter().filter(|l| l.text.starts_with("camera.")).collect();
+        let file = SceneFile::read(&Sources { flags: &layers, ..Sources::default() });
+        let file = file.map_err(|error| ViewError::usage(error.to_string()))?;
+        let parameters = file.camera_parameters();
         // A camera with an eye does not depend on the spheres, so any bounds will do.
         let any = Bounds::of_sphere(DVec3::ZERO, 1.0);
         let placed = parameters.placed(1.0, &(&any).into());

@@ -1,10 +1,8 @@
 //! A file and flags of `pinhole render`, as texts.
 
-use std::collections::HashMap;
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::OnceLock;
 
 use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
@@ -13,10 +11,10 @@ use super::ViewError;
 use crate::command_line::Arguments;
 use crate::commands::render;
 use crate::flags::render::{RenderArgs, RenderCommand, RenderLine};
-use crate::flags::{annotation, camera, light};
 use crate::render::Job;
 use crate::terminal::explain::{explain, one_message};
 use crate::terminal::text::in_quotes;
+use pinhole_figure::settings::flags::{Flag, Group};
 
 /// A file and flags of `pinhole render`, which are the whole state of a view.
 ///
@@ -226,32 +224,20 @@ fn text(word: &std::ffi::OsStr) -> Result<String, ViewError> {
     })
 }
 
-/// The effect of a flag, by its heading in the help.
+/// What a flag decides.
 fn decides(name: &str) -> Decides {
-    static HEADINGS: OnceLock<HashMap<String, Decides>> = OnceLock::new();
-    let headings = HEADINGS.get_or_init(|| {
-        let mut program = Arguments::command();
-        program.build();
-        let flags = program.find_subcommand("view").into_iter().flat_map(clap::Command::get_opts);
-        let of_flag = |flag: &clap::Arg| {
-            let name = flag.get_long()?.to_owned();
-            let decides = match flag.get_help_heading() {
-                Some(camera::HEADING) => Decides::Camera,
-                Some(light::HEADING) => Decides::Light,
-                Some(annotation::HEADING) => Decides::Picture,
-                _ if PICTURE.contains(&name.as_str()) => Decides::Picture,
-                _ => Decides::Data,
-            };
-            Some((name, decides))
-        };
-        flags.filter_map(of_flag).collect()
-    });
-    headings.get(name).copied().unwrap_or(Decides::Data)
+    let decides = |flag: &Flag| match flag.group {
+        Group::Camera => Decides::Camera,
+        Group::Look => Decides::Light,
+        Group::Annotation | Group::Output => Decides::Picture,
+        _ if flag.name() == "size" => Decides::Picture,
+        // `--set` may give any key.
+        Group::Input | Group::Structure | Group::Color => Decides::Data,
+    };
+    let of_device = ["backend", "adapter", "limits", "accel"].contains(&name);
+    let other = if of_device { Decides::Picture } else { Decides::Data };
+    Flag::of_name(name).map_or(other, decides)
 }
-
-/// Flags without a heading that leave the spheres as they are.
-const PICTURE: [&str; 9] =
-    ["size", "bits", "transparent", "exposure", "tone", "backend", "adapter", "limits", "accel"];
 
 #[cfg(test)]
 mod tests {

@@ -111,10 +111,11 @@ impl OpenView {
         let job = flags.job()?;
         let source = &job.source;
         let file = match &self.text {
-            Some(text) => source.parsed(text),
-            None => source.scene_of_data(),
+            Some(text) => source.parsed(text)?,
+            None => source.scene_of_data()?,
         };
-        let (file, size_from) = source.with_film(file.map_err(Failure::from)?)?;
+        source.check_camera(&file)?;
+        let size_from = source.size_from(&file);
         let sky = self.sky.as_ref().map(|(_, sky)| sky.clone());
         let framed = FramedScene::new(&self.input.scene, self.input.color_key.as_ref());
         let look = source.look(&file, framed, sky, None)?;

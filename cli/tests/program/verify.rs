@@ -165,9 +165,9 @@ fn runs_that_are_damaged() {
     let whole = folder.read("run");
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"5\"").unwrap();
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"6\"").unwrap();
     // The number of the version is replaced by another of the same length.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"5\""));
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"6\""));
     let mut other = whole.clone();
     other[version + 15] = b'7';
     for (name, contents, words) in [
@@ -176,7 +176,7 @@ fn runs_that_are_damaged() {
         (
             "other",
             &other,
-            "other: run file of version 7; this program reads version 5; record it again with `verify --save`",
+            "other: run file of version 7; this program reads version 6; record it again with `verify --save`",
         ),
         (
             "none",

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Id};
 
-use crate::flags::common::{AccelArgs, AdapterArgs, ViewArgs, ids};
+use crate::flags::common::{AccelArgs, AdapterArgs, ids};
+use crate::flags::settings::{SettingArgs, VIEW, names};
 
 #[derive(Debug, Args)]
 #[command(after_help = AFTER_HELP)]
@@ -17,7 +18,7 @@ pub(crate) struct VerifyArgs {
     #[arg(long, value_name = "SCENE_OR_DATA", conflicts_with_all = not_of_pictures())]
     pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) view: ViewArgs,
+    pub(crate) view: SettingArgs<VIEW>,
     #[command(flatten)]
     pub(crate) adapter: AdapterArgs,
     #[command(flatten)]
@@ -54,7 +55,7 @@ fn not_of_pictures() -> impl Iterator<Item = Id> {
 /// Arguments of `verify` that a recording contains, or that do not apply to it.
 fn not_of_recordings() -> impl Iterator<Item = Id> {
     let own = ["path", "paths", "save", "tile_seed", "scene"].map(Id::from);
-    ids::<ViewArgs>().chain(ids::<AdapterArgs>()).chain(ids::<AccelArgs>()).chain(own)
+    names(VIEW).map(Id::from).chain(ids::<AdapterArgs>()).chain(ids::<AccelArgs>()).chain(own)
 }
 
 pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and \

@@ -32,7 +32,7 @@ use pinhole::verify::{Checker, LitCertificate, LitRecording};
 
 /// Renders a scene on an adapter and records it.
 pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failure> {
-    let source = Source::of_view(path, &args.view)?.without_bricks("`verify`")?;
+    let source = Source::new(path, &args.view.given)?.without_bricks("`verify`")?;
     let outputs = VerifyOutputs::new(args)?;
     let wanted = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
     threads::start()?;

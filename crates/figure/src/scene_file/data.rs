@@ -77,6 +77,16 @@ pub(super) struct ElementTable {
 }
 
 impl Data {
+    /// Whether no key gives spheres a look or a radius of their own, but for columns.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.elements.is_empty()
+            && self.elements_by.is_empty()
+            && self.leave_out.is_empty()
+            && self.surface == SurfaceProperties::default()
+            && self.radius_scale.to_bits() == 1.0_f64.to_bits()
+    }
+
     /// A reference to a data file, without any other key.
     #[must_use]
     pub fn of_file(file: impl Into<String>) -> Self {

@@ -11,7 +11,9 @@ use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive, r
 use super::lighting::{GroundTable, IntegratorKind, LightTable, SkyTable, SunTable};
 use super::mapping::{ByColumn, ColorTable, ColumnTable, read_mapping};
 use super::materials::{MaterialTable, Materials};
-use super::span::{Lines, Number, SceneFileError, WithSpan, default_color, range_of, unknown};
+use super::span::{
+    Lines, Number, SceneFileError, Span, WithSpan, default_color, range_of, unknown,
+};
 use pinhole::camera::CameraParameters;
 use pinhole::camera::film::{Film, YAxis};
 use pinhole::image::color::LinearRgb;
@@ -27,6 +29,9 @@ use pinhole_data::load::FORMATS;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
+    /// Read beforehand, as `integrator`.
+    #[serde(rename = "style")]
+    _style: Option<String>,
     #[serde(default = "default_film")]
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
@@ -37,7 +42,6 @@ pub(super) struct Document {
     pub(super) background: Option<LinearRgb>,
     #[serde(default)]
     pub(super) shading: Shading,
-    /// Which is read beforehand.
     #[serde(rename = "integrator")]
     _integrator: Option<IntegratorKind>,
     #[serde(default)]
@@ -213,11 +217,7 @@ impl Default for FilmTable {
 }
 
 impl FilmTable {
-    pub(super) fn film(
-        table: Spanned<Table<Self>>,
-        lines: &Lines<'_>,
-    ) -> Result<Film, SceneFileError> {
-        let span = lines.span(table.span().start);
+    pub(super) fn film(table: Spanned<Table<Self>>, span: Span) -> Result<Film, SceneFileError> {
         let Self { width, height, y } = table.into_inner().0;
         let film = Film::new(width, height).map_err(|error| span.error(error))?;
         Ok(film.with_y_axis(y))

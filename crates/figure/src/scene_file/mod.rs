@@ -19,10 +19,11 @@ pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::{DEFAULT_COLOR, SceneFileError};
-pub(crate) use write::string;
+pub use write::quoted;
 pub use write::{Contents, write};
 
 use crate::annotate::AnnotationPlan;
+use crate::settings::flags::{FLAGS, Group};
 use crate::settings::layers::{Joined, Sources};
 use crate::style::{Style, fit};
 use annotations::read_annotations;
@@ -107,7 +108,7 @@ impl SceneFile {
             ground: document.ground,
         };
         Ok(Self {
-            film: FilmTable::film(document.film, lines)?,
+            film: FilmTable::film(document.film, layers.span("film.width"))?,
             style: layers.style,
             background: document.background.unwrap_or(LinearRgb::WHITE),
             shading: document.shading,
@@ -182,7 +183,23 @@ impl SceneFile {
     /// Adds the position of the camera's table to an error.
     #[must_use]
     pub fn at_camera(&self, error: &CameraError) -> SceneFileError {
-        self.camera.span.error(error)
+        let mut error = self.camera.span.error(error);
+        if self.has_camera_of_flags() {
+            // Several flags say what the camera is, and the error names the one that is wrong.
+            error.flag = Some("");
+            for flag in FLAGS.iter().filter(|flag| flag.group == Group::Camera) {
+                let key = flag.key.rsplit('.').next().unwrap_or_default();
+                error.message =
+                    error.message.replace(&format!("`{key}`"), &format!("`{}`", flag.flag));
+            }
+        }
+        error
+    }
+
+    /// Whether flags say what the camera is.
+    #[must_use]
+    pub fn has_camera_of_flags(&self) -> bool {
+        self.flags.iter().any(|(key, _)| key == "camera" || key.starts_with("camera."))
     }
 
     /// Returns the style, if there is one.
@@ -223,7 +240,7 @@ impl SceneFile {
         self.camera
             .value
             .camera(film.aspect(), &scene.subject())
-            .map_err(|error| self.camera.span.error(error))
+            .map_err(|error| self.at_camera(&error))
     }
 
     /// Makes the cameras of the left and the right eye, if the camera of the file is a stereo camera.
@@ -238,7 +255,7 @@ impl SceneFile {
         self.camera
             .value
             .stereo_pair(film.aspect(), &scene.subject())
-            .map_err(|error| self.camera.span.error(error))
+            .map_err(|error| self.at_camera(&error))
     }
 }
 

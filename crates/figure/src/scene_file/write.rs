@@ -100,7 +100,7 @@ pub fn write(contents: &Contents<'_>) -> String {
     }
     for element in contents.data.iter().flat_map(|data| &data.elements) {
         let base = contents.data.as_ref().map(|data| data.surface).unwrap_or_default();
-        out(format!("\n[elements.{}]", string(&element.name)));
+        out(format!("\n[elements.{}]", quoted(&element.name)));
         element.radius.iter().for_each(|radius| out(format!("radius = {radius:?}")));
         element.color.iter().for_each(|one| out(format!("color = {}", color(*one))));
         surfaces.key(element.surface, base).into_iter().for_each(&mut out);
@@ -128,7 +128,7 @@ fn inline(value: &Value) -> String {
         Value::Float(number) => format!("{number:?}"),
         Value::Integer(number) => number.to_string(),
         Value::Boolean(is) => is.to_string(),
-        Value::String(text) => string(text),
+        Value::String(text) => quoted(text),
         Value::Datetime(time) => time.to_string(),
         Value::Array(list) => format!("[{}]", joined(list.iter().map(inline).collect())),
         Value::Table(table) => {
@@ -222,7 +222,7 @@ fn sky(sky: &Sky, image: Option<&str>) -> String {
         }
         SkyLight::Image { strength, rotation, .. } => format!(
             "kind = \"image\"\nimage = {}\nstrength = {strength:?}\nrotation = {:?}",
-            string(image.unwrap_or_default()),
+            quoted(image.unwrap_or_default()),
             degrees::of(*rotation, |found| found.to_bits() == rotation.to_bits())
         ),
     };
@@ -247,7 +247,8 @@ fn color(color: LinearRgb) -> String {
 }
 
 /// A text in quotes, as TOML writes it.
-pub(crate) fn string(text: &str) -> String {
+#[must_use]
+pub fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
         match c {
@@ -263,7 +264,7 @@ pub(crate) fn string(text: &str) -> String {
 }
 
 fn strings(list: &[String]) -> String {
-    let quoted: Vec<String> = list.iter().map(|one| string(one)).collect();
+    let quoted: Vec<String> = list.iter().map(|one| quoted(one)).collect();
     format!("[{}]", quoted.join(", "))
 }
 
@@ -315,10 +316,10 @@ impl Surfaces {
 }
 
 fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
-    let mut lines = vec![format!("data = {}", string(&data.file))];
-    lines.extend(data.format.as_ref().map(|name| format!("format = {}", string(name))));
+    let mut lines = vec![format!("data = {}", quoted(&data.file))];
+    lines.extend(data.format.as_ref().map(|name| format!("format = {}", quoted(name))));
     lines.extend(data.frame.map(|frame| format!("frame = {frame}")));
-    lines.extend(data.topology.as_ref().map(|file| format!("topology = {}", string(file))));
+    lines.extend(data.topology.as_ref().map(|file| format!("topology = {}", quoted(file))));
     if !data.columns.is_empty() {
         lines.push(format!("columns = {}", strings(&data.columns)));
     }
@@ -333,11 +334,11 @@ fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
     }
     if !data.leave_out.is_empty() {
         let columns = data.leave_out.iter();
-        let columns = columns.map(|(name, list)| format!("{} = {}", string(name), strings(list)));
+        let columns = columns.map(|(name, list)| format!("{} = {}", quoted(name), strings(list)));
         lines.push(format!("leave_out = {{ {} }}", columns.collect::<Vec<_>>().join(", ")));
     }
     lines.extend(
-        data.select.as_ref().map(|select| format!("select = {}", string(&select.to_string()))),
+        data.select.as_ref().map(|select| format!("select = {}", quoted(&select.to_string()))),
     );
     mapping_keys(&data.mapping, &mut lines);
     lines.extend(data.additions.cell.as_ref().map(|cell| match cell.width {
@@ -355,17 +356,17 @@ fn mapping_keys(mapping: &Mapping, lines: &mut Vec<String>) {
     let Mapping { color, radius, opacity, emission } = mapping;
     lines.extend(color.as_ref().map(color_by));
     let with_factor = |key: &str, column: &str, factor: f64| {
-        format!("{key} = {{ column = {}, factor = {factor:?} }}", string(column))
+        format!("{key} = {{ column = {}, factor = {factor:?} }}", quoted(column))
     };
     lines.extend(radius.as_ref().map(|by| with_factor("radius_by", &by.column, by.factor)));
-    lines.extend(opacity.as_ref().map(|column| format!("opacity_by = {}", string(column))));
+    lines.extend(opacity.as_ref().map(|column| format!("opacity_by = {}", quoted(column))));
     lines.extend(emission.as_ref().map(|by| with_factor("emission_by", &by.column, by.factor)));
 }
 
 fn color_by(by: &ColorBy) -> String {
     // Categories are given only between the frames of a movie.
     let ColorBy { column, map, is_reversed, limits, is_log, missing, categories: _ } = by;
-    let mut keys = vec![format!("column = {}", string(column))];
+    let mut keys = vec![format!("column = {}", quoted(column))];
     keys.extend(map.map(|map| {
         let ending = if map.is_reversed() { "_r" } else { "" };
         format!("map = \"{}{ending}\"", map.name())
@@ -399,16 +400,16 @@ fn annotations(plan: &AnnotationPlan) -> Vec<String> {
     };
     let mut tables = Vec::new();
     tables.extend(legend.as_ref().map(|LegendPlan { title, position }| {
-        let title = title.as_ref().map(|title| format!("title = {}", string(title)));
+        let title = title.as_ref().map(|title| format!("title = {}", quoted(title)));
         table("[legend]", vec![title, at(*position)])
     }));
     tables.extend(scale_bar.as_ref().map(|ScaleBarPlan { length, unit, position }| {
         let length = length.map(|length| format!("length = {length:?}"));
-        let unit = (!unit.is_empty()).then(|| format!("unit = {}", string(unit)));
+        let unit = (!unit.is_empty()).then(|| format!("unit = {}", quoted(unit)));
         table("[scale_bar]", vec![length, unit, at(*position)])
     }));
     tables.extend(labels.iter().map(|label| {
-        let text = format!("text = {}", string(&label.text));
+        let text = format!("text = {}", quoted(&label.text));
         table("[[labels]]", vec![Some(text), at(Some(label.position))])
     }));
     let text = vec![

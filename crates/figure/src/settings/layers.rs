@@ -112,7 +112,6 @@ impl<'a> Joined<'a> {
         replace_whole(&mut table, &own);
         join(&mut table, own);
         join(&mut table, sets);
-        table.remove("style");
         let keys = Keys::of(&table);
         Ok(Self { lines, style, kept, in_file, in_flags, in_style, keys, table })
     }
@@ -165,8 +164,28 @@ impl<'a> Joined<'a> {
     }
 
     fn explained(&self, error: &toml::de::Error) -> SceneFileError {
-        let start = error.span().map_or(0, |span| span.start);
-        self.lines.span(start).error(explain(error.message()))
+        let span = self.lines.span(error.span().map_or(0, |span| span.start));
+        let in_flags = span.flag.and_then(|flag| self.in_flag(flag, error.message()));
+        span.error(in_flags.unwrap_or_else(|| explain(error.message())))
+    }
+
+    /// The message of serde in the words of flags; `None` if it is as good in those of keys.
+    fn in_flag(&self, flag: &str, message: &str) -> Option<String> {
+        let mut words = message.split('`');
+        match (words.next()?, words.next()?) {
+            ("missing field ", "separation") => {
+                Some(format!("{flag} needs --separation; add --separation"))
+            }
+            ("missing field ", "column") => Some(format!(
+                "{flag} says how numbers become colors, but no column is named; add --color-by COLUMN"
+            )),
+            ("unknown field ", _) if flag != "--set" => {
+                let mut kinds = self.keys.0.keys().filter_map(|key| key.strip_prefix("camera."));
+                let kind = kinds.next()?.split('.').next()?;
+                Some(format!("{flag} does not apply to the {kind} camera; remove it"))
+            }
+            _ => None,
+        }
     }
 }
 

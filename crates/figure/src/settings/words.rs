@@ -3,10 +3,10 @@
 use pinhole::camera::Viewpoint;
 
 use crate::annotate::Position;
-use crate::scene_file::string;
+use crate::scene_file::quoted;
 
 pub(super) fn text(text: &str) -> String {
-    string(text)
+    quoted(text)
 }
 
 pub(super) fn number(text: &str) -> Result<String, String> {
@@ -42,7 +42,7 @@ pub(super) fn numbers(text: &str, count: usize) -> Result<String, String> {
 }
 
 pub(super) fn names(text: &str) -> Result<String, String> {
-    let names: Vec<String> = text.split(',').map(string).collect();
+    let names: Vec<String> = text.split(',').map(quoted).collect();
     Ok(format!("[{}]", names.join(", ")))
 }
 
@@ -68,11 +68,11 @@ pub(super) fn set(text: &str) -> Result<String, String> {
     }
     let as_it_stands = format!("{key} = {value}");
     let is_toml = toml::from_str::<toml::Table>(&as_it_stands).is_ok();
-    Ok(if is_toml { as_it_stands } else { format!("{key} = {}", string(value)) })
+    Ok(if is_toml { as_it_stands } else { format!("{key} = {}", quoted(value)) })
 }
 
 pub(super) fn view(text: &str) -> Result<String, String> {
-    text.parse::<Viewpoint>().map(|view| string(&view.to_string())).map_err(|e| e.to_string())
+    text.parse::<Viewpoint>().map(|view| quoted(&view.to_string())).map_err(|e| e.to_string())
 }
 
 /// Reads a part of a whole, such as 0.1 or 10%.
@@ -116,7 +116,7 @@ pub(super) fn range(text: &str) -> Result<String, String> {
     text.parse::<crate::color_by::Limits>().map_err(|error| error.to_string())?;
     let end = |text: &str| match text.trim().parse::<f64>() {
         Ok(number) => toml_number(number),
-        Err(_) => string(text.trim()),
+        Err(_) => quoted(text.trim()),
     };
     let ends: Vec<String> = text.split(',').map(end).collect();
     Ok(format!("[{}]", ends.join(", ")))
@@ -129,16 +129,16 @@ pub(super) fn with_factor(text: &str) -> Result<String, String> {
         .and_then(|(column, factor)| Some((column, factor.trim().parse::<f64>().ok()?)));
     Ok(match factor {
         Some((column, factor)) => {
-            let (column, factor) = (string(column.trim()), toml_number(factor));
+            let (column, factor) = (quoted(column.trim()), toml_number(factor));
             format!("{{ column = {column}, factor = {factor} }}")
         }
-        None => string(text),
+        None => quoted(text),
     })
 }
 
 fn position(position: Position) -> String {
     match position {
-        Position::Anchor(anchor) => string(anchor.name()),
+        Position::Anchor(anchor) => quoted(anchor.name()),
         Position::At([x, y]) => format!("[{x:?}, {y:?}]"),
     }
 }
@@ -159,7 +159,7 @@ fn at_position(text: &str) -> (&str, Option<Position>) {
 pub(super) fn label(text: &str) -> Result<String, String> {
     let (text, at) = at_position(text);
     let at = at.map_or(String::new(), |at| format!(", position = {}", position(at)));
-    Ok(format!("labels = [{{ text = {}{at} }}]", string(text)))
+    Ok(format!("labels = [{{ text = {}{at} }}]", quoted(text)))
 }
 
 /// Reads a length, a unit, or both.
@@ -175,7 +175,7 @@ pub(super) fn scale_bar(text: &str) -> Result<String, String> {
         None => (None, text),
     };
     let keys = [
-        Some(format!("unit = {}", string(unit.trim()))),
+        Some(format!("unit = {}", quoted(unit.trim()))),
         length.map(|length| format!("length = {length:?}")),
         at.map(|at| format!("position = {}", position(at))),
     ];

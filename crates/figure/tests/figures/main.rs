@@ -19,3 +19,4 @@ mod environment;
 mod pictures;
 mod scene_file;
 mod scene_file_light;
+mod settings;

@@ -68,7 +68,7 @@ impl AskedIntegrator {
         let of_style = named(layers.in_style.text("integrator"))?;
         let is_light = |flag: &(String, &'static str)| {
             let (key, flag) = flag;
-            let table = key.split('.').next().unwrap_or_default();
+            let (table, _) = key.split_once('.')?;
             let table = TABLES.iter().find(|(name, _)| *name == table)?.0;
             let switches_off = key == "sampling.denoise" && layers.in_flags.is_off(key);
             (!switches_off).then_some((*flag, table))

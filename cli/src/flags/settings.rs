@@ -1,0 +1,157 @@
+//! The flags that reach settings, as clap parses them. Their rows are in `pinhole_figure::settings::flags`.
+
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+
+use crate::terminal::failure::Failure;
+use pinhole_figure::settings::Layer;
+use pinhole_figure::settings::flags::{EXCLUSIVE, FLAGS, Flag, Group, Value};
+
+/// The groups of flags that say how a file is read and from where it is seen.
+pub(crate) const VIEW: u32 = Group::Input as u32 | Group::Camera as u32;
+
+/// The group of flags about light and style.
+pub(crate) const LOOK: u32 = Group::Look as u32;
+
+/// The groups of flags that say how a picture looks and how it is written.
+pub(crate) const PICTURE: u32 = LOOK
+    | Group::Structure as u32
+    | Group::Color as u32
+    | Group::Annotation as u32
+    | Group::Output as u32;
+
+/// The flags of some groups that were given.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SettingArgs<const GROUPS: u32> {
+    pub(crate) given: Given,
+}
+
+/// Flags that were given, with their values.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Given(Vec<(&'static Flag, String)>);
+
+impl Given {
+    /// Adds a flag.
+    pub(crate) fn with(mut self, name: &str, value: Option<String>) -> Self {
+        self.0.extend(Flag::of_name(name).zip(value));
+        self
+    }
+
+    /// The flags of both, of which `other` takes precedence.
+    pub(crate) fn and(mut self, other: &Self) -> Self {
+        self.0.extend(other.0.iter().cloned());
+        self
+    }
+
+    /// The value of a flag, which is named without dashes.
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
+        let given = self.0.iter().rev();
+        given.into_iter().find(|(flag, _)| flag.name() == name).map(|(_, value)| &**value)
+    }
+
+    /// The first of some flags that was given.
+    pub(crate) fn first_of(&self, names: &[&str]) -> Option<&'static str> {
+        let mut given = self.0.iter().map(|(flag, _)| *flag);
+        given.find(|flag| names.contains(&flag.name())).map(|flag| flag.flag)
+    }
+
+    /// The first flag of some groups that was given.
+    pub(crate) fn first_in(&self, groups: u32) -> Option<&'static str> {
+        let mut given = self.0.iter().map(|(flag, _)| *flag);
+        given.find(|flag| flag.group as u32 & groups != 0).map(|flag| flag.flag)
+    }
+
+    /// The settings that the flags give.
+    pub(crate) fn layers(&self) -> Result<Vec<Layer>, Failure> {
+        let camera = self.get("camera").unwrap_or("pinhole");
+        let layer = |(flag, value): &(&'static Flag, String)| {
+            let layer = flag.layer(value, camera);
+            layer.map_err(|error| Failure::usage(format!("{} {value}: {error}", flag.flag)))
+        };
+        self.0.iter().map(layer).collect()
+    }
+}
+
+impl<const GROUPS: u32> Args for SettingArgs<GROUPS> {
+    fn augment_args(command: Command) -> Command {
+        command.args(flags(GROUPS).map(argument))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<const GROUPS: u32> FromArgMatches for SettingArgs<GROUPS> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut given = Given::default();
+        for flag in flags(GROUPS) {
+            if matches.value_source(flag.name()) == Some(ValueSource::CommandLine) {
+                let values = matches.get_many::<String>(flag.name()).into_iter().flatten();
+                given.0.extend(values.map(|value| (flag, value.clone())));
+            }
+        }
+        Ok(Self { given })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+fn flags(groups: u32) -> impl Iterator<Item = &'static Flag> {
+    FLAGS.iter().filter(move |flag| flag.group as u32 & groups != 0)
+}
+
+/// The names of the flags of some groups, which are also clap's ids.
+pub(crate) fn names(groups: u32) -> impl Iterator<Item = &'static str> {
+    flags(groups).map(Flag::name)
+}
+
+fn argument(flag: &'static Flag) -> Arg {
+    let arg = Arg::new(flag.name()).long(flag.name()).value_name(flag.shown).help(flag.help);
+    let arg = match heading(flag.group) {
+        "" => arg,
+        heading => arg.help_heading(heading),
+    };
+    let arg = match flag.value {
+        Value::OneOf(names) => {
+            let name = |(name, help): (&'static str, &'static str)| match help {
+                "" => PossibleValue::new(name),
+                help => PossibleValue::new(name).help(help),
+            };
+            arg.value_parser(PossibleValuesParser::new(names().into_iter().map(name)))
+        }
+        // The kind of camera changes no value of another flag.
+        _ => {
+            arg.value_parser(move |text: &str| flag.layer(text, "pinhole").map(|_| text.to_owned()))
+        }
+    };
+    let arg = match flag.alone {
+        Some(value) => arg.num_args(0..=1).require_equals(true).default_missing_value(value),
+        None => arg.allow_hyphen_values(
+            !matches!(flag.value, Value::Text | Value::OneOf(_)) || flag.name() == "select",
+        ),
+    };
+    let exclusive = EXCLUSIVE.iter().filter(|(name, _)| *name == flag.flag);
+    let excluded = exclusive.flat_map(|(_, others)| others.iter());
+    let arg = arg.conflicts_with_all(excluded.map(|other| other.trim_start_matches('-')));
+    if flag.is_list() { arg.action(ArgAction::Append) } else { arg }
+}
+
+/// The heading of flags about light and style.
+pub(crate) const LOOK_HEADING: &str = "Light and style";
+
+/// The heading under which the help lists a group; empty for none.
+fn heading(group: Group) -> &'static str {
+    match group {
+        Group::Input | Group::Output => "",
+        Group::Structure => "Selection, box and bonds",
+        Group::Color => "Colors, radii and opacities from data",
+        Group::Look => LOOK_HEADING,
+        Group::Camera => "Camera (any of these flags replaces the camera of the scene)",
+        Group::Annotation => "Annotations (drawn on a PNG, after exposure and tone)",
+    }
+}

@@ -1,0 +1,232 @@
+//! Layers of settings: which one wins, what errors name, and the page that lists all flags.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use pinhole::camera::{CameraKind, PinholeCamera};
+use pinhole::render::{Integrator, RenderSettings, Studio};
+use pinhole::{LinearRgb, Scene, Sphere};
+use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
+use pinhole_figure::settings::flags::{FLAGS, Flag, Group, Value};
+use pinhole_figure::settings::{Layer, Sources};
+use pinhole_figure::style::Style;
+
+fn flags(words: &[&str]) -> Vec<Layer> {
+    let layer = |word: &&str| {
+        let (name, value) = word.split_once('=').unwrap_or((word, ""));
+        let flag = Flag::of_name(name).unwrap();
+        flag.layer(if value.is_empty() { flag.alone.unwrap() } else { value }, "pinhole").unwrap()
+    };
+    words.iter().map(layer).collect()
+}
+
+fn read(file: &str, words: &[&str]) -> Result<SceneFile, SceneFileError> {
+    SceneFile::read(&Sources { file, flags: &flags(words), style: None })
+}
+
+fn scene() -> Scene {
+    let sphere = |x: f64| Sphere::new([x, 0.0, 0.0], 1.0, LinearRgb::from_srgb8([90; 3]));
+    Scene::new(&[sphere(0.0), sphere(3.0)]).unwrap()
+}
+
+fn settings(file: &str, words: &[&str]) -> Result<RenderSettings, SceneFileError> {
+    let file = read(file, words)?;
+    let scene = scene();
+    let camera = PinholeCamera::framing_from_the_front(scene.subject(), 1.5).unwrap();
+    file.settings(file.kind(), &scene, &camera, None)
+}
+
+#[track_caller]
+fn studio(file: &str, words: &[&str]) -> Studio {
+    match settings(file, words).unwrap().integrator {
+        Integrator::Studio(studio) => studio,
+        other => panic!("{other:?}"),
+    }
+}
+
+const SCENE: &str = "style = \"studio\"\n[studio.outline]\nwidth = 3\n[sampling]\nseed = 4\n";
+
+#[test]
+fn a_flag_beats_a_file_and_a_file_beats_a_style() {
+    let plain = studio("style = \"studio\"", &[]).outline.unwrap();
+    let of_file = studio(SCENE, &[]).outline.unwrap();
+    let of_flag = studio(SCENE, &["outline=5"]).outline.unwrap();
+    assert_eq!([plain.width, of_file.width, of_flag.width], [1.0, 3.0, 5.0]);
+    assert_eq!([of_file.color, of_flag.color], [plain.color; 2], "the rest is the style's");
+    let settings = settings(SCENE, &["samples=7"]).unwrap();
+    assert_eq!((settings.sampling.samples, settings.sampling.seed), (7, 4));
+    assert_eq!(
+        studio(SCENE, &["outline=5", "set=studio.outline.width=6"]).outline.unwrap().width,
+        6.0
+    );
+}
+
+#[test]
+fn a_style_that_a_flag_names_changes_a_scene_or_says_why_not() {
+    let file = read(SCENE, &["style=flat"]).unwrap();
+    assert_eq!(file.style(), Some(Style::Flat));
+    assert_eq!(file.kept_from_style(), ["studio.outline.width"]);
+    let outline = studio(SCENE, &["style=flat"]).outline.unwrap();
+    assert_eq!((outline.width, outline.color), (3.0, LinearRgb::BLACK));
+    assert!(read(SCENE, &[]).unwrap().kept_from_style().is_empty());
+    assert!(read("data = \"a.xyz\"", &["style=flat"]).unwrap().kept_from_style().is_empty());
+}
+
+#[test]
+fn any_key_can_be_set() {
+    let studio = studio(
+        "[studio]\nambient = \"red\"",
+        &["set=studio.ambient=blue", "set=studio.occlusion.radius=5"],
+    );
+    assert_eq!(studio.ambient, LinearRgb::from_srgb8([0, 0, 255]));
+    assert_eq!(studio.occlusion.unwrap().radius, Some(5.0));
+    let lens = "[camera.pinhole]\neye = [0, 0, 9]\nlook_at = [0, 0, 0]\nzoom = 2";
+    let file = read(lens, &["set=camera.pinhole.zoom=3"]).unwrap();
+    let camera = format!("{:?}", file.camera_parameters());
+    assert!(camera.contains("zoom: Some(3.0)") && camera.contains("eye: Some"), "{camera}");
+}
+
+#[test]
+fn errors_name_the_layer() {
+    for (file, words, error) in [
+        (SCENE, &["outline=100"][..], "--outline 100: it must be from 0.5 to 64 pixels"),
+        (
+            "[studio.outline]\n\nwidth = 100",
+            &[],
+            "line 3, column 9: `width` is 100; it must be from 0.5 to 64 pixels",
+        ),
+        (
+            SCENE,
+            &["set=studio.outline.widht=1"],
+            "--set: unknown key `widht`; did you mean `width`?",
+        ),
+        (
+            SCENE,
+            &["style=studio", "background=gren"],
+            "--background: `gren` is not a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
+        ),
+        (
+            SCENE,
+            &["integrator=path", "outline=2"],
+            "--outline applies only to the integrator `studio`, but this picture is made by `path`; remove --outline or choose --integrator studio",
+        ),
+        (
+            SCENE,
+            &["integrator=primary", "samples=2"],
+            "--samples applies only to the integrators `studio` and `path`, but this picture is made by `primary`; remove --samples or choose another --integrator or --style",
+        ),
+        (SCENE, &["angle=90"], "--angle does not apply to the pinhole camera; remove it"),
+        (
+            "",
+            &["radius=2"],
+            "--radius applies to the `data` of a scene, but this scene has no `data`; remove --radius",
+        ),
+    ] {
+        assert_eq!(settings(file, words).unwrap_err().to_string(), error);
+    }
+}
+
+#[test]
+fn a_view_is_a_key_as_it_is_a_flag() {
+    let scene = scene();
+    let camera = |file: &str, words: &[&str]| {
+        let file = read(file, words).unwrap();
+        file.camera(&file.film, &scene).unwrap().vectors()
+    };
+    let by_key = camera("[camera.pinhole]\nview = \"iso\"\nturn = 20", &[]);
+    assert_eq!(by_key, camera("", &["view=iso", "turn=20"]));
+    let file = read("[camera.pinhole]\nview = \"iso\"\neye = [1, 2, 3]", &[]).unwrap();
+    let error = file.camera(&file.film, &scene).unwrap_err().to_string();
+    assert!(
+        error.ends_with("`view` excludes `eye`, `look_at` and `direction`; keep one"),
+        "{error}"
+    );
+}
+
+/// A value that a flag takes.
+fn example(flag: &Flag) -> &'static str {
+    match (flag.name(), flag.value) {
+        ("size", _) => "80x60",
+        ("set", _) => "studio.shadows=false",
+        ("columns", _) => "x,y,z",
+        ("view", _) => "30,20",
+        ("margin", _) => "10%",
+        ("range", _) => "2%,5",
+        ("radius-by", _) | ("emission-by", _) => "a*0.5",
+        ("select", _) => "x > 1",
+        ("legend", _) => "right",
+        ("bits", _) => "16",
+        ("color" | "background" | "text-color" | "missing-color", _) => "teal",
+        ("cmap", _) => "viridis",
+        (_, Value::OneOf(names)) => names()[0].0,
+        (_, Value::Numbers(2)) => "1,2",
+        (_, Value::Numbers(_)) => "1,2,3",
+        (_, Value::Switch) => "true",
+        _ => "1",
+    }
+}
+
+/// Every flag gives a key that is there.
+#[test]
+fn every_flag_reaches_a_setting() {
+    let file = "data = \"a.xyz\"\ncolor_by = \"x\"\n[studio]\n";
+    for flag in FLAGS {
+        let value = example(flag);
+        let reaches = |kind: &CameraKind| {
+            let mut layers = vec![flag.layer(value, kind.name()).unwrap()];
+            if flag.name() == "convergence" {
+                layers.insert(0, flag_named("separation").layer("1", kind.name()).unwrap());
+            }
+            SceneFile::read(&Sources { file, flags: &layers, style: None })
+        };
+        let read: Vec<_> = CameraKind::ALL.iter().map(reaches).collect();
+        let errors: Vec<String> =
+            read.iter().filter_map(|read| Some(read.as_ref().err()?.to_string())).collect();
+        let found = read.into_iter().find_map(Result::ok);
+        let found = found.unwrap_or_else(|| panic!("{}: {errors:?}", flag.flag));
+        assert_eq!(found.integrator(), Some(IntegratorKind::Studio), "{}", flag.flag);
+    }
+}
+
+fn flag_named(name: &str) -> &'static Flag {
+    Flag::of_name(name).unwrap()
+}
+
+/// `docs/reference/flags.md`, which `PINHOLE_UPDATE_SNAPSHOTS=1` rewrites.
+#[test]
+fn the_page_of_flags_is_as_it_is_made() {
+    let mut page = "# Flags and the keys that they give\n\n\
+        <!-- Made by `PINHOLE_UPDATE_SNAPSHOTS=1 cargo test -p pinhole-figure settings`. -->\n\n\
+        Each of these flags of `pinhole render` gives a key of a [scene file](scene-file.md). A flag takes precedence over \
+        the file, and the file over its style. `--set KEY=VALUE` reaches every key and takes precedence over all else. In \
+        keys of the camera, `*` is the kind of the camera.\n"
+        .to_owned();
+    let mut group = None;
+    for flag in FLAGS {
+        if group.replace(flag.group) != Some(flag.group) {
+            let title = match flag.group {
+                Group::Input => "Input",
+                Group::Camera => "Camera",
+                Group::Structure => "Selection, cell and bonds",
+                Group::Color => "Colours, radii and opacities from data",
+                Group::Annotation => "Annotations",
+                Group::Look => "Light and style",
+                Group::Output => "Output",
+            };
+            write!(page, "\n## {title}\n\n| flag | key | |\n|---|---|---|\n").unwrap();
+        }
+        let key = if flag.key.is_empty() { "any" } else { flag.key };
+        let value = match flag.alone {
+            None => format!(" {}", flag.shown),
+            Some(_) => format!("[={}]", flag.shown),
+        };
+        let help = flag.help.replace('|', "\\|").replace('<', "&lt;").replace("[_", "\\[_");
+        writeln!(page, "| `{}{value}` | `{key}` | {help} |", flag.flag).unwrap();
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/flags.md");
+    if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
+        std::fs::write(&path, &page).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(found, page, "PINHOLE_UPDATE_SNAPSHOTS=1 rewrites the page");
+}
