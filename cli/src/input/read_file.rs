@@ -116,6 +116,7 @@ pub(crate) fn data_format(path: &Path) -> Option<&'static load::Format> {
 }
 
 /// Parses a size, such as `800x600`.
+#[cfg(feature = "gpu")]
 pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     let sides = text.split_once(['x', 'X']);
     sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(

@@ -10,7 +10,7 @@ use pinhole::camera::{Camera, View};
 use pinhole::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use pinhole::geometry::subject::Subject;
 use pinhole::light::Ground;
-use pinhole::render::{Integrator, RenderSettings, Studio};
+use pinhole::render::{Integrator, Outline, RenderSettings, Studio};
 use pinhole::scene::Scene;
 
 /// A named look of a picture: everything about light, lines and the background.
@@ -75,6 +75,8 @@ impl Style {
 pub(crate) struct OwnValues {
     pub(crate) occlusion_radius: bool,
     pub(crate) outline: bool,
+    /// Whether a flag gives an outline, and the file does not.
+    pub(crate) outline_by_flag: bool,
     pub(crate) outline_depth: bool,
     pub(crate) ground: bool,
     /// Whether the file names lights, a sun or a sky.
@@ -128,7 +130,8 @@ fn fit_outline(
     let is_tiny = radius_in_pixels(view, middle, radius)
         .is_some_and(|pixels| pixels < LEAST_RADIUS_IN_PIXELS);
     if is_tiny && !given.outline {
-        studio.outline = None;
+        let wide = Outline { width: outline.width, ..Outline::thin() };
+        studio.outline = given.outline_by_flag.then_some(wide);
         return;
     }
     if !given.outline_depth {

@@ -54,7 +54,8 @@ pub(super) struct SceneLighting {
 fn given(layers: &Joined<'_>) -> OwnValues {
     OwnValues {
         occlusion_radius: layers.has("studio.occlusion.radius"),
-        outline: layers.has("studio.outline"),
+        outline: layers.in_file.has("studio.outline"),
+        outline_by_flag: layers.in_flags.has("studio.outline"),
         outline_depth: layers.has("studio.outline.depth"),
         ground: layers.has("ground"),
         light: ["lights", "sky", "sun"].iter().any(|key| layers.has(key)),
