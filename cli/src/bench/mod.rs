@@ -8,7 +8,6 @@ use anyhow::Context;
 
 use crate::bench::args::BenchArgs;
 use crate::bench::report::{BenchReport, BenchScene, RunReport, SceneReport, Spread};
-use crate::input::read_file::parse_size;
 use crate::input::{Input, Source};
 use crate::render::device::{AdapterReport, DEVICE_CLOCK, WantedAdapter, explained};
 use crate::render::with_scene::watch_upload;
@@ -283,4 +282,12 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     let load = started.elapsed();
     let camera = Box::new(standard.camera().context(name)?);
     Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
+}
+
+/// Parses a size, such as `800x600`.
+fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+    let sides = text.split_once(['x', 'X']);
+    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
+        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
+    )
 }

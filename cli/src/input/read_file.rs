@@ -6,7 +6,6 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 
 use crate::bricks::EXTENSION;
-use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole_data::load;
 
@@ -113,13 +112,4 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 pub(crate) fn data_format(path: &Path) -> Option<&'static load::Format> {
     let is_scene = extension(path).as_deref() == Some("toml");
     load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
-}
-
-/// Parses a size, such as `800x600`.
-#[cfg(feature = "gpu")]
-pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
-    let sides = text.split_once(['x', 'X']);
-    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
-        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
-    )
 }
