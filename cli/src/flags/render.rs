@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::flags::common::{AccelArgs, DeviceArgs, InputArgs, Stereo};
-use crate::flags::settings::{PICTURE, SettingArgs};
+use crate::flags::settings::{PICTURE, SettingArgs, arranged};
 use crate::frames::args::FramesArgs;
 use crate::output::report::ReportArgs;
 use crate::render::stop_rule::StopArgs;
@@ -13,6 +13,7 @@ use crate::render::stop_rule::StopArgs;
 use crate::terminal::profile::ProfileArgs;
 
 #[derive(Debug, Args)]
+#[command(mut_args(arranged))]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) input: InputArgs,

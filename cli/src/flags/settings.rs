@@ -144,10 +144,74 @@ fn argument(flag: &'static Flag) -> Arg {
 /// The heading of flags about light and style.
 pub(crate) const LOOK_HEADING: &str = "Light and style";
 
+/// Arguments that are not settings, with the headings under which the help of `render` lists them.
+const HEADINGS: &[(&str, &str)] = &[
+    ("output", OUTPUT_HEADING),
+    ("layers", OUTPUT_HEADING),
+    ("stereo", OUTPUT_HEADING),
+    ("certify", OUTPUT_HEADING),
+    ("print_scene", OUTPUT_HEADING),
+    ("keep_partial", LOOK_HEADING),
+    ("quiet", OUTPUT_HEADING),
+    ("backend", DEVICE_HEADING),
+    ("adapter", DEVICE_HEADING),
+    ("limits", DEVICE_HEADING),
+    ("accel", DEVICE_HEADING),
+    ("profile", DEVICE_HEADING),
+];
+
+const OUTPUT_HEADING: &str = "Output";
+const DEVICE_HEADING: &str = "Device";
+
+/// The arguments that `render -h` lists, which fits on one screen.
+const BRIEF: &[&str] = &[
+    "path",
+    "frame",
+    "size",
+    "select",
+    "bonds",
+    "style",
+    "background",
+    "samples",
+    "color-by",
+    "cmap",
+    "legend",
+    "scale-bar",
+    "view",
+    "zoom",
+    "frames",
+    "turntable",
+    "output",
+    "transparent",
+    "print_scene",
+    "backend",
+    "set",
+];
+
+/// Puts an argument of `render` under the heading of its task, and into the short help with its first words.
+pub(crate) fn arranged(arg: Arg) -> Arg {
+    let id = arg.get_id().as_str().to_owned();
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+    let heading = HEADINGS.iter().find(|(other, _)| *other == id).map(|(_, heading)| *heading);
+    let arg = match heading {
+        Some(heading) => arg.help_heading(heading),
+        None => arg,
+    };
+    if !BRIEF.contains(&id.as_str()) {
+        return arg.hide_short_help(true);
+    }
+    let ends =
+        [": ", "; ", " [", ", such as", " (", ", or "].iter().filter_map(|end| help.find(end));
+    let brief = help[..ends.min().unwrap_or(help.len())].to_owned();
+    let arg = if arg.get_long_help().is_some() { arg } else { arg.long_help(help) };
+    arg.help(brief).hide_possible_values(false)
+}
+
 /// The heading under which the help lists a group; empty for none.
 fn heading(group: Group) -> &'static str {
     match group {
-        Group::Input | Group::Output => "",
+        Group::Input => "Input",
+        Group::Output => OUTPUT_HEADING,
         Group::Structure => "Selection, box and bonds",
         Group::Color => "Colors, radii and opacities from data",
         Group::Look => LOOK_HEADING,

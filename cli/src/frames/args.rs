@@ -25,7 +25,7 @@ pub(crate) struct FramesArgs {
     /// frame, pictures up to the last key are made; --frames chooses some of them
     #[arg(
         long, help_heading = HEADING, value_name = "PATH.toml",
-        conflicts_with_all = ["turntable", "eye", "look_at", "direction", "view", "turn", "margin"]
+        conflicts_with_all = ["turntable", "eye", "look-at", "direction", "view", "turn", "margin"]
     )]
     pub(crate) camera_path: Option<PathBuf>,
     /// Let the camera frame this frame, and choose light and colors for it [default: all frames that are asked for]

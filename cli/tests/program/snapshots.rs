@@ -69,15 +69,20 @@ fn help() {
     let folder = Folder::new();
     compare(
         SNAPSHOTS,
-        |name| name.starts_with("help"),
+        |name| name.starts_with("help") || name == BRIEF,
         |name, _| {
-            let command = name["help".len()..].replace('-', " ");
-            let run = folder.run(&format!("{command} --help")).succeeded();
+            let (start, flag) =
+                if name == BRIEF { (BRIEF, "render -h") } else { ("help", "--help") };
+            let command = name[start.len()..].replace('-', " ");
+            let run = folder.run(&format!("{command} {flag}")).succeeded();
             assert_eq!(run.stderr, "", "{command}");
             String::from_utf8(run.stdout).unwrap()
         },
     );
 }
+
+/// The short help of `render`, which fits on a screen.
+const BRIEF: &str = "brief-render";
 
 /// Each command must end with one line on standard error, and leave no new file.
 #[test]
@@ -86,7 +91,7 @@ fn errors() {
     let other_build = if cfg!(feature = "gpu") { "without_gpu" } else { "devices" };
     compare(
         SNAPSHOTS,
-        |name| !name.starts_with("help") && ![other_build, "kernels"].contains(&name),
+        |name| !name.starts_with("help") && ![other_build, "kernels", BRIEF].contains(&name),
         |_, text| answered(text, refused),
     );
 }
