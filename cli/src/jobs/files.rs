@@ -1,5 +1,5 @@
 //! The files of jobs: all access to the file system, except for files that appear whole or not at all, which
-//! `output.rs` writes; and the digests that identify files.
+//! `cli/src/output/files.rs` writes; and the digests that identify files.
 
 use std::fs;
 pub(super) use std::fs::{File, create_dir, read, read_to_string, remove_dir_all, remove_file};

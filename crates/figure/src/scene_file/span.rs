@@ -65,10 +65,11 @@ impl Span {
     /// An error about a number at this position.
     pub(crate) fn refused(self, error: &RangeError) -> SceneFileError {
         match self.flag {
-            Some(flag) => {
+            // The value alone does not say which key it is of.
+            Some(flag) if flag != "--set" => {
                 self.error(format!("{flag} {}: it must be {}", error.value(), error.range))
             }
-            None => self.error(error),
+            _ => self.error(error),
         }
     }
 }

@@ -97,6 +97,11 @@ fn errors_name_the_layer() {
         ),
         (
             SCENE,
+            &["set=studio.outline.width=100"],
+            "--set: `width` is 100; it must be from 0.5 to 64 pixels",
+        ),
+        (
+            SCENE,
             &["set=studio.outline.widht=1"],
             "--set: unknown key `widht`; did you mean `width`?",
         ),
