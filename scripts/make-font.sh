@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Writes src/annotate/font/OpenSans-subset.ttf from Open Sans Regular 1.10 (Apache-2.0), for example of Debian's package
+# Writes crates/figure/src/annotate/font/OpenSans-subset.ttf from Open Sans Regular 1.10 (Apache-2.0), for example of Debian's package
 # fonts-open-sans. Needs fonttools (`pip install fonttools`).
 #
 #   scripts/make-font.sh OpenSans-Regular.ttf
 set -euo pipefail
-target=$(cd "$(dirname "$0")/.." && pwd)/src/annotate/font/OpenSans-subset.ttf
+target=$(cd "$(dirname "$0")/.." && pwd)/crates/figure/src/annotate/font/OpenSans-subset.ttf
 # Latin with its accents, Greek, Cyrillic, punctuation, and signs of the sciences.
 pyftsubset "$1" --output-file="$target" --no-hinting --desubroutinize --layout-features='' \
     --drop-tables+=GSUB,GPOS,GDEF,kern,DSIG,gasp --name-IDs=0,1,2,5,13 --notdef-outline \

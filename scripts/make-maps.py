@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes src/color_by/maps/crameri.rgb: for each name below 256 colors of three bytes, from the tables of Crameri's
+"""Writes crates/figure/src/color_by/maps/crameri.rgb: for each name below 256 colors of three bytes, from the tables of Crameri's
 Scientific colour maps, as the package cmcrameri (MIT) has them.
 
     pip install --no-deps --target /tmp/maps cmcrameri
-    scripts/make-maps.py /tmp/maps/cmcrameri/cmaps > src/color_by/maps/crameri.rgb
+    scripts/make-maps.py /tmp/maps/cmcrameri/cmaps > crates/figure/src/color_by/maps/crameri.rgb
 """
 import pathlib
 import sys
 
-# The order of `CRAMERI` in src/color_by/maps.rs.
+# The order of `CRAMERI` in crates/figure/src/color_by/maps.rs.
 NAMES = """acton bam bamako batlow batlowK batlowW berlin bilbao broc buda bukavu cork davos devon fes glasgow grayC
 hawaii imola lajolla lapaz lipari lisbon managua navia nuuk oleron oslo roma tofino tokyo turku vanimo vik
 bamO brocO corkO romaO vikO""".split()

@@ -39,7 +39,7 @@ pub enum Colors {
 /// ```
 /// use pinhole::{Appearance, SurfaceProperties, SphereArray, Scene};
 ///
-/// Four bytes per sphere. The last is opacity.
+/// // Four bytes per sphere. The last is opacity.
 /// let colors = vec![[255, 0, 0, 255], [0, 0, 255, 128]];
 /// let spheres = vec![[0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]];
 /// let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors))?;
