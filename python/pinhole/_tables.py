@@ -66,7 +66,7 @@ def _toml(head: str, name: str, table: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-class Studio(Table, of="studio", keys="ambient shadows max_surfaces occlusion depth_cue outline"):
+class Studio(Table, of="studio", keys="ambient occlusion shadows max_surfaces depth_cue outline"):
     """Direct light: its ambient light, shadows, ``Occlusion``, ``Outline`` and ``DepthCue``."""
 
 

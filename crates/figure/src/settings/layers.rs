@@ -165,8 +165,11 @@ impl<'a> Joined<'a> {
 
     fn explained(&self, error: &toml::de::Error) -> SceneFileError {
         let span = self.lines.span(error.span().map_or(0, |span| span.start));
-        let in_flags = span.flag.and_then(|flag| self.in_flag(flag, error.message()));
-        span.error(in_flags.unwrap_or_else(|| explain(error.message())))
+        // The key that is taken out beforehand is valid, too.
+        let filter = "`samples`, `seed`, `filter`";
+        let message = error.message().replace(filter, &format!("{filter}, `denoise`"));
+        let in_flags = span.flag.and_then(|flag| self.in_flag(flag, &message));
+        span.error(in_flags.unwrap_or_else(|| explain(&message)))
     }
 
     /// The message of serde in the words of flags; `None` if it is as good in those of keys.

@@ -96,6 +96,11 @@ fn errors_name_the_layer() {
             "line 3, column 9: `width` is 100; it must be from 0.5 to 64 pixels",
         ),
         (
+            "[sampling]\ndenoize = true",
+            &[],
+            "line 2, column 1: unknown key `denoize`; did you mean `denoise`?",
+        ),
+        (
             SCENE,
             &["set=studio.outline.width=100"],
             "--set: `width` is 100; it must be from 0.5 to 64 pixels",
