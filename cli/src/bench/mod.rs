@@ -29,12 +29,16 @@ use pinhole::internals::text::one_line;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole_figure::scene_file::DEFAULT_COLOR;
+use pinhole_figure::settings::size_of;
 
 pub(crate) mod args;
 mod report;
 
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
-    let size = args.size.as_deref().map(parse_size).transpose()?;
+    let size = args.size.as_deref().map(|text| {
+        size_of(text).map_err(|error| Failure::usage(format!("--size {text}: {error}")))
+    });
+    let size = size.transpose()?;
     let sources = if args.scenes.is_empty() {
         DEFAULT.into_iter().map(BenchSource::Standard).collect()
     } else {
@@ -246,7 +250,7 @@ impl BenchSource {
 
     /// Generates or reads the scene. For a generated scene, prints the memory that it needs, and refuses it if
     /// this memory is not free.
-    pub(crate) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+    pub(crate) fn load(&self, size: Option<[u32; 2]>) -> Result<BenchScene, Failure> {
         match self {
             Self::Standard(standard) => made(*standard, size),
             Self::File(path, source) => {
@@ -264,10 +268,10 @@ impl BenchSource {
     }
 }
 
-fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
+fn made(standard: Standard, size: Option<[u32; 2]>) -> Result<BenchScene, Failure> {
     let (name, count) = (standard.name(), standard.count());
     let film = match size {
-        Some((width, height)) => {
+        Some([width, height]) => {
             Film::new(width, height).map_err(|error| Failure::usage(format!("--size: {error}")))?
         }
         None => standard.film().context(name)?,
@@ -282,12 +286,4 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     let load = started.elapsed();
     let camera = Box::new(standard.camera().context(name)?);
     Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
-}
-
-/// Parses a size, such as `800x600`.
-fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
-    let sides = text.split_once(['x', 'X']);
-    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
-        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
-    )
 }

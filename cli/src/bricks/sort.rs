@@ -12,8 +12,7 @@ use crate::bricks::EXTENSION;
 use crate::bricks::file::{COLOR, Header, ID, SPHERE, StoredColors, WholeBits};
 use crate::bricks::outer::{Cells, Outer};
 use crate::bricks::writer::{self, Array, Stream, Writer};
-use crate::flags::settings::Given;
-use crate::input::data::format_parser;
+use crate::input::data::{DataOptions, format_parser};
 use crate::input::{Source, default_color, extension};
 use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed_with};
 use crate::terminal::failure::Failure;
@@ -145,14 +144,14 @@ fn parse_bytes(text: &str) -> Result<u64, Failure> {
 }
 
 fn input(args: &SortArgs) -> Result<Input, Failure> {
-    let topology = args.topology.as_ref().map(|file| file.to_string_lossy().into_owned());
-    let given = Given::default()
-        .with("format", args.format.map(|format| format.name.to_owned()))
-        .with("topology", topology)
-        .with("columns", (!args.columns.is_empty()).then(|| args.columns.join(",")))
-        .with("radius", args.radius.map(|radius| radius.to_string()))
-        .with("frame", args.frame.map(|frame| frame.to_string()));
-    let source = Source::new(&args.path, &given)?;
+    let options = DataOptions {
+        frame: args.frame,
+        radius: args.radius,
+        color: None,
+        topology: args.topology.clone(),
+        columns: args.columns.clone(),
+    };
+    let source = Source::new(&args.path, &options.given(args.format))?;
     let Some(format) = source.data_format() else {
         return Err(Failure::usage(format!(
             "{}: name a data file; scenes are sorted by the data that they name",

@@ -59,27 +59,21 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
         Some(format) => read_file::Format::Data(format),
         None => read_file::Format::of(path).map_err(Failure::Usage)?,
     };
-    let topology = args.topology.as_ref().map(|file| file.to_string_lossy().into_owned());
-    let given = Given::default()
-        .with("frame", args.frame.map(|frame| frame.to_string()))
-        .with("radius", args.radius.map(|radius| radius.to_string()))
-        .with("topology", topology)
-        .with("columns", (!args.columns.is_empty()).then(|| args.columns.join(",")));
+    let options = DataOptions {
+        frame: args.frame,
+        radius: args.radius,
+        color: None,
+        topology: args.topology.clone(),
+        columns: args.columns.clone(),
+    };
     match format {
         read_file::Format::Data(format) => {
-            let given = given.with("format", Some(format.name.to_owned()));
-            Source::new(path, &given)?;
-            let options = DataOptions {
-                frame: args.frame,
-                radius: args.radius,
-                color: None,
-                topology: args.topology.clone(),
-                columns: args.columns.clone(),
-            };
+            // Checks the options before the file is read.
+            Source::new(path, &options.given(Some(format)))?;
             of_data(path, format, &options).map_err(as_usage)
         }
         // Files of bricks have a report of their own.
-        read_file::Format::Scene | BRICKS => of_scene(path, &given),
+        read_file::Format::Scene | BRICKS => of_scene(path, &options.given(None)),
     }
 }
 

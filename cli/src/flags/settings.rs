@@ -46,8 +46,8 @@ impl Given {
 
     /// The value of a flag, which is named without dashes.
     pub(crate) fn get(&self, name: &str) -> Option<&str> {
-        let given = self.0.iter().rev();
-        given.into_iter().find(|(flag, _)| flag.name() == name).map(|(_, value)| &**value)
+        let mut last_first = self.0.iter().rev();
+        last_first.find(|(flag, _)| flag.name() == name).map(|(_, value)| &**value)
     }
 
     /// The first of some flags that was given.
@@ -204,7 +204,7 @@ pub(crate) fn arranged(arg: Arg) -> Arg {
         [": ", "; ", " [", ", such as", " (", ", or "].iter().filter_map(|end| help.find(end));
     let brief = help[..ends.min().unwrap_or(help.len())].to_owned();
     let arg = if arg.get_long_help().is_some() { arg } else { arg.long_help(help) };
-    arg.help(brief).hide_possible_values(false)
+    arg.help(brief)
 }
 
 /// The heading under which the help lists a group; empty for none.

@@ -29,6 +29,7 @@ pub(crate) struct Contents {
 }
 
 /// Details of a file that was read, beside its spheres.
+#[derive(Default)]
 pub(crate) struct Details {
     pub(crate) notes: Vec<String>,
     pub(crate) files: Vec<PathBuf>,
@@ -38,8 +39,8 @@ pub(crate) struct Details {
     pub(crate) color_key: Option<ColorKey>,
     /// The colors by kind that no flag asked for.
     pub(crate) kinds: Option<ColorBy>,
-    /// The color of spheres without one.
-    pub(crate) color: LinearRgb,
+    /// The color of spheres without one, if a key or a flag gives it.
+    pub(crate) color: Option<LinearRgb>,
     /// Where the size of the picture comes from.
     pub(crate) size_from: String,
     pub(crate) kept: Option<KeptSpheres>,
@@ -47,24 +48,6 @@ pub(crate) struct Details {
     /// The columns of the data that is drawn, if they were asked for.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
     pub(crate) columns: Vec<Column>,
-}
-
-impl Default for Details {
-    fn default() -> Self {
-        Self {
-            notes: Vec::new(),
-            files: Vec::new(),
-            sky_image: None,
-            has_atoms: false,
-            color_key: None,
-            kinds: None,
-            color: default_color(),
-            size_from: String::new(),
-            kept: None,
-            bonds: None,
-            columns: Vec::new(),
-        }
-    }
 }
 
 /// Where the data of a scene file is, and the options for reading it.
@@ -112,8 +95,7 @@ impl Source {
                 self.path.display()
             )));
         }
-        let color = color.unwrap_or_else(default_color);
-        let scene = bricks.stand_in(color)?;
+        let scene = bricks.stand_in(color.unwrap_or_else(default_color))?;
         let (files, has_atoms) = (vec![self.path.clone()], bricks.has_atoms());
         let details = Details { files, has_atoms, color, ..Details::default() };
         Ok(self.prepared(file, scene, details))
@@ -143,11 +125,12 @@ impl Source {
 
     /// Reads a scene from the text of a scene file, and its data.
     pub(crate) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
-        self.contents_of(self.parsed(text)?)
+        let file = self.parsed(text)?;
+        self.check_camera(&file)?;
+        self.contents_of(file)
     }
 
     fn contents_of(&self, file: SceneFile) -> Result<Contents, Failure> {
-        self.check_camera(&file)?;
         let (scene, mut details) = self.scene_of(&file)?;
         if scene.is_empty() && matches!(self.format, Format::Data(_)) {
             details.notes.push(format!(
@@ -166,7 +149,7 @@ impl Source {
         let sky_file = file.sky_image().filter(|_| file.kind() == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
         let data = self.keys_of_data(&file);
-        let data_file = data.as_ref().map(|data| self.resolve(&data.file));
+        let data_file = data.as_ref().map(|data| self.data_path(data));
         let topology = data.as_ref().and_then(|data| self.options(&file, data).topology);
         let scene_file = (self.format == Format::Scene).then(|| self.path.clone());
         let files = [scene_file, data_file, topology, sky_image.clone()];
@@ -218,7 +201,8 @@ impl Source {
             self.joined.apply_to(&mut by);
             data.mapping.color = Some(by);
         }
-        let details = Details { has_atoms, columns, kinds, color, ..Details::default() };
+        let details =
+            Details { has_atoms, columns, kinds, color: data.color, ..Details::default() };
         if is_data && data.is_plain() {
             let selected = data.select.as_ref().map(|select| select.apply(&mut loaded));
             let kept = selected.transpose().context("--select").with_context(file_name)?;
@@ -249,7 +233,7 @@ impl Source {
     /// Finds the data of a scene file; `None` if it has none.
     pub(crate) fn data_place(&self, file: &SceneFile) -> Result<Option<DataPlace>, Failure> {
         let Some(data) = self.keys_of_data(file) else { return Ok(None) };
-        let path = self.resolve(&data.file);
+        let path = self.data_path(&data);
         let in_scene = || self.in_scene();
         let named = data.format.as_deref().and_then(load::Format::of_name);
         let Some(format) = self.data_format().or(named).or_else(|| data_format(&path)) else {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::flags::settings::Given;
 use crate::input::read_file::read as read_bytes;
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
@@ -38,6 +39,17 @@ impl DataOptions {
         (options.frame, options.radius) = (self.frame, self.radius);
         (options.topology, options.columns) = (self.topology.clone(), self.columns.clone());
         options
+    }
+
+    /// The flags that give these options and a format, all but the color.
+    pub(crate) fn given(&self, format: Option<&Format>) -> Given {
+        let topology = self.topology.as_ref().map(|file| file.to_string_lossy().into_owned());
+        Given::default()
+            .with("format", format.map(|format| format.name.to_owned()))
+            .with("frame", self.frame.map(|frame| frame.to_string()))
+            .with("radius", self.radius.map(|radius| radius.to_string()))
+            .with("topology", topology)
+            .with("columns", (!self.columns.is_empty()).then(|| self.columns.join(",")))
     }
 
     /// Refuses options that do not apply to the format. Returns the error, and whether a flag is wrong.

@@ -14,6 +14,7 @@ use pinhole::camera::CameraPath;
 use pinhole::glam::DVec3;
 use pinhole_data::load;
 use pinhole_figure::settings::flags::Group;
+use pinhole_figure::settings::list_of;
 
 impl Source {
     /// Reads the file, and the data files that it names.
@@ -98,8 +99,7 @@ impl Source {
     /// The direction that is up for the flags; `None` if the camera is that of a scene file.
     pub(crate) fn up(&self) -> Option<DVec3> {
         let is_of_flags = self.is_data() || self.given.first_in(Group::Camera as u32).is_some();
-        let numbers = |text: &str| text.split(',').map(|part| part.trim().parse().ok()).collect();
-        let up = self.given.get("up").and_then(|text| -> Option<Vec<f64>> { numbers(text) });
+        let up = self.given.get("up").and_then(|text| list_of(text, 3).ok());
         let up = up.and_then(|up| <[f64; 3]>::try_from(up).ok()).map(DVec3::from);
         is_of_flags.then(|| up.unwrap_or_else(|| self.default_up()))
     }

@@ -10,7 +10,7 @@ use super::read;
 use crate::flags::camera::CameraTable;
 use crate::input::contents::{Contents, Details};
 use crate::input::read_file::Format;
-use crate::input::source::Source;
+use crate::input::source::{Source, default_color};
 use crate::output::picture::PictureFormat;
 use crate::output::report::Report;
 use crate::terminal::failure::Failure;
@@ -216,7 +216,7 @@ impl Source {
             own_spheres,
             sky_image,
             bricks: self.bricks.clone(),
-            color,
+            color: color.unwrap_or_else(default_color),
         })
     }
 

@@ -16,8 +16,8 @@ use crate::terminal::failure::Failure;
 use pinhole::image::color::LinearRgb;
 use pinhole_data::load::{self, Dataset, Trajectory};
 use pinhole_figure::color_by::{ColorBy, JoinedKeys};
-use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile, SceneFileError, quoted};
-use pinhole_figure::settings::{Layer, Sources};
+use pinhole_figure::scene_file::{DEFAULT_COLOR, Data, SceneFile, SceneFileError};
+use pinhole_figure::settings::{Layer, Sources, quoted};
 use pinhole_figure::style::Style;
 
 /// An input file with its flags, checked as far as is possible before the file is read.
@@ -124,10 +124,8 @@ impl Source {
     pub(crate) fn of_bench(path: &Path, args: &BenchArgs) -> Result<Self, Failure> {
         let is_data = Format::of(path).ok() != Some(Format::Scene);
         let format = args.format.filter(|_| is_data);
-        let given = Given::default()
-            .with("format", format.map(|format| format.name.to_owned()))
-            .with("radius", args.radius.map(|radius| radius.to_string()))
-            .with("size", args.size.clone());
+        let options = DataOptions { radius: args.radius, ..DataOptions::default() };
+        let given = options.given(format).with("size", args.size.clone());
         Self::new(path, &given)?.without_bricks("`bench`")
     }
 
@@ -144,9 +142,8 @@ impl Source {
             )));
         }
         if let (Format::Data(format), Some(data)) = (self.format, file.data()) {
-            self.options(&file, data)
-                .check(format, &file)
-                .map_err(|(error, _)| Failure::usage(error))?;
+            let options = self.options(&file, data);
+            options.check(format, &file).map_err(|(error, _)| Failure::usage(error))?;
         }
         self.check_camera(&file)
     }
@@ -194,7 +191,7 @@ impl Source {
         data.topology = options.topology.map(|path| path.to_string_lossy().into_owned());
         match self.format {
             Format::Bricks => return None,
-            Format::Scene => data.file = self.resolve(&data.file).to_string_lossy().into_owned(),
+            Format::Scene => data.file = self.data_path(&data).to_string_lossy().into_owned(),
             Format::Data(format) if data_format(&self.path) == Some(format) => data.format = None,
             Format::Data(_) => {}
         }
@@ -239,6 +236,11 @@ impl Source {
             Format::Scene => self.path.parent().unwrap_or(Path::new("")).join(path),
             Format::Data(_) | Format::Bricks => PathBuf::from(path),
         }
+    }
+
+    /// The path of the data. A data file on the command line need not have a name that is text.
+    pub(super) fn data_path(&self, data: &Data) -> PathBuf {
+        if self.is_data() { self.path.clone() } else { self.resolve(&data.file) }
     }
 }
 

@@ -433,3 +433,18 @@ fn files_are_the_same_each_time_and_can_be_rendered() {
     folder.run("render none.npy -o none.png --size 2x2 --backend cpu").succeeded();
     assert_eq!(folder.files(), ["a.npy", "a.png", "b.npy", "c.bin", "none.npy", "none.png"]);
 }
+
+/// A data file need not have a name that is text.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_not_text() {
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder();
+    let name = std::ffi::OsStr::from_bytes(b"a\xff.npy");
+    std::fs::copy(folder.path("a.npy"), folder.path("").join(name)).unwrap();
+    let flags = "render --backend cpu --style fast --size 8x6 -o out.png";
+    let output = folder.command(flags).arg(name).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(decode(&folder.read("out.png")).0, 8);
+}

@@ -67,7 +67,7 @@ impl Default for Annotations {
 
 impl Annotations {
     /// The smallest and the largest [`Annotations::text_scale`].
-    pub const TEXT_SCALES: [f32; 2] = [0.2, 10.0];
+    pub const TEXT_SCALES: [f64; 2] = [0.2, 10.0];
 
     /// Returns these annotations with one more.
     #[must_use]
@@ -109,7 +109,7 @@ impl Annotations {
 
     /// The size of text in pixels. The letter M is about 0.7 of it high.
     fn em(&self, [width, height]: [u32; 2]) -> f32 {
-        let [low, high] = Self::TEXT_SCALES;
+        let [low, high] = Self::TEXT_SCALES.map(|scale| scale as f32);
         let scale = if self.text_scale.is_nan() { 1.0 } else { self.text_scale.clamp(low, high) };
         // The text of a picture that is much higher than wide must fit its width.
         let height = (height as f32).min(1.5 * width as f32);

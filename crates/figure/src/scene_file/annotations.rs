@@ -7,7 +7,9 @@ use serde::{Deserialize, de};
 use toml::Spanned;
 
 use super::span::{Keys, Lines, Number, SceneFileError, Span};
-use crate::annotate::{AnnotationPlan, Label, LegendPlan, Panel, Position, ScaleBarPlan};
+use crate::annotate::{
+    AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
+};
 use pinhole::LinearRgb;
 use pinhole::internals::exact::{self, Table};
 
@@ -80,7 +82,7 @@ pub(super) fn read_annotations(
     let position = |value: Option<PositionValue>| value.map(|value| value.0);
     let text = text.unwrap_or_default().0;
     let keys = Keys { lines, numbers: vec![("scale", text.scale)], table: Span::START };
-    let text_scale = keys.within("scale", [0.2, 10.0], "from 0.2 to 10")?;
+    let text_scale = keys.within("scale", Annotations::TEXT_SCALES, "from 0.2 to 10")?;
     Ok(AnnotationPlan {
         legend: legend.map(|Table(table)| LegendPlan {
             title: table.title,

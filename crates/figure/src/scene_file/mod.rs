@@ -19,7 +19,6 @@ pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::{DEFAULT_COLOR, SceneFileError};
-pub use write::quoted;
 pub use write::{Contents, write};
 
 use crate::annotate::AnnotationPlan;

@@ -8,6 +8,7 @@ use super::data::Data;
 use super::span::name_of;
 use crate::annotate::{AnnotationPlan, LegendPlan, Position, ScaleBarPlan};
 use crate::color_by::{ColorBy, Limit, Limits, MISSING, Mapping};
+use crate::settings::quoted;
 use pinhole::camera::CameraParameters;
 use pinhole::camera::film::Film;
 use pinhole::image::color::LinearRgb;
@@ -244,23 +245,6 @@ fn color(color: LinearRgb) -> String {
         return format!("\"#{r:02x}{g:02x}{b:02x}\"");
     }
     format!("{:?}", color.to_array())
-}
-
-/// A text in quotes, as TOML writes it.
-#[must_use]
-pub fn quoted(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
-            }
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }
 
 fn strings(list: &[String]) -> String {

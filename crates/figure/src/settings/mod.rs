@@ -2,6 +2,9 @@
 
 pub mod flags;
 pub(crate) mod layers;
+mod quoted;
 mod words;
 
 pub use layers::{Layer, Sources};
+pub use quoted::quoted;
+pub use words::{list_of, size_of};

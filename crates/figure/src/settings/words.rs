@@ -2,8 +2,8 @@
 
 use pinhole::camera::Viewpoint;
 
+use super::quoted;
 use crate::annotate::Position;
-use crate::scene_file::quoted;
 
 pub(super) fn text(text: &str) -> String {
     quoted(text)
@@ -31,14 +31,20 @@ pub(super) fn switch(text: &str) -> Result<String, String> {
     }
 }
 
-/// Reads numbers that are separated by commas.
 pub(super) fn numbers(text: &str, count: usize) -> Result<String, String> {
+    let numbers: Vec<String> = list_of(text, count)?.into_iter().map(toml_number).collect();
+    Ok(format!("[{}]", numbers.join(", ")))
+}
+
+/// Reads numbers that are separated by commas.
+///
+/// # Errors
+/// Says in words what to write if there are not `count` numbers.
+pub fn list_of(text: &str, count: usize) -> Result<Vec<f64>, String> {
     let example = if count == 2 { "1,0.75" } else { "0,1,-8" };
     let wanted = || format!("write {count} numbers with commas between them, such as {example}");
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers = numbers.ok().filter(|numbers| numbers.len() == count).ok_or_else(wanted)?;
-    let numbers: Vec<String> = numbers.into_iter().map(toml_number).collect();
-    Ok(format!("[{}]", numbers.join(", ")))
+    numbers.ok().filter(|numbers| numbers.len() == count).ok_or_else(wanted)
 }
 
 pub(super) fn names(text: &str) -> Result<String, String> {
@@ -46,13 +52,19 @@ pub(super) fn names(text: &str) -> Result<String, String> {
     Ok(format!("[{}]", names.join(", ")))
 }
 
-/// Reads a size such as `800x600`.
 pub(super) fn size(text: &str) -> Result<String, String> {
-    let sides = text.split_once(['x', 'X']);
-    let sides = sides.and_then(|(w, h)| Some((w.parse::<u32>().ok()?, h.parse::<u32>().ok()?)));
-    let (width, height) =
-        sides.ok_or_else(|| "write WIDTHxHEIGHT in pixels, such as 800x600".to_owned())?;
+    let [width, height] = size_of(text)?;
     Ok(format!("film.width = {width}\nfilm.height = {height}"))
+}
+
+/// Reads a size such as `800x600`.
+///
+/// # Errors
+/// Says in words what to write.
+pub fn size_of(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']);
+    let sides = sides.and_then(|(w, h)| Some([w.parse::<u32>().ok()?, h.parse::<u32>().ok()?]));
+    sides.ok_or_else(|| "write WIDTHxHEIGHT in pixels, such as 800x600".to_owned())
 }
 
 /// Reads a key with its value, which is a text unless TOML reads something else.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use pinhole::camera::{CameraKind, PinholeCamera};
-use pinhole::render::{Integrator, RenderSettings, Studio};
+use pinhole::render::{Integrator, Outline, RenderSettings, Studio};
 use pinhole::{LinearRgb, Scene, Sphere};
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 use pinhole_figure::settings::flags::{FLAGS, Flag, Group, Value};
@@ -53,6 +53,8 @@ fn a_flag_beats_a_file_and_a_file_beats_a_style() {
     let of_flag = studio(SCENE, &["outline=5"]).outline.unwrap();
     assert_eq!([plain.width, of_file.width, of_flag.width], [1.0, 3.0, 5.0]);
     assert_eq!([of_file.color, of_flag.color], [plain.color; 2], "the rest is the style's");
+    let bare = studio("[studio]", &["outline=2"]).outline.unwrap();
+    assert_eq!(bare, Outline { width: 2.0, ..Outline::thin() }, "no layer below has an outline");
     let settings = settings(SCENE, &["samples=7"]).unwrap();
     assert_eq!((settings.sampling.samples, settings.sampling.seed), (7, 4));
     assert_eq!(
