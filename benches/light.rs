@@ -58,7 +58,7 @@ fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Ren
     RenderSettings {
         integrator: Integrator::Studio(studio),
         lights,
-        sampling: Sampling { samples, seed: 0, filter: PixelFilter::Box },
+        sampling: Sampling { samples, seed: 0, filter: PixelFilter::Box, denoise: false },
         ..RenderSettings::studio()
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 /// The row of the picture that has y = +1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum YAxis {
     /// y = +1 is the top row, so `up = (0, 1, 0)` gives a picture the right way up.

@@ -33,16 +33,6 @@ impl PixelFilter {
     /// All filters.
     pub const ALL: &'static [Self] = &[Self::Box, Self::Gaussian, Self::BlackmanHarris];
 
-    /// The name of the filter in scene files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Box => "box",
-            Self::Gaussian => "gaussian",
-            Self::BlackmanHarris => "blackman-harris",
-        }
-    }
-
     /// The distance in pixels, along an axis, beyond which samples do not count.
     #[must_use]
     pub const fn radius(self) -> f64 {

@@ -14,7 +14,13 @@ use crate::exact;
 pub struct LinearRgb([f32; 3]);
 
 impl serde::Serialize for LinearRgb {
+    /// Writes `#rrggbb` if that is exact, and a linear triple otherwise.
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let [r, g, b] = self.to_srgb8();
+        let bits = |color: Self| color.0.map(f32::to_bits);
+        if bits(Self::from_srgb8([r, g, b])) == bits(*self) {
+            return serializer.collect_str(&format_args!("#{r:02x}{g:02x}{b:02x}"));
+        }
         self.0.serialize(serializer)
     }
 }

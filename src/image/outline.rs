@@ -22,7 +22,7 @@ pub struct Outline {
     pub color: LinearRgb,
     /// The smallest jump in depth that makes an outline, as a fraction of the depth. At least 0.
     pub depth: f32,
-    /// The smallest angle between normals that makes an outline, in radians: 0 to π.
+    /// The smallest angle between normals that makes an outline: 0 to π, and in a file 0 to 180 degrees.
     #[serde(with = "crate::exact::degrees")]
     pub angle: f32,
 }

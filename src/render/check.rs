@@ -120,7 +120,7 @@ impl RenderSettings {
         let for_light = [
             ("the lights", !self.lights.is_empty()),
             ("the ground", self.ground.is_some()),
-            ("denoising", self.is_denoised),
+            ("denoising", self.sampling.denoise),
         ];
         match for_light.into_iter().find(|(_, is_set)| is_primary && *is_set) {
             Some((what, _)) => unused(what, "`studio` or `path`"),

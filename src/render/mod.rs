@@ -51,12 +51,9 @@ pub struct RenderSettings {
     pub background: LinearRgb,
     /// Whether pixels are transparent where rays hit nothing. If so, colours are premultiplied by alpha.
     pub is_transparent: bool,
-    /// Whether a filter that is guided by shapes and colours removes noise; see [`crate::image::denoise`]. Only
-    /// pictures with lighting use it.
-    pub is_denoised: bool,
 }
 
-/// The number of samples, their positions, and the random seed.
+/// The number of samples, their positions, the random seed, and the removal of noise.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sampling {
@@ -66,6 +63,9 @@ pub struct Sampling {
     pub seed: u32,
     /// The filter that places samples around the centre of a pixel.
     pub filter: PixelFilter,
+    /// Whether a filter that is guided by shapes and colours removes noise, in pictures with lighting: the module
+    /// `image::denoise`.
+    pub denoise: bool,
 }
 
 impl Sampling {
@@ -76,7 +76,7 @@ impl Sampling {
 impl Default for Sampling {
     /// Sixteen samples, as for a picture with lighting.
     fn default() -> Self {
-        Self { samples: 16, seed: 0, filter: PixelFilter::default() }
+        Self { samples: 16, seed: 0, filter: PixelFilter::default(), denoise: false }
     }
 }
 
@@ -91,7 +91,6 @@ impl Default for RenderSettings {
             ground: None,
             background: LinearRgb::WHITE,
             is_transparent: false,
-            is_denoised: false,
         }
     }
 }
@@ -177,11 +176,18 @@ impl RenderSettings {
         }
     }
 
+    /// The same settings with or without the removal of noise.
+    #[must_use]
+    pub fn with_denoise(&self, denoise: bool) -> Self {
+        let sampling = Sampling { denoise, ..self.sampling };
+        Self { sampling, ..self.clone() }
+    }
+
     /// The same settings without denoising and outlines, which read neighbours of pixels. Use them for parts of a film.
     /// After joining the parts, [`cpu::finish`](crate::cpu::finish) or `Headless::finish` completes the picture.
     #[must_use]
     pub fn unfinished(&self) -> Self {
-        let mut settings = Self { is_denoised: false, ..self.clone() };
+        let mut settings = self.with_denoise(false);
         if let Integrator::Studio(studio) = &mut settings.integrator {
             studio.outline = None;
         }
@@ -194,7 +200,7 @@ impl RenderSettings {
     pub fn layers_for(&self, wanted: LayerSet) -> LayerSet {
         let lines = self.studio_parameters().and_then(|studio| studio.outline);
         let for_lines = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
-        let for_noise = if self.is_denoised { denoise::GUIDES } else { LayerSet::COLOR };
+        let for_noise = if self.sampling.denoise { denoise::GUIDES } else { LayerSet::COLOR };
         wanted.iter().chain(for_lines.iter()).chain(for_noise.iter()).collect()
     }
 }

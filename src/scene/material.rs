@@ -3,25 +3,31 @@
 use crate::range::RangeError;
 
 /// The way in which a surface responds to light that hits it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Material {
     /// A diffuse surface (Lambert's law), with an optional glossy lobe on top.
     Lambert {
         /// The fraction of light that the glossy lobe reflects, for any colour: 0 to 1.
+        #[serde(default)]
         specular: f32,
         /// Roughness of the glossy lobe: 0.02 to 1.
+        #[serde(default = "of_gloss")]
         roughness: f32,
     },
     /// A rough metal (GGX). The sphere's colour is its reflectance at normal incidence.
     Conductor {
         /// Roughness: 0.02 to 1.
+        #[serde(default = "of_metal")]
         roughness: f32,
     },
     /// Glass, smooth or rough. Light that passes through it can be absorbed (Beer's law).
     Dielectric {
         /// Index of refraction relative to the surroundings: 1 to 4.
+        #[serde(default = "of_glass")]
         ior: f32,
         /// Roughness: 0 (smooth), or 0.02 to 1.
+        #[serde(default)]
         roughness: f32,
         /// The distance inside the sphere, in scene units, after which white light has the sphere's colour. `None` for
         /// no absorption.
@@ -30,23 +36,42 @@ pub enum Material {
     /// A light source, which emits the sphere's colour times `strength` on both sides, and reflects nothing.
     Emissive {
         /// The factor that multiplies the colour: 0 to 10⁶.
+        #[serde(default = "one")]
         strength: f32,
     },
+}
+
+const fn of_gloss() -> f32 {
+    0.3
+}
+
+const fn of_metal() -> f32 {
+    0.2
+}
+
+const fn of_glass() -> f32 {
+    1.5
+}
+
+const fn one() -> f32 {
+    1.0
 }
 
 impl Default for Material {
     /// A diffuse surface without a glossy lobe.
     fn default() -> Self {
-        Self::Lambert { specular: 0.0, roughness: 0.3 }
+        Self::Lambert { specular: 0.0, roughness: of_gloss() }
     }
 }
 
 /// A material, and the opacity of the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct SurfaceProperties {
     /// The surface's response to light.
+    #[serde(flatten)]
     pub material: Material,
     /// Opacity of each surface crossing, from 0 (clear) to 1 (opaque). It counts twice for a ray through a sphere.
+    #[serde(default = "one")]
     pub opacity: f32,
 }
 

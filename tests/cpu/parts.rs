@@ -25,8 +25,7 @@ const PARTS: [([u32; 2], [u32; 2]); 5] = [
 /// The settings of a view without noise removal. A studio has outlines.
 fn finished(view: &RandomView) -> RenderSettings {
     let mut settings = RenderSettings {
-        sampling: Sampling { samples: 3, ..view.settings.sampling },
-        is_denoised: true,
+        sampling: Sampling { samples: 3, denoise: true, ..view.settings.sampling },
         ..view.settings.clone()
     };
     if let pinhole::render::Integrator::Studio(studio) = &mut settings.integrator {
@@ -250,14 +249,14 @@ fn means(
 fn batches_give_the_picture_of_all_samples_at_once() {
     for samples in [1, 2, 7, 40] {
         with_lit(FILM, samples, |tree, view, settings| {
-            for is_denoised in [false, true] {
-                let settings = RenderSettings { is_denoised, ..settings.clone() };
+            for denoise in [false, true] {
+                let settings = settings.with_denoise(denoise);
                 let watch = &mut |_: &Progress| Decision::MeasureNoise;
                 let found = cpu::render_watched(tree, view, &settings, LayerSet::ALL, watch);
                 let found = found.unwrap();
                 assert!(found.image == whole(tree, view, &settings, samples), "{samples}");
                 assert_eq!(found.samples, samples);
-                if !is_denoised {
+                if !denoise {
                     let wanted = means(tree, view, &settings, samples);
                     assert!(found.image.color() == wanted, "{samples}");
                 }
@@ -326,7 +325,7 @@ fn every_pixel_has_the_samples_that_the_layer_says() {
             if is_within(progress) { Decision::Finish } else { Decision::GoOn }
         };
         let layers = LayerSet::COLOR.with(Layer::Samples).with(Layer::Variance);
-        let settings = RenderSettings { is_denoised: false, ..settings.clone() };
+        let settings = settings.with_denoise(false);
         let found = cpu::render_watched(tree, view, &settings, layers, watch).unwrap();
         let counts = found.image.samples().unwrap();
         assert_eq!(counts.iter().min(), Some(&found.samples));

@@ -275,12 +275,12 @@ fn other_files_and_other_versions() {
         assert_eq!(run_file::read(other).unwrap_err(), RunFileError::NotRun);
     }
     let bytes = small();
-    for version in ["4", "5", "7"] {
+    for version in ["5", "6", "8"] {
         let other = format!("\"pinhole_run\":\"{version}\"");
         let error =
-            run_file::read(&with_header(&bytes, "\"pinhole_run\":\"6\"", &other)).unwrap_err();
+            run_file::read(&with_header(&bytes, "\"pinhole_run\":\"7\"", &other)).unwrap_err();
         assert_eq!(error, RunFileError::Version(version.to_owned()));
-        let words = "this program reads version 6; record it again with `verify --save`";
+        let words = "this program reads version 7; record it again with `verify --save`";
         assert_eq!(error.to_string(), format!("run file of version {version}; {words}"));
     }
     let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");
@@ -314,7 +314,7 @@ fn hostile_contents_with_a_right_digest() {
             )
         })
         .collect();
-    let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"6\"}},{}}}", arrays.join(","));
+    let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"7\"}},{}}}", arrays.join(","));
     let length = (header.len() as u64).to_le_bytes();
     let error = run_file::read(&[&length, header.as_bytes()].concat()).unwrap_err();
     assert!(matches!(error, RunFileError::Truncated { .. }), "{error}");

@@ -43,7 +43,7 @@ fn what_an_integrator_ignores_is_named() {
     for (settings, what) in [
         (RenderSettings { lights: Light::key_and_fill().to_vec(), ..primary() }, "the lights"),
         (RenderSettings { ground: ground(false), ..primary() }, "the ground"),
-        (RenderSettings { is_denoised: true, ..primary() }, "denoising"),
+        (primary().with_denoise(true), "denoising"),
     ] {
         assert_eq!(
             refused(settings),
@@ -80,7 +80,7 @@ fn what_belongs_together_is_accepted() {
         RenderSettings::default(),
         RenderSettings { is_transparent: true, ..RenderSettings::default() },
         RenderSettings::studio(),
-        RenderSettings { ground: ground(true), is_denoised: true, ..RenderSettings::studio() },
+        RenderSettings { ground: ground(true), ..RenderSettings::studio().with_denoise(true) },
         RenderSettings::path(),
         RenderSettings { sky: visible_sky(), ground: ground(false), ..RenderSettings::path() },
     ];
@@ -100,7 +100,7 @@ fn what_belongs_together_is_accepted() {
 fn every_renderer_checks_first() {
     let (scene, camera) = (one(sphere()), camera());
     let view = View::new(&camera, Film::new(4, 4).unwrap());
-    let wrong = RenderSettings { is_denoised: true, ..RenderSettings::default() };
+    let wrong = RenderSettings::default().with_denoise(true);
     let error = cpu::render(&scene, &view, &wrong, LayerSet::COLOR).unwrap_err();
     assert!(matches!(error, cpu::RenderError::Settings(_)), "{error}");
     assert!(error.to_string().contains("does not use denoising"), "{error}");
@@ -207,8 +207,7 @@ fn what_is_left_by_primary_rays_is_accepted() {
         sky: visible_sky(),
         ground: ground(false),
         background: grey(),
-        is_denoised: true,
-        ..RenderSettings::path()
+        ..RenderSettings::path().with_denoise(true)
     };
     let left = lit.by_primary_rays();
     assert_eq!(left, RenderSettings { background: grey(), ..RenderSettings::default() });

@@ -280,7 +280,7 @@ fn named_passes(_: &'static Headless) {
     ] {
         let (device, profile) = profiled();
         let mut view = lit_scenes::sampled(name, 2);
-        view.settings.is_denoised = true;
+        view.settings.sampling.denoise = true;
         view.picture(&device, LayerSet::COLOR);
 
         let named_passes = calls(&profile, ProfileTrack::Device);

@@ -301,7 +301,7 @@ fn run<T>(future: impl Future<Output = T>) -> (u32, T) {
 fn same_pictures(headless: &'static Headless) {
     let view = View::three_spheres();
     for mut settings in settings() {
-        settings.is_denoised = !settings.integrator.is_primary();
+        settings.sampling.denoise = !settings.integrator.is_primary();
         let expected =
             headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
         let seen = view.seen();

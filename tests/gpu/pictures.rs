@@ -158,8 +158,7 @@ fn parts_of_films() -> Vec<Trial> {
     let lit = lit_scenes::all().map(|(name, view)| {
         Trial::test(format!("film_parts::{name}"), move || {
             let mut settings = RenderSettings {
-                sampling: Sampling { samples: 5, ..view.settings.sampling },
-                is_denoised: true,
+                sampling: Sampling { samples: 5, denoise: true, ..view.settings.sampling },
                 ..view.settings.clone()
             };
             if let Integrator::Studio(studio) = &mut settings.integrator {

@@ -330,13 +330,13 @@ impl Random {
                 samples: 2,
                 seed: self.0.u32(..),
                 filter: filters[self.0.usize(0..3)],
+                denoise: false,
             },
             lights: (0..lights).map(|_| self.light()).collect(),
             sky: self.sky(),
             ground: self.chance(0.4).then(|| self.ground()),
             background: self.color(1.0),
             is_transparent: self.chance(0.3),
-            is_denoised: false,
         }
     }
 }

@@ -259,7 +259,7 @@ impl App {
     fn switch(&mut self, ui: &mut egui::Ui, flag: &str, text: &str) {
         let given = self.state.flags.get(flag);
         let own = flag == "denoise"
-            && self.news.as_ref().is_some_and(|news| news.facts.settings.is_denoised);
+            && self.news.as_ref().is_some_and(|news| news.facts.settings.sampling.denoise);
         let mut is_on = given.map_or(own, |value| value != "false");
         if ui.checkbox(&mut is_on, text).on_hover_text(format!("--{flag}")).changed() {
             self.change(|flags| match (is_on, flag) {

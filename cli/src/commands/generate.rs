@@ -96,7 +96,8 @@ pub(crate) fn run_demo(args: &DemoArgs) -> Result<(), Failure> {
     let input = source.scene_from_text(SCENE)?;
     let opened = device.open()?;
     let image = render(&input, LayerSet::COLOR, &opened)?;
-    outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
+    let text = (!is_there).then(|| (scene_file, SCENE.to_owned()));
+    outputs.write(&image, &input.encoding, None, text.as_ref())?;
     tell(format_args!(
         "wrote {SCENE_FILE} and {PICTURE_FILE} in {:.1} s; change the scene and run \
          `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`",

@@ -1,15 +1,14 @@
 //! `pinhole render`: renders a scene file or a data file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-use anyhow::{Result, anyhow};
 
 use crate::flags::common::Stereo;
 use crate::flags::render::RenderArgs;
 use crate::frames;
 use crate::input::Input;
 use crate::output::picture::Outputs;
+use crate::output::scene;
 use crate::proof::render_certified;
 use crate::render::views::{Shot, views_of};
 use crate::render::{Job, render_joined, render_views};
@@ -18,8 +17,6 @@ use crate::terminal::failure::Failure;
 use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
-use pinhole::internals::text::one_line;
-use pinhole_figure::scene_file::{Contents, write};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]
@@ -32,6 +29,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(wanted) = frames::SeriesRequest::new(args)? {
+        if args.report.save_scene.is_some() {
+            return Err(Failure::usage(
+                "--save-scene: a scene makes one picture; choose one with --frame, or remove it",
+            ));
+        }
         if args.certify {
             return Err(Failure::usage(
                 "--certify: only single pictures are certified; render the frames one by one",
@@ -49,18 +51,25 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     }
     let note = progress::notes(quiet);
     threads::start()?;
-    if args.certify || args.report.print_scene {
-        let flag = if args.certify { "--certify" } else { "--print-scene" };
-        job.source = job.source.without_bricks(flag)?;
+    for (flag, is_given) in [
+        ("--certify", args.certify),
+        ("--print-scene", args.report.print_scene),
+        ("--save-scene", args.report.save_scene.is_some()),
+    ] {
+        if is_given {
+            job.source = job.source.without_bricks(flag)?;
+        }
     }
     if args.report.print_scene {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
-        return Ok(print(&input)?);
+        return Ok(answer(scene::text(&input, None)?.as_bytes())?);
     }
     // The driver is loaded while the file is read, to save time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
+    let scene_path = args.report.save_scene.as_ref();
+    scene_path.map(|path| scene::check(path, &input.files)).transpose()?;
     input.notes.iter().for_each(|text| note(text));
     let (encoding, annotations) = job.finish(&mut input, note)?;
     let outputs = Outputs { annotations, ..job.outputs };
@@ -78,16 +87,19 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         said(quiet, &input, started);
         return verdict;
     }
+    let text = |path: &PathBuf| Ok((path.clone(), scene::text(&input, path.parent())?));
+    let saved = scene_path.map(text).transpose().map_err(Failure::Job)?;
     let shot = Shot { input: &input, views, layers, stop_rule, opened };
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
-        Outputs::write_both(&outputs, &render_views(&shot)?, &encoding, adapter)?;
+        let images = render_views(&shot)?;
+        Outputs::write_both(&outputs, &images, &encoding, adapter, saved.as_ref())?;
         said(quiet, &input, started);
         return Ok(());
     }
     let image = render_joined(&shot)?;
-    outputs.write(&image, &encoding, adapter, None)?;
+    outputs.write(&image, &encoding, adapter, saved.as_ref())?;
     said(quiet, &input, started);
     Ok(())
 }
@@ -97,38 +109,4 @@ fn said(quiet: bool, input: &Input, started: Instant) {
     if !quiet {
         tell(input.report.line(started.elapsed()));
     }
-}
-
-/// Writes the scene file to standard output. `encoding` and `annotations` include the flags about the picture's file
-/// and about annotations.
-pub(crate) fn print(input: &Input) -> Result<()> {
-    let contents = Contents {
-        film: input.film,
-        encoding: input.encoding,
-        annotations: input.annotations.clone(),
-        camera: input.parameters,
-        settings: &input.settings,
-        sky_image: input.sky_image.as_deref().map(named).transpose()?,
-        data: input.data.clone(),
-        spheres: input.own_spheres.clone(),
-    };
-    input.files.iter().try_for_each(|path| named(path).map(drop))?;
-    let title = one_line(&input.report.path);
-    let text = format!(
-        "# The scene that `pinhole render` made of {title}, with every value that it chose.\n\
-         # Paths are relative to the folder in which it was written: keep it there.\n\n{}",
-        write(&contents)
-    );
-    answer(text.as_bytes())
-}
-
-/// Returns a path as text, because a scene file can only name paths that are text.
-fn named(path: &Path) -> Result<String> {
-    let text = path.to_str().ok_or_else(|| {
-        anyhow!(
-            "{}: a scene file cannot name this path, because it is not UTF-8; rename it",
-            path.display()
-        )
-    })?;
-    Ok(text.to_owned())
 }

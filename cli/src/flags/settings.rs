@@ -151,6 +151,7 @@ const HEADINGS: &[(&str, &str)] = &[
     ("stereo", OUTPUT_HEADING),
     ("certify", OUTPUT_HEADING),
     ("print_scene", OUTPUT_HEADING),
+    ("save_scene", OUTPUT_HEADING),
     ("keep_partial", LOOK_HEADING),
     ("quiet", OUTPUT_HEADING),
     ("backend", DEVICE_HEADING),

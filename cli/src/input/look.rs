@@ -196,7 +196,6 @@ impl Source {
         };
         let (film, encoding, annotations) = (file.film, file.encoding, file.annotations.clone());
         let data = self.data(&file, kinds);
-        let own_spheres = file.spheres().collect();
         let Look { camera, eyes, settings, parameters, .. } = look;
         Ok(Input {
             scene: Arc::new(scene),
@@ -213,7 +212,7 @@ impl Source {
             report,
             parameters,
             data,
-            own_spheres,
+            file,
             sky_image,
             bricks: self.bricks.clone(),
             color: color.unwrap_or_else(default_color),

@@ -16,10 +16,9 @@ use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene::sphere::Sphere;
 use pinhole_figure::annotate::AnnotationPlan;
 use pinhole_figure::color_by::ColorKey;
-use pinhole_figure::scene_file::Data;
+use pinhole_figure::scene_file::{Data, SceneFile};
 
 pub(crate) mod contents;
 pub(crate) mod data;
@@ -56,8 +55,8 @@ pub(crate) struct Input {
     pub(crate) parameters: CameraParameters,
     /// The data with its keys and the flags about it; its path is as the program found it.
     pub(crate) data: Option<Data>,
-    /// The spheres of a scene file itself.
-    pub(crate) own_spheres: Vec<Sphere>,
+    /// The settings.
+    pub(crate) file: Arc<SceneFile>,
     pub(crate) sky_image: Option<PathBuf>,
 }
 

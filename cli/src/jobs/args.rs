@@ -52,6 +52,7 @@ pub(crate) enum JobCommand {
     mut_arg("stereo", |arg| arg.hide(true)),
     mut_arg("certify", |arg| arg.hide(true)),
     mut_arg("print_scene", |arg| arg.hide(true)),
+    mut_arg("save_scene", |arg| arg.hide(true)),
     after_help = "The other flags are those of `render`. Each unit of work is one tile of one picture; its INDEX \
     counts from 0, picture by picture and in each the tiles row by row."
 )]

@@ -86,7 +86,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         integrator: input.settings.integrator.name().to_owned(),
         samples: sampling.samples,
         seed: sampling.seed,
-        denoised: input.settings.is_denoised,
+        denoised: input.settings.sampling.denoise,
         overview: stored.as_ref().map(|(stored, _)| stored.clone()),
     };
     let (manifest, text) = manifest.sealed()?;
@@ -118,8 +118,10 @@ fn refuse(args: &SplitArgs) -> Result<(), Failure> {
     if render.certify {
         return Err(Failure::usage("--certify: merged pictures carry no certificate; remove it"));
     }
-    if render.report.print_scene {
-        return Err(Failure::usage("--print-scene belongs to `pinhole render`; remove it"));
+    if render.report.print_scene || render.report.save_scene.is_some() {
+        return Err(Failure::usage(
+            "--print-scene and --save-scene belong to `pinhole render`; remove them",
+        ));
     }
     if render.input.path == Path::new("-") {
         return Err(Failure::usage("-: parts cannot read standard input again; name a file"));

@@ -4,3 +4,4 @@ pub(crate) mod annotations;
 pub(crate) mod files;
 pub(crate) mod picture;
 pub(crate) mod report;
+pub(crate) mod scene;

@@ -121,7 +121,7 @@ impl Outputs {
         image: &Image,
         encoding: &Encoding,
         adapter: Option<&str>,
-        text: Option<(&PathBuf, &str)>,
+        text: Option<&(PathBuf, String)>,
     ) -> Result<()> {
         progress::stage("writing");
         let mut files = Vec::new();
@@ -196,9 +196,13 @@ impl Outputs {
         images: &[Image],
         encoding: &Encoding,
         adapter: Option<&str>,
+        text: Option<&(PathBuf, String)>,
     ) -> Result<()> {
         progress::stage("writing");
         let mut files = Vec::new();
+        if let Some((path, text)) = text {
+            files.push((path, unnamed(path, text.as_bytes())?));
+        }
         for (outputs, image) in outputs.iter().zip(images) {
             files.extend(outputs.files(image, encoding, adapter)?);
         }

@@ -1,5 +1,6 @@
 //! The line that `render` prints about a picture.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -12,6 +13,9 @@ pub(crate) struct ReportArgs {
     /// Write the whole scene file that this command means to standard output, and render nothing
     #[arg(long, conflicts_with_all = ["output", "time", "noise", "keep_partial", "layers", "stereo"])]
     pub(crate) print_scene: bool,
+    /// Write that scene file beside the picture, with paths that are relative to its folder
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["print_scene", "certify"])]
+    pub(crate) save_scene: Option<PathBuf>,
     /// Say nothing but warnings and errors: no line about the picture, no notes, no progress
     #[arg(short, long)]
     pub(crate) quiet: bool,

@@ -24,7 +24,7 @@ use pinhole_figure::read::picture::FileSamples;
 use pinhole_figure::write::png;
 
 /// Arguments of `render` that do not change the samples of the picture, or that name files and devices.
-const NOT_OF_THE_PICTURE: [&str; 15] = [
+const NOT_OF_THE_PICTURE: [&str; 16] = [
     "path",
     "output",
     "certify",
@@ -37,6 +37,7 @@ const NOT_OF_THE_PICTURE: [&str; 15] = [
     "noise",
     "keep_partial",
     "print_scene",
+    "save_scene",
     "quiet",
     "profile",
     "dpi",
@@ -142,7 +143,7 @@ pub(crate) fn judge(
         let image = render::render(input, layers, &OpenDevice::Cpu)?;
         Ok(FilePicture::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
     })?;
-    let reach = if input.settings.is_denoised { denoise::REACH } else { 0 };
+    let reach = if input.settings.sampling.denoise { denoise::REACH } else { 0 };
     let found = written.colors(encoding)?;
     Ok(Judgement::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
 }

@@ -14,7 +14,6 @@ use crate::terminal::progress;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer};
-use pinhole::render::RenderSettings;
 use pinhole::verify::denoised;
 
 /// Means need the number of samples that were taken.
@@ -47,7 +46,7 @@ pub(crate) fn run(
     let arguments = certified::arguments()?;
     certified::check(input, !outputs.annotations.is_empty())?;
     let making = Making { stop_rule, outputs: &outputs, encoding, opened };
-    let JudgedPicture { image, written, judged } = match input.settings.is_denoised {
+    let JudgedPicture { image, written, judged } = match input.settings.sampling.denoise {
         true => making.denoised(input)?,
         false => making.plain(input)?,
     };
@@ -84,11 +83,11 @@ impl Making<'_> {
         let layers = self.outputs.layers(self.encoding).with(COUNTED);
         let noisy = render_part(input, input.film, layers, self.opened)?.swap_remove(0);
         let with_guides = input.settings.layers_for(layers);
-        let without_noise = RenderSettings { is_denoised: true, ..input.settings.unfinished() };
+        let without_noise = input.settings.unfinished().with_denoise(true);
         let quiet = finish(noisy.clone(), &without_noise, with_guides, self.opened)?;
         progress::stage("checking the denoiser");
         let denoiser = denoised::certify(&noisy, &quiet).map_err(anyhow::Error::from)?;
-        let with_lines = RenderSettings { is_denoised: false, ..input.settings.clone() };
+        let with_lines = input.settings.with_denoise(false);
         let image = finish(quiet, &with_lines, layers, self.opened)?;
         let written = self.written(&image)?;
         let means = certified::means_of_light(input, &noisy, GUIDES)?;

@@ -178,7 +178,7 @@ fn printed_scenes_select_and_add_the_same() {
         folder.command("render row.xyz --print-scene --style fast --size 80x20 --box --bonds=1.1");
     let output = command.args(["--select", "q >= 0 and species != \"O\""]).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("select = \"q >= 0 and species != \\\"O\\\"\"\n"), "{text}");
+    assert!(text.contains("select = 'q >= 0 and species != \"O\"'\n"), "{text}");
     assert!(text.contains("box = true\nbonds = 1.1\n"), "{text}");
     std::fs::write(folder.path("printed.toml"), &text).unwrap();
     said(&folder, "printed.toml");

@@ -223,7 +223,7 @@ fn rows_of(strips: &Range<usize>, height: usize) -> Range<usize> {
 /// is that of [`super::render`] with `settings`, to the bit. Steps whose layers the picture lacks are skipped.
 #[must_use]
 pub fn finish(mut image: Image, settings: &RenderSettings, layers: LayerSet) -> Image {
-    if settings.is_denoised {
+    if settings.sampling.denoise {
         image = denoise(&image).unwrap_or(image);
     }
     if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {

@@ -58,7 +58,7 @@ impl Headless {
         settings: &RenderSettings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        if settings.is_denoised {
+        if settings.sampling.denoise {
             let _phase = self.phase("denoise");
             image = self.denoise(&image).await?;
         }

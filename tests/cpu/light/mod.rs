@@ -63,13 +63,12 @@ pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> RenderSettin
     let tracing = PathTracing { max_depth: 64, roulette_from: u32::MAX, light_sampling };
     RenderSettings {
         integrator: Integrator::Path(tracing),
-        sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box },
+        sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box, denoise: false },
         lights: Vec::new(),
         sky: Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: true },
         ground: None,
         background: LinearRgb::BLACK,
         is_transparent: false,
-        is_denoised: false,
     }
 }
 

@@ -128,7 +128,7 @@ fn sums(headless: &'static Headless) {
     let samples: Vec<u32> = (0..SAMPLES).collect();
     for (name, mut view) in lit_scenes::all() {
         view.settings.sampling.samples = SAMPLES;
-        view.settings.is_denoised = false;
+        view.settings.sampling.denoise = false;
         let View { scene, settings, .. } = &view;
         let structures = view.planned(headless, AccelChoice::Auto);
         let buffers = headless.upload(scene, &structures).wait().unwrap();

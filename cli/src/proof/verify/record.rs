@@ -90,7 +90,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     let mut kept = KeptLight { samples, ..KeptLight::default() };
     let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
     let light = is_lit.then(certify).transpose()?;
-    if input.settings.is_denoised {
+    if input.settings.sampling.denoise {
         kept.denoised = Some(render_denoised(&headless, &input, choice)?);
     }
     let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;

@@ -28,7 +28,7 @@ pub use canvas::Canvas;
 pub use font::missing_characters;
 pub use legend::Legend;
 pub use place::{Anchor, Panel, Position, PositionError};
-pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
+pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan, TextPlan};
 pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 
 use canvas::Block;
@@ -146,11 +146,13 @@ impl Annotations {
 }
 
 /// A text at a place of the picture. It may have several lines.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Label {
     /// The text.
     pub text: String,
     /// The position of the text.
+    #[serde(default = "Position::top_left")]
     pub position: Position,
 }
 

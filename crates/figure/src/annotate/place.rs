@@ -20,7 +20,7 @@ const BLACK: [u8; 3] = [0; 3];
 const WHITE: [u8; 3] = [255; 3];
 
 /// Whether a translucent panel lies behind an annotation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Panel {
@@ -185,7 +185,8 @@ impl Anchor {
 }
 
 /// The position of an annotation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(try_from = "PositionValue", into = "PositionValue")]
 pub enum Position {
     /// At a corner, or in the middle of a side.
     Anchor(Anchor),
@@ -197,6 +198,11 @@ pub enum Position {
 impl Position {
     /// The top left corner.
     pub const TOP_LEFT: Self = Self::Anchor(Anchor::TopLeft);
+
+    pub(super) const fn top_left() -> Self {
+        Self::TOP_LEFT
+    }
+
     /// The middle of the right side.
     pub const RIGHT: Self = Self::Anchor(Anchor::Right);
     /// The bottom left corner.
@@ -225,6 +231,37 @@ impl Position {
 pub struct PositionError {
     /// The text as given.
     pub text: String,
+}
+
+/// A position as a file gives it.
+#[derive(serde::Deserialize, serde::Serialize)]
+#[serde(
+    untagged,
+    expecting = "expected a position in quotes such as \"top-left\", or two fractions [x, y]"
+)]
+enum PositionValue {
+    Name(String),
+    At([f32; 2]),
+}
+
+impl TryFrom<PositionValue> for Position {
+    type Error = PositionError;
+
+    fn try_from(value: PositionValue) -> Result<Self, PositionError> {
+        match value {
+            PositionValue::Name(name) => name.parse(),
+            PositionValue::At(fractions) => Self::at(fractions),
+        }
+    }
+}
+
+impl From<Position> for PositionValue {
+    fn from(position: Position) -> Self {
+        match position {
+            Position::Anchor(anchor) => Self::Name(anchor.name().to_owned()),
+            Position::At(fractions) => Self::At(fractions),
+        }
+    }
 }
 
 impl FromStr for Position {

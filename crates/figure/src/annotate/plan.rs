@@ -1,6 +1,7 @@
 //! The annotations that a user wants, before the scene is known.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 use super::{Annotation, Annotations, Label, Legend, Panel, Position, missing_characters};
@@ -9,6 +10,7 @@ use crate::color_by::number::short;
 use pinhole::camera::View;
 use pinhole::camera::film::{Film, YAxis};
 use pinhole::geometry::subject::Subject;
+use pinhole::image::color::LinearRgb;
 
 /// The annotations that a user wants, from a scene file or flags.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,16 +21,25 @@ pub struct AnnotationPlan {
     pub scale_bar: Option<ScaleBarPlan>,
     /// Labels.
     pub labels: Vec<Label>,
-    /// See [`Annotations::text_scale`].
-    pub text_scale: Option<f32>,
-    /// See [`Annotations::color`].
-    pub color: Option<[u8; 3]>,
-    /// See [`Annotations::panel`].
+    /// The look of all text.
+    pub text: TextPlan,
+}
+
+/// The look of text that a user wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TextPlan {
+    /// The size of the text, as a factor of 1/36 of the picture's height: 0.2 to 10.
+    pub scale: Option<f32>,
+    /// The colour of text and lines; by default black or white, whichever can be read.
+    pub color: Option<LinearRgb>,
+    /// Whether a translucent panel lies behind annotations; by default where the picture behind is mixed.
     pub panel: Option<Panel>,
 }
 
 /// A legend that a user wants.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct LegendPlan {
     /// The title; by default the name of the column.
     pub title: Option<String>,
@@ -37,7 +48,8 @@ pub struct LegendPlan {
 }
 
 /// A scale bar that a user wants.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ScaleBarPlan {
     /// The length in scene units; by default a round number that suits the picture.
     pub length: Option<f64>,
@@ -70,9 +82,10 @@ impl AnnotationPlan {
 
     /// Returns the labels and the legend, which do not depend on the camera.
     fn without_camera(&self, key: Option<&ColorKey>) -> Result<Annotations, AnnotationError> {
-        let mut drawn = Annotations { color: self.color, ..Annotations::default() };
-        drawn.text_scale = self.text_scale.unwrap_or(drawn.text_scale);
-        drawn.panel = self.panel.unwrap_or(drawn.panel);
+        let color = self.text.color.map(LinearRgb::to_srgb8);
+        let mut drawn = Annotations { color, ..Annotations::default() };
+        drawn.text_scale = self.text.scale.unwrap_or(drawn.text_scale);
+        drawn.panel = self.text.panel.unwrap_or(drawn.panel);
         drawn.items = self.labels.iter().cloned().map(Annotation::Label).collect();
         if let Some(LegendPlan { title, position }) = &self.legend {
             let mut legend = Legend::new(key.ok_or(AnnotationError::NoKey)?.clone());

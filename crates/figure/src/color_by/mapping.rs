@@ -28,12 +28,18 @@ pub struct Mapping {
 }
 
 /// Radii from a column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct RadiusBy {
-    /// The column; see [`column::column`](pinhole_data::column::column).
+    /// The column, as for [`ColorBy::column`].
     pub column: String,
     /// The factor by which its numbers are multiplied.
+    #[serde(default = "one")]
     pub factor: f64,
+}
+
+const fn one() -> f64 {
+    1.0
 }
 
 /// The properties of spheres from columns; see [`Mapping::apply`].
@@ -247,11 +253,13 @@ impl MappedColumns {
 }
 
 /// Light strengths from a column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct EmissionBy {
-    /// The column; see [`column::column`](pinhole_data::column::column).
+    /// The column, as for [`ColorBy::column`].
     pub column: String,
     /// The factor by which its numbers are multiplied.
+    #[serde(default = "one")]
     pub factor: f64,
 }
 

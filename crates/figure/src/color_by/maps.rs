@@ -80,6 +80,18 @@ pub struct MapError {
     pub nearest: Option<&'static str>,
 }
 
+impl<'de> serde::Deserialize<'de> for MapName {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl serde::Serialize for MapName {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(&format_args!("{}{}", self.name, if self.is_reversed { "_r" } else { "" }))
+    }
+}
+
 impl FromStr for MapName {
     type Err = MapError;
 

@@ -33,6 +33,8 @@ pub use maps::{MapError, MapName};
 pub use pinhole_data::column::ColumnError;
 pub use scale::{Limit, Limits, Scale, ScaleError};
 
+use serde::{Deserialize, Serialize};
+
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Colors;
 use pinhole::scene::sphere_array::SphereArray;
@@ -40,24 +42,48 @@ use pinhole_data::column;
 use pinhole_data::load::{Column, ColumnValues};
 
 /// The choices that turn a column into colours.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct ColorBy {
-    /// The column; see [`column::column`].
+    /// The column: its name, or `index`, `radius`, `x`, `y`, `z` or `|v|`; see `pinhole_data::column`.
     pub column: String,
     /// The colour map or palette. The default is viridis for numbers, and the palette of Okabe and Ito for text and
     /// few different whole numbers.
     pub map: Option<MapName>,
     /// Whether to reverse the map.
+    #[serde(default, rename = "reverse")]
     pub is_reversed: bool,
     /// The numbers for the first and the last colour of the map.
+    #[serde(default, rename = "range")]
     pub limits: Limits,
     /// Whether colours follow the logarithm of the numbers.
+    #[serde(default, rename = "log")]
     pub is_log: bool,
     /// The colour of spheres without a value, in 8-bit sRGB.
+    #[serde(default = "missing", with = "srgb8")]
     pub missing: [u8; 3],
     /// The categories in the order of their colours, whether or not they occur; other values count as missing. `None`
     /// stands for the categories that occur.
+    #[serde(skip)]
     pub categories: Option<Vec<String>>,
+}
+
+const fn missing() -> [u8; 3] {
+    MISSING
+}
+
+/// A colour of 8-bit sRGB, as a file gives it.
+mod srgb8 {
+    use pinhole::image::color::LinearRgb;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[u8; 3], D::Error> {
+        LinearRgb::deserialize(from).map(LinearRgb::to_srgb8)
+    }
+
+    pub(super) fn serialize<S: Serializer>(color: &[u8; 3], to: S) -> Result<S::Ok, S::Error> {
+        LinearRgb::from_srgb8(*color).serialize(to)
+    }
 }
 
 /// The default colour of spheres without a value: a middle grey, in 8-bit sRGB.

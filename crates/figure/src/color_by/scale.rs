@@ -105,7 +105,8 @@ pub(super) fn entry(position: f64, count: usize) -> usize {
 }
 
 /// One end of a range.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(try_from = "LimitValue", into = "LimitValue")]
 pub enum Limit {
     /// The smallest or the largest finite value.
     #[default]
@@ -116,13 +117,60 @@ pub enum Limit {
     Percentile(f64),
 }
 
+/// The end of a range as a file gives it.
+#[derive(serde::Deserialize, serde::Serialize)]
+#[serde(untagged, expecting = "expected a number, or a percentile in quotes such as \"2%\"")]
+enum LimitValue {
+    Number(f64),
+    Text(String),
+}
+
+impl TryFrom<LimitValue> for Limit {
+    type Error = LimitError;
+
+    fn try_from(value: LimitValue) -> Result<Self, LimitError> {
+        match value {
+            LimitValue::Number(number) => Ok(Self::Value(number)),
+            LimitValue::Text(text) => text.parse(),
+        }
+    }
+}
+
+impl From<Limit> for LimitValue {
+    fn from(limit: Limit) -> Self {
+        match limit {
+            Limit::Automatic => Self::Text(String::new()),
+            Limit::Value(value) => Self::Number(value),
+            Limit::Percentile(percent) => Self::Text(format!("{percent:?}%")),
+        }
+    }
+}
+
 /// Both ends of a range.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(try_from = "Vec<Limit>", into = "[Limit; 2]")]
 pub struct Limits {
     /// The low end.
     pub low: Limit,
     /// The high end.
     pub high: Limit,
+}
+
+impl TryFrom<Vec<Limit>> for Limits {
+    type Error = &'static str;
+
+    fn try_from(ends: Vec<Limit>) -> Result<Self, &'static str> {
+        match ends[..] {
+            [low, high] => Ok(Self { low, high }),
+            _ => Err("a range has two ends, such as [0, 1] or [\"2%\", \"98%\"]"),
+        }
+    }
+}
+
+impl From<Limits> for [Limit; 2] {
+    fn from(Limits { low, high }: Limits) -> Self {
+        [low, high]
+    }
 }
 
 /// The error of a text that is not a limit.

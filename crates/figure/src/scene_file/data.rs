@@ -1,16 +1,12 @@
 //! Reads the keys that name a data file, tell how to read it, select its spheres, set their appearance, and add bonds and
 //! the edges of the cell to them.
 
-use std::fmt;
+use serde::{Deserialize, Serialize};
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
-use serde::{Deserialize, de};
-use toml::Spanned;
-
-use super::span::{Keys, Lines, Number, SceneFileError, Span};
+use super::span::KeyError;
 use crate::color_by::Mapping;
 use pinhole::image::color::LinearRgb;
+use pinhole::range::RangeError;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::sphere_array::SphereArray;
@@ -67,13 +63,18 @@ pub struct Element {
     pub surface: SurfaceProperties,
 }
 
-#[derive(Deserialize)]
+/// The table `[elements.NAME]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ElementTable {
-    pub(super) material: Option<Spanned<String>>,
-    pub(super) opacity: Option<Number>,
+    /// Radius before it is multiplied by `radius_scale`: greater than 0.
+    pub(super) radius: Option<f64>,
+    /// Colour of the atoms.
     pub(super) color: Option<LinearRgb>,
-    pub(super) radius: Option<Number>,
+    /// The name of a material.
+    pub(super) material: Option<String>,
+    /// Opacity, from 0 (clear) to 1 (opaque).
+    pub(super) opacity: Option<f64>,
 }
 
 impl Data {
@@ -111,145 +112,83 @@ impl Data {
 }
 
 /// Checks that a number, if it is given, is finite and greater than 0.
-pub(super) fn positive(
-    key: &'static str,
-    value: Option<Number>,
-    lines: &Lines<'_>,
-) -> Result<Option<f64>, SceneFileError> {
-    let keys = Keys { lines, numbers: vec![(key, value)], table: Span::START };
-    keys.within(key, [f64::from_bits(1), f64::MAX], "finite and greater than 0")
+pub(super) fn positive(key: &'static str, value: Option<f64>) -> Result<Option<f64>, RangeError> {
+    let range = "finite and greater than 0";
+    let within =
+        |value| RangeError::unless_within(key, value, [f64::from_bits(1), f64::MAX], range);
+    value.map(within).transpose()
 }
 
+/// The key `box`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(untagged, expecting = "expected true, false, or a table with the key `width`")]
 pub(super) enum BoxValue {
     Is(bool),
     Table(BoxTable),
 }
 
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BoxTable {
+    /// Width of the edges in scene units, greater than 0; by default 1/300 of the cell's diagonal.
+    width: Option<f64>,
+}
+
+/// The key `bonds`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(
+    untagged,
+    expecting = "expected true, false, a factor of covalent radii, or a table with the key `factor` or `length`"
+)]
 pub(super) enum BondsValue {
     Is(bool),
     Factor(f64),
     Table(BondsTable),
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct BoxTable {
-    width: Option<Number>,
-}
-
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BondsTable {
-    factor: Option<Number>,
-    length: Option<Number>,
+    /// Factor of the sum of covalent radii below which two atoms are bonded, greater than 0.
+    factor: Option<f64>,
+    /// Distance in scene units below which any two spheres are bonded, greater than 0.
+    length: Option<f64>,
 }
 
-impl<'de> Deserialize<'de> for BoxValue {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct BoxVisitor;
-
-        impl<'de> Visitor<'de> for BoxVisitor {
-            type Value = BoxValue;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("true, false, or a table with the key `width`")
-            }
-
-            fn visit_bool<E: de::Error>(self, is: bool) -> Result<BoxValue, E> {
-                Ok(BoxValue::Is(is))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<BoxValue, A::Error> {
-                BoxTable::deserialize(MapAccessDeserializer::new(map)).map(BoxValue::Table)
-            }
-        }
-
-        deserializer.deserialize_any(BoxVisitor)
+impl BoxValue {
+    pub(super) fn edges(&self) -> Result<Option<CellEdges>, KeyError> {
+        let width = match self {
+            Self::Is(false) => return Ok(None),
+            Self::Is(true) => None,
+            Self::Table(table) => positive("width", table.width)?,
+        };
+        Ok(Some(width.map_or_else(CellEdges::default, CellEdges::of_width)))
     }
 }
 
-impl<'de> Deserialize<'de> for BondsValue {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct BondsVisitor;
-
-        impl<'de> Visitor<'de> for BondsVisitor {
-            type Value = BondsValue;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(
-                    "true, false, a factor of covalent radii, or a table with the key `factor` or `length`",
-                )
+impl BondsValue {
+    pub(super) fn bonds(&self) -> Result<Option<Bonds>, KeyError> {
+        let length = match self {
+            Self::Is(is) => return Ok(is.then(Bonds::default)),
+            Self::Factor(factor) => {
+                positive("bonds", Some(*factor))?;
+                BondLength::Covalent(*factor)
             }
-
-            fn visit_bool<E: de::Error>(self, is: bool) -> Result<BondsValue, E> {
-                Ok(BondsValue::Is(is))
-            }
-
-            fn visit_f64<E: de::Error>(self, factor: f64) -> Result<BondsValue, E> {
-                Ok(BondsValue::Factor(factor))
-            }
-
-            fn visit_i64<E: de::Error>(self, factor: i64) -> Result<BondsValue, E> {
-                self.visit_f64(factor as f64)
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<BondsValue, A::Error> {
-                BondsTable::deserialize(MapAccessDeserializer::new(map)).map(BondsValue::Table)
-            }
-        }
-
-        deserializer.deserialize_any(BondsVisitor)
-    }
-}
-
-pub(super) fn read_additions(
-    select: Option<Spanned<String>>,
-    cell: Option<Spanned<BoxValue>>,
-    bonds: Option<Spanned<BondsValue>>,
-    lines: &Lines<'_>,
-) -> Result<(Option<Selection>, Additions), SceneFileError> {
-    let select = select.map(|text| {
-        let parsed = text.get_ref().parse::<Selection>();
-        parsed.map_err(|error| lines.span(text.span().start).error(error))
-    });
-    let cell = cell.map(|value| match value.into_inner() {
-        BoxValue::Is(is) => Ok(is.then(CellEdges::default)),
-        BoxValue::Table(BoxTable { width }) => {
-            let width = positive("width", width, lines)?;
-            Ok(Some(width.map_or_else(CellEdges::default, CellEdges::of_width)))
-        }
-    });
-    let bonds = bonds.map(|value| {
-            let span = lines.span(value.span().start);
-            let length = match value.into_inner() {
-                BondsValue::Is(is) => return Ok(is.then(Bonds::default)),
-                BondsValue::Factor(factor) if factor.is_finite() && factor > 0.0 => {
-                    BondLength::Covalent(factor)
-                }
-                BondsValue::Factor(factor) => {
-                    let message = format!("`bonds` is {factor}; it must be finite and greater than 0");
-                    return Err(span.error(message));
-                }
-                BondsValue::Table(BondsTable { factor, length }) => {
-                    match (positive("factor", factor, lines)?, positive("length", length, lines)?) {
-                        (Some(_), Some(_)) => {
-                            return Err(span.error(
-                                "`bonds` has both `factor` and `length`, which exclude each other; remove one",
-                            ));
-                        }
-                        (_, Some(length)) => BondLength::Below(length),
-                        (factor, None) => BondLength::Covalent(factor.unwrap_or(Bonds::FACTOR)),
+            Self::Table(BondsTable { factor, length }) => {
+                match (positive("factor", *factor)?, positive("length", *length)?) {
+                    (Some(_), Some(_)) => {
+                        return Err(
+                            "`bonds` has both `factor` and `length`, which exclude each other; remove one"
+                                .into(),
+                        );
                     }
+                    (_, Some(length)) => BondLength::Below(length),
+                    (factor, None) => BondLength::Covalent(factor.unwrap_or(Bonds::FACTOR)),
                 }
-            };
-            Ok(Some(Bonds::new(length)))
-        });
-    let additions = Additions {
-        cell: cell.transpose()?.flatten(),
-        bonds: bonds.transpose()?.flatten(),
-        keeps_radii: false,
-    };
-    Ok((select.transpose()?, additions))
+            }
+        };
+        Ok(Some(Bonds::new(length)))
+    }
 }
 
 /// Adds spheres to those of data. `kept` has the index in `loaded` of each sphere.

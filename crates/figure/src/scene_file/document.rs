@@ -1,282 +1,364 @@
-//! The tables of a scene file, as serde reads them.
+//! All keys and tables of a scene file, as they are read and written.
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::camera_path::CameraPathTable;
-use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive, read_additions};
-use super::lighting::{GroundTable, IntegratorKind, LightTable, SkyTable, SunTable};
-use super::mapping::{ByColumn, ColorTable, ColumnTable, read_mapping};
-use super::materials::{MaterialTable, Materials};
-use super::span::{
-    Lines, Number, SceneFileError, Span, WithSpan, default_color, range_of, unknown,
-};
+use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive};
+use super::lighting::{DirectionalTable, GroundTable, IntegratorKind, LightTable, SkyTable};
+use super::mapping::{ByColumn, ColumnTable};
+use super::materials::{Materials, over};
+use super::span::{KeyError, SceneFileError, WithSpan, default_color, unknown};
+use crate::annotate::{AnnotationPlan, Annotations, Label, LegendPlan, ScaleBarPlan, TextPlan};
+use crate::color_by::{ColorBy, EmissionBy, Mapping, RadiusBy};
+use crate::settings::layers::Joined;
+use crate::settings::places::Places;
 use pinhole::camera::CameraParameters;
 use pinhole::camera::film::{Film, YAxis};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::{Bits, Encoding, EncodingError};
 use pinhole::image::tone::ToneCurve;
-use pinhole::internals::exact::{self, Table};
+use pinhole::internals::exact::{List, Table};
+use pinhole::range::RangeError;
 use pinhole::render::{PathTracing, Sampling, Shading, Studio};
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene::sphere::Sphere;
+use pinhole_data::added::Additions;
 use pinhole_data::load::FORMATS;
 
 /// All keys and tables at the top level of a scene file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub(super) struct Document {
-    /// Read beforehand, as `integrator`.
-    #[serde(rename = "style")]
-    _style: Option<String>,
-    #[serde(default = "default_film")]
-    pub(super) film: Spanned<Table<FilmTable>>,
-    #[serde(default = "default_camera")]
-    pub(super) camera: Spanned<CameraParameters>,
-    pub(super) camera_path: Option<Table<CameraPathTable>>,
-    #[serde(default)]
-    pub(super) output: Table<OutputTable>,
+    /// The name of a style, whose keys are those that the scene does not give itself.
+    pub(super) style: Option<String>,
+    /// What computes the colour of a pixel: `primary`, `studio` or `path`. By default what other keys need.
+    pub(super) integrator: Option<IntegratorKind>,
+    /// The shading of a picture without light: `headlight` or `flat`.
+    pub(super) shading: Option<Shading>,
+    /// The colour where there is nothing; white by default.
     pub(super) background: Option<LinearRgb>,
-    #[serde(default)]
-    pub(super) shading: Shading,
-    #[serde(rename = "integrator")]
-    _integrator: Option<IntegratorKind>,
-    #[serde(default)]
-    pub(super) studio: Table<Studio>,
-    #[serde(default)]
-    pub(super) path: Table<PathTracing>,
-    #[serde(default)]
-    pub(super) sampling: Table<Sampling>,
-    pub(super) lights: Option<Vec<Spanned<Table<LightTable>>>>,
-    pub(super) sky: Option<Spanned<Table<SkyTable>>>,
-    pub(super) sun: Option<Spanned<Table<SunTable>>>,
-    pub(super) ground: Option<Spanned<Table<GroundTable>>>,
-    #[serde(default)]
-    pub(super) materials: BTreeMap<String, Spanned<Table<MaterialTable>>>,
-    #[serde(default)]
-    pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
-    pub(super) data: Option<Spanned<String>>,
-    pub(super) format: Option<Spanned<String>>,
-    pub(super) frame: Option<Spanned<usize>>,
-    pub(super) topology: Option<Spanned<String>>,
-    pub(super) columns: Option<Spanned<Vec<String>>>,
-    pub(super) radius: Option<Number>,
-    pub(super) radius_scale: Option<Number>,
-    pub(super) color: Option<Spanned<LinearRgb>>,
-    pub(super) material: Option<Spanned<String>>,
-    pub(super) opacity: Option<Number>,
-    #[serde(default)]
-    pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
-    pub(super) elements_by: Option<Spanned<Vec<String>>>,
-    pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
-    pub(super) select: Option<Spanned<String>>,
+    /// Path of a data file, relative to the scene file.
+    pub(super) data: Option<String>,
+    /// Name of the data's format, if the file's extension does not show it.
+    pub(super) format: Option<String>,
+    /// Frame of a trajectory, counted from 0.
+    pub(super) frame: Option<usize>,
+    /// Path of the file that says what the spheres of a trajectory are, relative to the scene file.
+    pub(super) topology: Option<String>,
+    /// Names of the columns of a table without a header.
+    pub(super) columns: Option<Vec<String>>,
+    /// Radius of all spheres in scene units, for data without radii: greater than 0.
+    pub(super) radius: Option<f64>,
+    /// Factor of every radius: greater than 0.
+    pub(super) radius_scale: Option<f64>,
+    /// Colour of all spheres, for data without colours.
+    pub(super) color: Option<LinearRgb>,
+    /// The name of the material of all spheres of the data.
+    pub(super) material: Option<String>,
+    /// Opacity of all spheres of the data, from 0 (clear) to 1 (opaque).
+    pub(super) opacity: Option<f64>,
+    /// Columns whose values name tables `[elements.NAME]`; `species` by default.
+    pub(super) elements_by: Option<Vec<String>>,
+    /// Spheres to leave out: values by the names of their columns.
+    pub(super) leave_out: Option<BTreeMap<String, Vec<String>>>,
+    /// An expression that is true for the spheres to keep.
+    pub(super) select: Option<String>,
+    /// Whether the edges of the periodic cell are drawn, and their width.
     #[serde(rename = "box")]
-    pub(super) cell: Option<Spanned<BoxValue>>,
-    pub(super) bonds: Option<Spanned<BondsValue>>,
-    pub(super) color_by: Option<Spanned<ByColumn<ColorTable>>>,
-    pub(super) radius_by: Option<Spanned<ByColumn<ColumnTable>>>,
-    pub(super) opacity_by: Option<Spanned<ByColumn<ColumnTable>>>,
-    pub(super) emission_by: Option<Spanned<ByColumn<ColumnTable>>>,
-    pub(super) legend: Option<Table<LegendTable>>,
-    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
-    #[serde(default)]
-    pub(super) labels: Vec<Table<LabelTable>>,
-    pub(super) text: Option<Table<TextTable>>,
+    pub(super) cell: Option<BoxValue>,
+    /// Whether bonds are drawn, and between which spheres.
+    pub(super) bonds: Option<BondsValue>,
+    /// The column that gives colours, and how.
+    pub(super) color_by: Option<ByColumn<ColorBy>>,
+    /// The column that gives radii.
+    pub(super) radius_by: Option<ByColumn<RadiusBy>>,
+    /// The column that gives opacities.
+    pub(super) opacity_by: Option<ByColumn<ColumnTable>>,
+    /// The column that gives strengths of light.
+    pub(super) emission_by: Option<ByColumn<EmissionBy>>,
+    /// Size of the picture, and the direction of its y axis.
+    pub(super) film: Table<FilmTable>,
+    /// The camera.
+    pub(super) camera: CameraParameters,
+    /// The path along which the camera moves from picture to picture.
+    pub(super) camera_path: Option<Table<CameraPathTable>>,
+    /// How the picture is written.
+    pub(super) output: Table<OutputTable>,
+    /// A legend of the colours that a column gives.
+    pub(super) legend: Option<Table<LegendPlan>>,
+    /// A scale bar.
+    pub(super) scale_bar: Option<Table<ScaleBarPlan>>,
+    /// Texts over the picture.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) labels: Vec<Table<Label>>,
+    /// The look of all text over the picture.
+    pub(super) text: Option<Table<TextPlan>>,
+    /// The number of samples, their positions, the random seed, and the removal of noise.
+    pub(super) sampling: Option<Table<Sampling>>,
+    /// Settings of the integrator `studio`.
+    pub(super) studio: Option<Table<Studio>>,
+    /// Settings of the integrator `path`.
+    pub(super) path: Option<Table<PathTracing>>,
+    /// Lights; by default a key light and a fill light at the camera, unless there is a sun or a sky.
+    pub(super) lights: Option<Vec<Table<LightTable>>>,
+    /// A light from a direction, as large as the sun.
+    pub(super) sun: Option<Table<DirectionalTable>>,
+    /// Light from all around, for the integrator `path`.
+    pub(super) sky: Option<Table<SkyTable>>,
+    /// A plane below the spheres.
+    pub(super) ground: Option<Table<GroundTable>>,
+    /// Materials by their names.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) materials: Materials,
+    /// The look of atoms, or of other spheres, by what a column says of them.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) elements: BTreeMap<String, Table<ElementTable>>,
+    /// Spheres, which come before those of the data.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
 }
+
+/// The keys that apply to `data`, beside the tables `[elements.NAME]`.
+const OF_DATA: [&str; 18] = [
+    "format",
+    "frame",
+    "topology",
+    "columns",
+    "radius",
+    "radius_scale",
+    "color",
+    "material",
+    "opacity",
+    "elements_by",
+    "leave_out",
+    "color_by",
+    "radius_by",
+    "opacity_by",
+    "emission_by",
+    "select",
+    "box",
+    "bonds",
+];
 
 impl Document {
-    /// Takes the keys that concern data; `None` if there are none.
-    pub(super) fn read_data(
-        &mut self,
-        materials: &Materials,
-        lines: &Lines<'_>,
+    /// The data with the keys that concern it; `None` if there is none.
+    pub(super) fn data(
+        &self,
+        layers: &Joined<'_>,
     ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
-        let Some(file) = self.data.take() else {
-            let orphans = [
-                ("format", range_of(&self.format)),
-                ("frame", range_of(&self.frame)),
-                ("topology", range_of(&self.topology)),
-                ("columns", range_of(&self.columns)),
-                ("radius", range_of(&self.radius)),
-                ("radius_scale", range_of(&self.radius_scale)),
-                ("color", range_of(&self.color)),
-                ("material", range_of(&self.material)),
-                ("opacity", range_of(&self.opacity)),
-                ("elements", self.elements.values().next().map(Spanned::span)),
-                ("elements_by", range_of(&self.elements_by)),
-                ("leave_out", range_of(&self.leave_out)),
-                ("color_by", range_of(&self.color_by)),
-                ("radius_by", range_of(&self.radius_by)),
-                ("opacity_by", range_of(&self.opacity_by)),
-                ("emission_by", range_of(&self.emission_by)),
-                ("select", range_of(&self.select)),
-                ("box", range_of(&self.cell)),
-                ("bonds", range_of(&self.bonds)),
-            ];
-            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
-            return match orphan {
-                Some((key, start)) => {
-                    let span = lines.span(start);
-                    Err(span.error(match span.flag {
-                        Some(flag) => format!(
-                            "{flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}"
-                        ),
-                        None => format!(
-                            "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
-                        ),
-                    }))
-                }
-                None => Ok(None),
-            };
+        let places = &layers.places;
+        let Some(file) = self.data.clone() else {
+            let is_given = |key: &&str| places.keys.has(key);
+            let element = self.elements.keys().next().map(|name| format!("elements.{name}"));
+            let orphan = OF_DATA.into_iter().find(is_given).map(str::to_owned).or(element);
+            return orphan.map_or(Ok(None), |key| {
+                let span = places.span(&key);
+                let name = key.split('.').next().unwrap_or_default();
+                Err(span.error(match span.flag {
+                    Some(flag) => format!(
+                        "{flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}"
+                    ),
+                    None => format!(
+                        "`{name}` applies to `data`, which is missing; add `data` or remove `{name}`"
+                    ),
+                }))
+            });
         };
-        let surface = materials.over(
-            SurfaceProperties::default(),
-            self.material.take(),
-            self.opacity.take(),
-            lines,
-        )?;
-        let elements = std::mem::take(&mut self.elements).into_iter().map(|(name, table)| {
-            let ElementTable { material, opacity, color, radius } = table.into_inner().0;
-            Ok(Element {
-                name,
-                radius: positive("radius", radius, lines)?,
-                color,
-                surface: materials.over(surface, material, opacity, lines)?,
-            })
+        let value = self.read_data(file, places)?;
+        Ok(Some(WithSpan { span: places.span("data"), value }))
+    }
+
+    fn read_data(&self, file: String, places: &Places<'_>) -> Result<Data, SceneFileError> {
+        let top = |error: KeyError| places.refused("", error);
+        let number = |error: RangeError| places.refused("", error);
+        let (material, opacity) = (self.material.as_deref(), self.opacity);
+        let base = SurfaceProperties::default();
+        let surface = over(&self.materials, base, material, opacity).map_err(top)?;
+        let elements = self.elements.iter().map(|(name, Table(table))| {
+            let element = || {
+                let ElementTable { material, opacity, color, radius } = table;
+                let surface = over(&self.materials, surface, material.as_deref(), *opacity)?;
+                let radius = positive("radius", *radius)?;
+                Ok(Element { name: name.clone(), radius, color: *color, surface })
+            };
+            element().map_err(|error: KeyError| places.refused(&format!("elements.{name}"), error))
         });
-        let (select, additions) =
-            read_additions(self.select.take(), self.cell.take(), self.bonds.take(), lines)?;
-        Ok(Some(WithSpan {
-            span: lines.span(file.span().start),
-            value: Data {
-                file: file.into_inner(),
-                format: self.format.take().map(|name| format_name(&name, lines)).transpose()?,
-                frame: self.frame.take().map(Spanned::into_inner),
-                topology: self.topology.take().map(Spanned::into_inner),
-                columns: self.columns.take().map(Spanned::into_inner).unwrap_or_default(),
-                radius: positive("radius", self.radius.take(), lines)?,
-                radius_scale: positive("radius_scale", self.radius_scale.take(), lines)?
-                    .unwrap_or(1.0),
-                color: self.color.take().map(Spanned::into_inner),
-                surface,
-                elements: elements.collect::<Result<_, _>>()?,
-                elements_by: self.elements_by.take().map(Spanned::into_inner).unwrap_or_default(),
-                leave_out: self
-                    .leave_out
-                    .take()
-                    .into_iter()
-                    .flat_map(Spanned::into_inner)
-                    .collect(),
-                select,
-                additions,
-                mapping: read_mapping(
-                    self.color_by.take(),
-                    [self.radius_by.take(), self.opacity_by.take(), self.emission_by.take()],
-                    lines,
-                )?,
+        let select = self
+            .select
+            .as_ref()
+            .map(|text| text.parse().map_err(|error| places.span("select").error(error)));
+        let cell = self.cell.as_ref().map(BoxValue::edges).transpose();
+        let bonds = self.bonds.as_ref().map(BondsValue::bonds).transpose();
+        let within = |table: &'static str| {
+            move |error| match error {
+                // A factor alone stands at the key itself.
+                KeyError::Range(error) if error.parameter == table => places.refused("", error),
+                error => places.refused(table, error),
+            }
+        };
+        let additions = Additions {
+            cell: cell.map_err(within("box"))?.flatten(),
+            bonds: bonds.map_err(within("bonds"))?.flatten(),
+            keeps_radii: false,
+        };
+        let format = self.format.as_ref().map(|name| {
+            let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+            match known.contains(&name.as_str()) {
+                true => Ok(name.clone()),
+                false => Err(places.span("format").error(unknown("format", name, &known))),
+            }
+        });
+        Ok(Data {
+            file,
+            format: format.transpose()?,
+            frame: self.frame,
+            topology: self.topology.clone(),
+            columns: self.columns.clone().unwrap_or_default(),
+            radius: positive("radius", self.radius).map_err(number)?,
+            radius_scale: positive("radius_scale", self.radius_scale)
+                .map_err(number)?
+                .unwrap_or(1.0),
+            color: self.color,
+            surface,
+            elements: elements.collect::<Result<_, _>>()?,
+            elements_by: self.elements_by.clone().unwrap_or_default(),
+            leave_out: self.leave_out.clone().into_iter().flatten().collect(),
+            select: select.transpose()?,
+            additions,
+            mapping: Mapping {
+                color: self.color_by.as_ref().map(|by| by.0.clone()),
+                radius: self.radius_by.as_ref().map(|by| by.0.clone()),
+                opacity: self.opacity_by.as_ref().map(|by| by.0.column.clone()),
+                emission: self.emission_by.as_ref().map(|by| by.0.clone()),
             },
-        }))
+        })
     }
-}
 
-fn format_name(name: &Spanned<String>, lines: &Lines<'_>) -> Result<String, SceneFileError> {
-    let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-    match known.contains(&name.get_ref().as_str()) {
-        true => Ok(name.get_ref().clone()),
-        false => {
-            let span = lines.span(name.span().start);
-            Err(span.error(unknown("format", name.get_ref(), &known)))
+    /// The spheres of the file itself.
+    pub(super) fn own_spheres(
+        &self,
+        places: &Places<'_>,
+    ) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
+        let sphere = |(index, table): (usize, &Spanned<Table<SphereTable>>)| {
+            let Table(SphereTable { center, radius, color, material, opacity }) = table.get_ref();
+            let base = SurfaceProperties::default();
+            let surface = over(&self.materials, base, material.as_deref(), *opacity)
+                .map_err(|error| places.refused(&format!("spheres.{index}"), error))?;
+            let mut value = Sphere::new(center.0, *radius, *color);
+            value.surface = surface;
+            Ok(WithSpan { value, span: places.lines.span(table.span().start) })
+        };
+        self.spheres.iter().enumerate().map(sphere).collect()
+    }
+
+    /// What is drawn over the picture.
+    pub(super) fn annotations(
+        &self,
+        places: &Places<'_>,
+    ) -> Result<AnnotationPlan, SceneFileError> {
+        let text = self.text.map(|Table(text)| text).unwrap_or_default();
+        if let Some(scale) = text.scale {
+            let range = "from 0.2 to 10";
+            RangeError::unless_within("scale", scale.into(), Annotations::TEXT_SCALES, range)
+                .map_err(|error| places.refused("text", error))?;
         }
+        Ok(AnnotationPlan {
+            legend: self.legend.as_ref().map(|Table(legend)| legend.clone()),
+            scale_bar: self.scale_bar.as_ref().map(|Table(bar)| bar.clone()),
+            labels: self.labels.iter().map(|Table(label)| label.clone()).collect(),
+            text,
+        })
     }
 }
 
-fn default_film() -> Spanned<Table<FilmTable>> {
-    Spanned::new(0..0, Table::default())
-}
-
-fn default_camera() -> Spanned<CameraParameters> {
-    Spanned::new(0..0, CameraParameters::default())
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+/// The table `[film]`.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub(super) struct FilmTable {
+    /// Width in pixels, from 1 to 8388608.
     width: u32,
+    /// Height in pixels, from 1 to 8388608.
     height: u32,
+    /// The direction of y: `up` or `down`.
     y: YAxis,
 }
 
 impl Default for FilmTable {
     fn default() -> Self {
-        let film = Film::default();
-        Self { width: film.width(), height: film.height(), y: film.y_axis() }
+        Self::of(&Film::default())
     }
 }
 
 impl FilmTable {
-    pub(super) fn film(table: Spanned<Table<Self>>, span: Span) -> Result<Film, SceneFileError> {
-        let Self { width, height, y } = table.into_inner().0;
-        let film = Film::new(width, height).map_err(|error| span.error(error))?;
-        Ok(film.with_y_axis(y))
+    pub(super) fn of(film: &Film) -> Self {
+        Self { width: film.width(), height: film.height(), y: film.y_axis() }
+    }
+
+    pub(super) fn film(self, places: &Places<'_>) -> Result<Film, SceneFileError> {
+        let film = Film::new(self.width, self.height);
+        let film = film.map_err(|error| places.span("film.width").error(error))?;
+        Ok(film.with_y_axis(self.y))
     }
 }
 
-#[derive(Deserialize)]
+/// A table of the list `spheres`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SphereTable {
-    #[serde(deserialize_with = "exact::array")]
-    center: [f64; 3],
+    /// The centre in scene units.
+    center: List<3>,
+    /// The radius in scene units, greater than 0.
     radius: f64,
+    /// The colour; a light grey by default.
     #[serde(default = "default_color")]
     color: LinearRgb,
-    material: Option<Spanned<String>>,
-    opacity: Option<Number>,
+    /// The name of a material.
+    material: Option<String>,
+    /// Opacity, from 0 (clear) to 1 (opaque).
+    opacity: Option<f64>,
 }
 
-impl SphereTable {
-    pub(super) fn sphere(
-        table: Spanned<Table<Self>>,
-        materials: &Materials,
-        lines: &Lines<'_>,
-    ) -> Result<WithSpan<Sphere>, SceneFileError> {
-        let span = lines.span(table.span().start);
-        let Self { center, radius, color, material, opacity } = table.into_inner().0;
-        let mut sphere = Sphere::new(center, radius, color);
-        sphere.surface = materials.over(SurfaceProperties::default(), material, opacity, lines)?;
-        Ok(WithSpan { value: sphere, span })
-    }
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+/// The table `[output]`.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub(super) struct OutputTable {
-    exposure: Option<Spanned<f32>>,
+    /// Stops by which the picture is made brighter, from -32 to 32.
+    exposure: f32,
+    /// The tone curve: `none`, `filmic` or `agx`.
     tone: ToneCurve,
+    /// Whether the picture is transparent where there is nothing.
     transparent: bool,
-    bits: Option<Spanned<u32>>,
-    dpi: Option<Spanned<f32>>,
+    /// Bits of each sample of a PNG: 8 or 16.
+    bits: u32,
+    /// Pixels per inch at which a PNG is printed, from 1 to 100000.
+    dpi: Option<f32>,
+}
+
+impl Default for OutputTable {
+    fn default() -> Self {
+        Self::of(&Encoding::default())
+    }
 }
 
 impl OutputTable {
-    pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
-        let span = |start| move |error: EncodingError| lines.span(start).error(error);
-        let mut encoding = Encoding::default();
+    pub(super) fn of(encoding: &Encoding) -> Self {
+        Self {
+            exposure: encoding.exposure(),
+            tone: encoding.tone,
+            transparent: encoding.transparent,
+            bits: encoding.bits.count(),
+            dpi: encoding.dots_per_inch(),
+        }
+    }
+
+    pub(super) fn encoding(self, places: &Places<'_>) -> Result<Encoding, SceneFileError> {
+        let refused = |error: EncodingError| places.refused("output", error.to_string());
+        let mut encoding = Encoding::default().with_exposure(self.exposure).map_err(refused)?;
         (encoding.tone, encoding.transparent) = (self.tone, self.transparent);
-        if let Some(exposure) = self.exposure {
-            let start = exposure.span().start;
-            encoding = encoding.with_exposure(exposure.into_inner()).map_err(span(start))?;
-        }
-        if let Some(bits) = self.bits {
-            let start = bits.span().start;
-            encoding.bits = Bits::new(bits.into_inner()).map_err(span(start))?;
-        }
-        if let Some(dpi) = self.dpi {
-            let start = dpi.span().start;
-            encoding = encoding.with_dots_per_inch(Some(dpi.into_inner())).map_err(span(start))?;
-        }
-        Ok(encoding)
+        encoding.bits = Bits::new(self.bits).map_err(refused)?;
+        encoding.with_dots_per_inch(self.dpi).map_err(refused)
     }
 }

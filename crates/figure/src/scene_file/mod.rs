@@ -3,7 +3,6 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
-mod annotations;
 mod camera_path;
 mod data;
 mod data_spheres;
@@ -11,31 +10,30 @@ mod document;
 mod lighting;
 mod mapping;
 mod materials;
+mod settled;
 pub(crate) mod span;
-mod write;
 
 pub use camera_path::parse_camera_path;
 pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
+pub use settled::Settled;
 pub use span::{DEFAULT_COLOR, SceneFileError};
-pub use write::{Contents, write};
 
 use crate::annotate::AnnotationPlan;
 use crate::settings::flags::{FLAGS, Group};
 use crate::settings::layers::{Joined, Sources};
 use crate::style::{Style, fit};
-use annotations::read_annotations;
-use document::{Document, FilmTable, SphereTable};
-use lighting::{AskedIntegrator, LightingTables, SceneLighting};
-use materials::Materials;
+use document::Document;
+use lighting::{AskedIntegrator, SceneLighting};
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
+use pinhole::internals::exact::Table;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Sky, SkyLight};
-use pinhole::render::{Integrator, RenderSettings, SettingsError, Shading};
+use pinhole::render::{Integrator, RenderSettings, Sampling, SettingsError};
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::{Colors, Scene, SceneError};
@@ -52,15 +50,17 @@ pub struct SceneFile {
     pub annotations: AnnotationPlan,
     /// What is seen where there is nothing.
     pub background: LinearRgb,
+    /// All keys and tables.
+    document: Document,
     style: Option<Style>,
-    /// Shading of pictures by primary rays.
-    shading: Shading,
     lighting: SceneLighting,
     data: Option<WithSpan<Data>>,
     camera: WithSpan<CameraParameters>,
     camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
     asked: AskedIntegrator,
+    /// The positions of the ground and of the image of the sky.
+    spans: [Span; 2],
     flags: Vec<(String, &'static str)>,
     kept: Vec<String>,
 }
@@ -81,52 +81,34 @@ impl SceneFile {
     pub fn read(sources: &Sources<'_>) -> Result<Self, SceneFileError> {
         let mut layers = Joined::read(sources)?;
         let depth_cue = layers.take("studio.depth_cue")?;
-        let denoise = layers.take("sampling.denoise")?.unwrap_or(false);
-        let mut document: Document = layers.document()?;
-        let lines = &layers.lines;
-        let materials = Materials::new(std::mem::take(&mut document.materials), lines)?;
+        let document: Document = layers.document()?;
+        let places = &layers.places;
+        materials::check(&document.materials, places)?;
+        let data = document.data(&layers)?;
+        let spheres = document.own_spheres(places)?;
         let has_materials = document.material.is_some()
             || document.opacity.is_some()
             || document.opacity_by.is_some()
-            || document.emission_by.is_some();
-        let data = document.read_data(&materials, lines)?;
-        let spheres = document.spheres.into_iter();
-        let spheres: Vec<_> = spheres
-            .map(|sphere| SphereTable::sphere(sphere, &materials, lines))
-            .collect::<Result<_, _>>()?;
-        let has_materials = has_materials || has_surface(&spheres, data.as_ref());
-        let lighting = LightingTables {
-            studio: document.studio.0,
-            depth_cue,
-            path: document.path.0,
-            sampling: document.sampling.0,
-            denoise,
-            lights: document.lights,
-            sky: document.sky,
-            sun: document.sun,
-            ground: document.ground,
-        };
+            || document.emission_by.is_some()
+            || has_surface(&spheres, data.as_ref());
+        let path = document.camera_path.as_ref();
+        let path = path.map(|Table(path)| path.path("camera_path.", places));
         Ok(Self {
-            film: FilmTable::film(document.film, layers.span("film.width"))?,
-            style: layers.style,
+            film: document.film.0.film(places)?,
+            encoding: document.output.0.encoding(places)?,
+            annotations: document.annotations(places)?,
             background: document.background.unwrap_or(LinearRgb::WHITE),
-            shading: document.shading,
-            encoding: document.output.0.encoding(lines)?,
-            annotations: read_annotations(
-                document.legend,
-                document.scale_bar,
-                document.labels,
-                document.text,
-                lines,
-            )?,
+            style: layers.style,
             asked: AskedIntegrator::read(&layers, has_materials)?,
-            lighting: lighting.read(&layers)?,
+            lighting: SceneLighting::read(&document, depth_cue, &layers)?,
             data,
-            camera: lines.spanned(document.camera),
-            camera_path: document.camera_path.map(|table| table.0.path(lines)).transpose()?,
+            camera: WithSpan { value: document.camera, span: places.span("camera") },
+            camera_path: path.transpose()?,
             spheres,
+            spans: ["ground", "sky.image"].map(|key| places.span(key)),
             flags: layers.flags(),
             kept: layers.kept,
+            document,
         })
     }
 
@@ -297,7 +279,7 @@ impl SceneFile {
     /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
     #[must_use]
     pub fn sky_image(&self) -> Option<&str> {
-        self.lighting.sky.as_ref()?.image()
+        self.document.sky.as_ref()?.0.image()
     }
 
     /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
@@ -320,7 +302,7 @@ impl SceneFile {
         let has_smooth_edges = self.asked.check_flags(kind)?;
         let integrator = match kind {
             IntegratorKind::Primary => {
-                let integrator = Integrator::Primary(self.shading);
+                let integrator = Integrator::Primary(self.document.shading.unwrap_or_default());
                 let settings =
                     RenderSettings { integrator, background, ..RenderSettings::default() };
                 return Ok(if has_smooth_edges { self.smooth(&settings) } else { settings });
@@ -328,24 +310,23 @@ impl SceneFile {
             IntegratorKind::Studio => {
                 Integrator::Studio(says.studio.studio(scene, camera, background)?)
             }
-            IntegratorKind::Path => Integrator::Path(says.path),
+            IntegratorKind::Path => Integrator::Path(self.document.path.unwrap_or_default().0),
         };
         // Only path tracing is lit by a sky and needs its image.
-        let sky = match &says.sky {
+        let sky = match &self.document.sky {
             _ if kind == IntegratorKind::Studio => defaults.sky,
-            Some(sky) => sky.sky(image)?,
+            Some(Table(sky)) => sky.sky(image).map_err(|error| self.spans[1].error(error))?,
             None if says.lights.is_none() || !says.given.light => defaults.sky,
             None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
         };
         let mut settings = RenderSettings {
             integrator,
-            sampling: says.sampling,
+            sampling: self.sampling(),
             lights: says.lights.clone().unwrap_or(defaults.lights),
             sky,
-            ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
+            ground: self.document.ground.as_ref().map(|Table(ground)| ground.ground(scene)),
             background,
             is_transparent: false,
-            is_denoised: says.denoise,
         };
         self.check_colors()?;
         if let Some(style) = self.style {
@@ -357,12 +338,15 @@ impl SceneFile {
     /// A picture without light, with the samples and the lines that flags ask for.
     fn smooth(&self, settings: &RenderSettings) -> RenderSettings {
         let mut smooth = settings.with_smooth_edges();
-        smooth.sampling = self.lighting.sampling;
-        smooth.is_denoised = self.lighting.denoise;
+        smooth.sampling = self.sampling();
         if let Integrator::Studio(studio) = &mut smooth.integrator {
             studio.outline = self.lighting.studio.outline();
         }
         smooth
+    }
+
+    fn sampling(&self) -> Sampling {
+        self.document.sampling.unwrap_or_default().0
     }
 
     /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
@@ -387,7 +371,7 @@ impl SceneFile {
     /// Returns the position in the file that an error is about. All tables and the spheres of this file have been
     /// checked before, so only a few errors are left.
     fn span_of(&self, error: &SettingsError) -> Span {
-        let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
+        let ground = || Some(self.spans[0]);
         let data = || self.data.as_ref().map(|data| data.span);
         match error {
             SettingsError::Ground | SettingsError::Catcher => ground(),

@@ -2,14 +2,9 @@
 //! occur in several tables: colours and vectors.
 
 use std::fmt;
-use std::ops::Range;
-
-use serde::{Deserialize, de};
-use toml::Spanned;
 
 use pinhole::camera::CameraKind;
 use pinhole::image::color::LinearRgb;
-use pinhole::internals::exact;
 use pinhole::internals::text::{one_line, shortened};
 use pinhole::range::RangeError;
 use pinhole::render::{BRIGHTEST, SettingsError};
@@ -88,13 +83,6 @@ struct Text<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of one text.
-    pub(super) fn of(text: &'a str) -> Self {
-        let mut lines = Self::default();
-        lines.add(text, None);
-        lines
-    }
-
     /// Adds a text, and returns the offset of its first byte.
     pub(crate) fn add(&mut self, text: &'a str, flag: Option<&'static str>) -> usize {
         let start = self.texts.last().map_or(0, |last| last.start + last.text.len() + 1);
@@ -116,79 +104,39 @@ impl<'a> Lines<'a> {
         let before = text.get(starts[line - 1]..byte).unwrap_or_default();
         Span { line, column: before.chars().count() + 1, flag: *flag }
     }
-
-    pub(super) fn spanned<T>(&self, value: Spanned<T>) -> WithSpan<T> {
-        WithSpan { span: self.span(value.span().start), value: value.into_inner() }
-    }
 }
 
-/// A number and its position in bytes.
-pub(super) type Number = Spanned<f64>;
-
-/// The numbers of a table by their keys, to find the position of a number that is out of range.
-pub(super) struct Keys<'a> {
-    pub(super) lines: &'a Lines<'a>,
-    pub(super) numbers: Vec<(&'static str, Option<Spanned<f64>>)>,
-    pub(super) table: Span,
+/// An error about a key of a table, whose message begins with the key in backticks if it is about one key.
+pub(crate) enum KeyError {
+    Range(RangeError),
+    Text(String),
 }
 
-impl Keys<'_> {
-    /// Returns the number of a key, if it is given, and checks that it lies within the bounds.
-    pub(super) fn within(
-        &self,
-        key: &'static str,
-        bounds: [f64; 2],
-        range: &'static str,
-    ) -> Result<Option<f64>, SceneFileError> {
-        let Some(number) = self.number(key) else {
-            return Ok(None);
-        };
-        let value = RangeError::unless_within(key, *number.get_ref(), bounds, range);
-        value.map(Some).map_err(|error| self.refused(&error))
-    }
-
-    fn number(&self, key: &str) -> Option<&Number> {
-        self.numbers.iter().find(|(name, _)| *name == key)?.1.as_ref()
-    }
-
-    /// Returns a range error at the position of its number, with the number as it is written in the file.
-    pub(super) fn refused(&self, error: &RangeError) -> SceneFileError {
-        match self.number(error.parameter) {
-            Some(number) => {
-                let span = self.lines.span(number.span().start);
-                span.refused(&RangeError { value: *number.get_ref(), ..error.clone() })
-            }
-            None => self.table.error(error),
+impl fmt::Display for KeyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Range(error) => error.fmt(f),
+            Self::Text(message) => f.write_str(message),
         }
     }
 }
 
-/// The name of a kind in scene files, each of which is one word.
-pub(super) fn name_of(kind: &impl fmt::Debug) -> String {
-    format!("{kind:?}").to_lowercase()
-}
-
-/// Refuses keys that do not apply to the kind of their table. Each key has its position, if it is given, and whether it
-/// applies.
-pub(super) fn refuse_foreign(
-    lines: &Lines<'_>,
-    kind: &str,
-    keys: &[(&str, Option<Range<usize>>, bool)],
-) -> Result<(), SceneFileError> {
-    let foreign = keys.iter().find_map(|(key, span, applies)| {
-        span.as_ref().filter(|_| !applies).map(|span| (key, span.start))
-    });
-    match foreign {
-        Some((key, start)) => Err(lines
-            .span(start)
-            .error(format!("`{key}` does not apply to the kind `{kind}`; remove it"))),
-        None => Ok(()),
+impl From<RangeError> for KeyError {
+    fn from(error: RangeError) -> Self {
+        Self::Range(error)
     }
 }
 
-/// Returns the position of a value in bytes, if it is given.
-pub(super) fn range_of<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
-    value.as_ref().map(Spanned::span)
+impl From<String> for KeyError {
+    fn from(message: String) -> Self {
+        Self::Text(message)
+    }
+}
+
+impl From<&str> for KeyError {
+    fn from(message: &str) -> Self {
+        Self::Text(message.to_owned())
+    }
 }
 
 /// Colour of spheres without a colour, in 8-bit sRGB: a light grey.
@@ -198,25 +146,17 @@ pub(super) fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
 }
 
-#[derive(Clone, Copy)]
-pub(super) struct Vector(pub(super) [f64; 3]);
-
-impl<'de> Deserialize<'de> for Vector {
-    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        exact::array(deserializer).map(Self)
-    }
-}
-
 /// Multiplies a colour by a number that was checked. The result is light that `what` emits, and may be too bright.
-pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, SettingsError> {
+pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, String> {
     let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
-    let too_bright = || SettingsError::TooBright { what: what.to_owned(), rgb };
+    let too_bright = || SettingsError::TooBright { what: what.to_owned(), rgb }.to_string();
     let is_bearable = rgb.iter().all(|c| *c <= BRIGHTEST);
     LinearRgb::new(rgb).ok().filter(|_| is_bearable).ok_or_else(too_bright)
 }
 
-/// Rewrites a message of serde or toml. A message about an unknown key or name also gets a suggestion.
-pub(crate) fn explain(message: &str) -> String {
+/// Rewrites a message of serde or toml. A message about an unknown key or name also gets a suggestion. `kind` is that of
+/// the table, if it has one.
+pub(crate) fn explain(message: &str, kind: Option<&str>) -> String {
     let (what, rest) = match message.split_once(" `") {
         Some(("unknown field", rest)) => ("key", rest),
         Some(("unknown variant", rest)) => ("name", rest),
@@ -236,19 +176,28 @@ pub(crate) fn explain(message: &str) -> String {
     let mut quoted = rest.split('`').step_by(2);
     let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
-    unknown(what, name, &known)
+    match (kind, nearest(name, &known)) {
+        (Some(kind), None) if what == "key" => {
+            format!("`{}` does not apply to the kind `{kind}`; remove it", shortened(name))
+        }
+        _ => unknown(what, name, &known),
+    }
 }
 
 /// Returns the message for a name that is not one of the known names.
 pub(crate) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     let unknown = &shortened(name);
-    let nearest = known.iter().copied().max_by(|a, b| {
-        strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
-    });
-    match nearest.filter(|name| strsim::jaro_winkler(name, unknown) > 0.75) {
+    match nearest(unknown, known) {
         Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
         None => format!("unknown {what} `{unknown}`; valid here: {}", known.join(", ")),
     }
+}
+
+/// The known name that is spelled like this one.
+fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let likeness = |known: &str| strsim::jaro_winkler(known, name);
+    let nearest = known.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    nearest.filter(|known| likeness(known) > 0.75)
 }
 
 /// Replaces Rust's names of types, and serde's term for a key, by plain words.
@@ -263,7 +212,7 @@ fn in_plain_words(message: &str) -> String {
     ] {
         text = text.replace(rust, plain);
     }
-    text
+    if text.starts_with("missing key") { text + "; add it" } else { text }
 }
 
 /// Lists the tables of all cameras: `[camera.pinhole]` or …

@@ -1,16 +1,15 @@
 //! Joins the layers of settings: a style, a scene file, and flags. Each layer is TOML text. A value of a later layer takes
 //! the place of the same key in an earlier one, and keeps the position at which it was said, for errors.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-use pinhole::range::RangeError;
 use pinhole_data::css;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
-use crate::scene_file::span::{Lines, SceneFileError, Span, explain, unknown};
+use super::places::{Key, Keys, Places, Scalar};
+use crate::scene_file::span::{Lines, SceneFileError, explain, unknown};
 use crate::style::Style;
 
 /// Settings that a flag gives, or another place that is not a file.
@@ -35,34 +34,15 @@ pub struct Sources<'a> {
 
 /// All layers, joined.
 pub(crate) struct Joined<'a> {
-    pub(crate) lines: Lines<'a>,
+    /// All keys.
+    pub(crate) places: Places<'a>,
     pub(crate) style: Option<Style>,
     /// The keys that a style which a flag names does not decide, because the file gives other values.
     pub(crate) kept: Vec<String>,
     pub(crate) in_file: Keys,
     pub(crate) in_flags: Keys,
     pub(crate) in_style: Keys,
-    /// All keys.
-    keys: Keys,
     table: DeTable<'a>,
-}
-
-/// The keys of a layer, such as `studio.outline` and `studio.outline.width`. Tables in lists are left out.
-#[derive(Debug, Default)]
-pub(crate) struct Keys(BTreeMap<String, Key>);
-
-#[derive(Clone, Debug, PartialEq)]
-struct Key {
-    start: usize,
-    value: Scalar,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Scalar {
-    Text(String),
-    Number(f64),
-    Boolean(bool),
-    Other,
 }
 
 /// Keys whose value in a later layer takes the place of the whole value in an earlier one, because the parts of two such
@@ -91,7 +71,7 @@ impl<'a> Joined<'a> {
             join(into, parse(&layer.text, Some(layer.flag), &mut lines)?);
         }
         let (in_file, mut in_flags) = (Keys::of(&file), Keys::of(&flags));
-        in_flags.add(&sets, "");
+        in_flags.add(&sets);
         let named = |keys: &Keys| keys.get("style").map(|name| style_of(name, &lines)).transpose();
         let (by_flag, by_file) = (named(&in_flags)?, named(&in_file)?);
         let style = by_flag.or(by_file).or(sources.style);
@@ -112,8 +92,9 @@ impl<'a> Joined<'a> {
         replace_whole(&mut table, &own);
         join(&mut table, own);
         join(&mut table, sets);
-        let keys = Keys::of(&table);
-        Ok(Self { lines, style, kept, in_file, in_flags, in_style, keys, table })
+        let keys = Keys::with_lists(&table);
+        let places = Places { lines, keys };
+        Ok(Self { places, style, kept, in_file, in_flags, in_style, table })
     }
 
     /// Whether the file or a flag gives a key.
@@ -123,29 +104,10 @@ impl<'a> Joined<'a> {
 
     /// The flags, by the keys that they give.
     pub(crate) fn flags(&self) -> Vec<(String, &'static str)> {
-        let keys = self.in_flags.0.iter();
-        let flag =
-            |(path, key): (&String, &Key)| Some((path.clone(), self.lines.span(key.start).flag?));
-        keys.filter_map(flag).collect()
-    }
-
-    /// The position of a key, or of the innermost table around it.
-    pub(crate) fn span(&self, key: &str) -> Span {
-        match (self.keys.get(key), key.rsplit_once('.')) {
-            (Some(key), _) => self.lines.span(key.start),
-            (None, Some((table, _))) => self.span(table),
-            (None, None) => Span::START,
-        }
-    }
-
-    /// An error about a number in a table, at its position and with the number as it was written.
-    pub(crate) fn refused(&self, table: &str, error: &RangeError) -> SceneFileError {
-        let path = format!("{table}.{}", error.parameter);
-        let value = match self.keys.get(&path).map(|key| &key.value) {
-            Some(Scalar::Number(value)) => *value,
-            _ => error.value,
+        let flag = |(path, key): (&String, &Key)| {
+            Some((path.clone(), self.places.lines.span(key.start).flag?))
         };
-        self.span(&path).refused(&RangeError { value, ..error.clone() })
+        self.in_flags.iter().filter_map(flag).collect()
     }
 
     /// Takes a value out of the table that serde reads.
@@ -164,12 +126,7 @@ impl<'a> Joined<'a> {
     }
 
     fn explained(&self, error: &toml::de::Error) -> SceneFileError {
-        let span = self.lines.span(error.span().map_or(0, |span| span.start));
-        // The key that is taken out beforehand is valid, too.
-        let filter = "`samples`, `seed`, `filter`";
-        let message = error.message().replace(filter, &format!("{filter}, `denoise`"));
-        let in_flags = span.flag.and_then(|flag| self.in_flag(flag, &message));
-        span.error(in_flags.unwrap_or_else(|| explain(&message)))
+        self.places.explained(error, |flag, message| self.in_flag(flag, message))
     }
 
     /// The message of serde in the words of flags; `None` if it is as good in those of keys.
@@ -183,79 +140,13 @@ impl<'a> Joined<'a> {
                 "{flag} says how numbers become colors, but no column is named; add --color-by COLUMN"
             )),
             ("unknown field ", _) if flag != "--set" => {
-                let mut kinds = self.keys.0.keys().filter_map(|key| key.strip_prefix("camera."));
+                let keys = self.places.keys.iter();
+                let mut kinds = keys.filter_map(|(key, _)| key.strip_prefix("camera."));
                 let kind = kinds.next()?.split('.').next()?;
                 Some(format!("{flag} does not apply to the {kind} camera; remove it"))
             }
             _ => None,
         }
-    }
-}
-
-impl Keys {
-    fn of(table: &DeTable<'_>) -> Self {
-        let mut keys = Self::default();
-        keys.add(table, "");
-        keys
-    }
-
-    fn add(&mut self, table: &DeTable<'_>, path: &str) {
-        for (name, value) in table {
-            let path = format!("{path}{}", name.get_ref());
-            let scalar = match value.get_ref() {
-                DeValue::String(text) => Scalar::Text(text.to_string()),
-                DeValue::Integer(number) => {
-                    number.as_str().parse().map_or(Scalar::Other, Scalar::Number)
-                }
-                DeValue::Float(number) => {
-                    number.as_str().parse().map_or(Scalar::Other, Scalar::Number)
-                }
-                DeValue::Boolean(is) => Scalar::Boolean(*is),
-                DeValue::Table(inner) => {
-                    self.add(inner, &format!("{path}."));
-                    Scalar::Other
-                }
-                _ => Scalar::Other,
-            };
-            self.0.insert(path, Key { start: value.span().start, value: scalar });
-        }
-    }
-
-    fn get(&self, key: &str) -> Option<&Key> {
-        self.0.get(key)
-    }
-
-    pub(crate) fn has(&self, key: &str) -> bool {
-        self.0.contains_key(key)
-    }
-
-    /// The position of a key in bytes.
-    pub(crate) fn start(&self, key: &str) -> Option<usize> {
-        self.get(key).map(|key| key.start)
-    }
-
-    /// The text of a key, and its position.
-    pub(crate) fn text(&self, key: &str) -> Option<(&str, usize)> {
-        match self.get(key)? {
-            Key { start, value: Scalar::Text(text) } => Some((text, *start)),
-            _ => None,
-        }
-    }
-
-    /// Whether a key is `false`.
-    pub(crate) fn is_off(&self, key: &str) -> bool {
-        self.get(key).is_some_and(|key| key.value == Scalar::Boolean(false))
-    }
-
-    /// The keys to which `other` gives other values.
-    fn differences(&self, other: &Self) -> Vec<String> {
-        let is_table =
-            |path: &String| self.0.keys().any(|key| key.starts_with(&format!("{path}.")));
-        let differs = |(path, key): &(&String, &Key)| {
-            let is_other = |other: &Key| other.value == Scalar::Other || other.value != key.value;
-            !is_table(path) && other.get(path).is_some_and(is_other)
-        };
-        self.0.iter().filter(differs).map(|(path, _)| path.clone()).collect()
     }
 }
 
@@ -267,7 +158,7 @@ fn parse<'a>(
     let start = lines.add(text, flag);
     let table = DeTable::parse(text).map_err(|error| {
         let at = start + error.span().map_or(0, |span| span.start);
-        lines.span(at).error(explain(error.message()))
+        lines.span(at).error(explain(error.message(), None))
     })?;
     prepared_table(table.into_inner(), start, lines)
 }

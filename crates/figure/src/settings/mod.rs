@@ -2,6 +2,7 @@
 
 pub mod flags;
 pub(crate) mod layers;
+pub(crate) mod places;
 mod quoted;
 mod words;
 

@@ -277,7 +277,8 @@ fn scene_files_have_keys_for_all_of_it() {
     assert_eq!(plan.scale_bar.as_ref().unwrap().length, Some(20.0));
     assert_eq!(plan.labels[0].position, Position::At([0.5, 0.25]));
     assert_eq!(plan.labels[1].position, Position::TOP_LEFT);
-    let look = (plan.text_scale, plan.color, plan.panel);
+    let look =
+        (plan.text.scale, plan.text.color.map(pinhole::LinearRgb::to_srgb8), plan.text.panel);
     assert_eq!(look, (Some(2.0), Some([255; 3]), Some(Panel::Never)));
     assert_eq!(file.encoding.dots_per_inch(), Some(300.0));
 }

@@ -20,3 +20,4 @@ mod pictures;
 mod scene_file;
 mod scene_file_light;
 mod settings;
+mod settings_page;

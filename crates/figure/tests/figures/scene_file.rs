@@ -12,10 +12,7 @@ use pinhole::{
     Encoding, Film, Integrator, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere,
     SurfaceProperties, ToneCurve,
 };
-use pinhole_figure::annotate::AnnotationPlan;
-use pinhole_figure::scene_file::{
-    Contents, Data, IntegratorKind, SceneFile, SceneFileError, write,
-};
+use pinhole_figure::scene_file::{Data, IntegratorKind, SceneFile, SceneFileError, Settled};
 use pinhole_figure::settings::Sources;
 use pinhole_figure::style::Style;
 
@@ -69,7 +66,8 @@ fn how_the_picture_is_written() {
     expected.bits = Bits::Sixteen;
     assert_eq!(parse(all).encoding, expected);
     for tone in ToneCurve::ALL {
-        let file = parse(&format!("[output]\ntone = '{}'\nexposure = -2\n", tone.name()));
+        let name = format!("{tone:?}").to_lowercase();
+        let file = parse(&format!("[output]\ntone = '{name}'\nexposure = -2\n"));
         assert_eq!((file.encoding.tone, file.encoding.exposure()), (*tone, -2.0));
     }
 }
@@ -172,17 +170,13 @@ fn round_trip(settings: &RenderSettings, scene: &Scene) -> (RenderSettings, Stri
         SkyLight::Image { environment, .. } => Some(environment.as_ref().clone()),
         _ => None,
     };
-    let contents = Contents {
-        film: Film::new(24, 18).unwrap(),
-        encoding: Encoding::default(),
-        annotations: AnnotationPlan::default(),
+    let settled = Settled {
         camera: CameraParameters::default(),
         settings,
         sky_image: image.as_ref().map(|_| "a \"sky\".hdr".to_owned()),
         data: None,
-        spheres: Vec::new(),
     };
-    let text = write(&contents);
+    let text = parse("").settled(settled);
     let file = parse(&text);
     let camera = file.camera(&file.film, scene).unwrap();
     let kind = file.integrator().unwrap();
@@ -260,17 +254,9 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
 fn round_trip_file(text: &str) -> SceneFile {
     let file = parse(text);
     let spheres: Vec<Sphere> = file.spheres().collect();
-    let contents = Contents {
-        film: file.film,
-        encoding: file.encoding,
-        annotations: file.annotations.clone(),
-        camera: file.camera_parameters(),
-        settings: &RenderSettings::studio(),
-        sky_image: None,
-        data: file.data().cloned(),
-        spheres: spheres.clone(),
-    };
-    let text = write(&contents);
+    let settings = &RenderSettings::studio();
+    let (camera, data) = (file.camera_parameters(), file.data().cloned());
+    let text = file.settled(Settled { camera, settings, sky_image: None, data });
     let again = parse(&text);
     assert_eq!(again.film, file.film);
     assert_eq!(again.encoding, file.encoding);

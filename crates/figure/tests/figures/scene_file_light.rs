@@ -271,7 +271,10 @@ fn paths_and_samples() {
     let Integrator::Path(path) = found.integrator else { panic!("{found:?}") };
     assert_eq!((path.max_depth, path.roulette_from), (20, 5));
     assert_eq!(path.light_sampling, LightSampling::Direct);
-    assert_eq!(found.sampling, Sampling { samples: 100, seed: 7, filter: PixelFilter::Gaussian });
+    assert_eq!(
+        found.sampling,
+        Sampling { samples: 100, seed: 7, filter: PixelFilter::Gaussian, denoise: false }
+    );
 }
 
 #[test]
@@ -339,7 +342,7 @@ fn skies() {
     assert!(file.settings(IntegratorKind::Studio, &scene, camera.as_ref(), None).is_ok());
     assert_eq!(
         file.settings(kind, &scene, camera.as_ref(), None).unwrap_err().to_string(),
-        "line 3, column 9: the settings need this image of the sky, which was not given"
+        "line 3, column 9: `image`: the settings need this image of the sky, which was not given"
     );
 }
 

@@ -1,12 +1,13 @@
 //! Which integrator makes the picture: the one that a flag, the file or a style names, or that tables and flags need.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene_file::span::{SceneFileError, unknown};
 use crate::settings::layers::Joined;
+use pinhole::render::Integrator;
 
 /// The integrators that a scene file can name. The integrator computes the colour of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
     /// Primary rays: a pixel shows what its ray meets first, without lights.
@@ -21,6 +22,15 @@ pub enum IntegratorKind {
 impl IntegratorKind {
     const NAMES: [(&str, Self); 3] =
         [("primary", Self::Primary), ("studio", Self::Studio), ("path", Self::Path)];
+
+    /// The kind of an integrator.
+    pub(crate) fn of(integrator: &Integrator) -> Self {
+        match integrator {
+            Integrator::Primary(_) => Self::Primary,
+            Integrator::Studio(_) => Self::Studio,
+            Integrator::Path(_) => Self::Path,
+        }
+    }
 
     /// The name in scene files and flags.
     #[must_use]
@@ -53,7 +63,7 @@ const TABLES: [(&str, Option<IntegratorKind>); 4] = [
 impl AskedIntegrator {
     /// `has_materials` says whether any surface is not matt and opaque.
     pub(crate) fn read(layers: &Joined<'_>, has_materials: bool) -> Result<Self, SceneFileError> {
-        let lines = &layers.lines;
+        let lines = &layers.places.lines;
         let named = |name: Option<(&str, usize)>| {
             let known = IntegratorKind::NAMES;
             let kind = |(name, at): (&str, usize)| {
@@ -127,7 +137,7 @@ fn needed(
     named: Option<IntegratorKind>,
     has_materials: bool,
 ) -> Result<Option<IntegratorKind>, SceneFileError> {
-    let lines = &layers.lines;
+    let lines = &layers.places.lines;
     let first = |tables: &[(&'static str, &'static str)]| {
         tables.iter().find_map(|(key, shown)| Some((*shown, layers.in_file.start(key)?)))
     };

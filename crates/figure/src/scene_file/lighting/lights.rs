@@ -1,52 +1,74 @@
-//! Reads the tables `[[lights]]`, and `[sun]`, which is also a light.
+//! The tables `[[lights]]`, and `[sun]`, which is also a light.
 
 use glam::DVec3;
-use serde::Deserialize;
-use toml::Spanned;
+use serde::{Deserialize, Serialize};
 
-use crate::scene_file::span::{
-    Keys, Lines, Number, SceneFileError, Span, Vector, name_of, range_of, refuse_foreign, scaled,
-};
+use crate::scene_file::span::{KeyError, scaled};
 use pinhole::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use pinhole::image::color::LinearRgb;
-use pinhole::internals::exact::Table;
+use pinhole::internals::exact::{List, degrees};
 use pinhole::light::{Light, LightFrame, LightKind};
+use pinhole::range::RangeError;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Head,
-    Directional,
-    Point,
-    Sphere,
+/// A table of the list `lights`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum LightTable {
+    /// A light at the eye, without shadows.
+    Head {
+        /// The colour; white by default.
+        color: Option<LinearRgb>,
+        /// Factor of the colour, from 0 to 1e6.
+        strength: Option<f64>,
+    },
+    /// A light infinitely far away.
+    Directional(DirectionalTable),
+    /// A light at a point, which falls off with the square of the distance.
+    Point {
+        /// The frame of the position: `world` or `camera`.
+        #[serde(default)]
+        at: LightFrame,
+        /// The position in scene units.
+        position: List<3>,
+        /// The colour; white by default.
+        color: Option<LinearRgb>,
+        /// Factor of the colour at the distance 1, from 0 to 1e18.
+        intensity: Option<f64>,
+    },
+    /// A sphere that shines, with soft shadows; it is invisible.
+    Sphere {
+        /// The frame of the position: `world` or `camera`.
+        #[serde(default)]
+        at: LightFrame,
+        /// The position of the centre in scene units.
+        position: List<3>,
+        /// The radius in scene units, greater than 0.
+        radius: f64,
+        /// The colour; white by default.
+        color: Option<LinearRgb>,
+        /// Factor of the colour, from 0 to 1e6.
+        radiance: Option<f64>,
+    },
 }
 
-#[derive(Deserialize)]
+/// The keys of a light infinitely far away, such as the sun.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct LightTable {
-    kind: Kind,
-    at: Option<Spanned<LightFrame>>,
-    toward: Option<Spanned<Vector>>,
-    direction: Option<Spanned<Vector>>,
-    angular_radius: Option<Number>,
-    angular_diameter: Option<Number>,
-    position: Option<Spanned<Vector>>,
-    radius: Option<Number>,
+pub(crate) struct DirectionalTable {
+    /// The frame of the direction: `world` or `camera`. A sun stands in the world.
+    at: Option<LightFrame>,
+    /// The direction to the light.
+    toward: Option<List<3>>,
+    /// The direction in which the light shines, instead of `toward`.
+    direction: Option<List<3>>,
+    /// Half of the angle under which the light is seen, in degrees: 0, or from 0.06 to 90.
+    angular_radius: Option<f64>,
+    /// The angle under which the light is seen, in degrees, instead of `angular_radius`.
+    angular_diameter: Option<f64>,
+    /// The colour; white by default.
     color: Option<LinearRgb>,
-    strength: Option<Number>,
-    intensity: Option<Number>,
-    radiance: Option<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SunTable {
-    toward: Option<Spanned<Vector>>,
-    direction: Option<Spanned<Vector>>,
-    angular_radius: Option<Number>,
-    angular_diameter: Option<Number>,
-    color: Option<LinearRgb>,
-    strength: Option<Number>,
+    /// Factor of the colour, from 0 to 1e6.
+    strength: Option<f64>,
 }
 
 /// Angular radius of the sun seen from the earth, in degrees.
@@ -58,174 +80,144 @@ const STRONGEST: f64 = 1e6;
 /// The largest intensity. It may be more, because the light falls off with the square of the distance.
 const MOST_INTENSE: f64 = 1e18;
 
-/// Returns the direction from the scene to the light.
-fn aim(
-    toward: Option<Spanned<Vector>>,
-    direction: Option<Spanned<Vector>>,
-    lines: &Lines<'_>,
-    table: Span,
-) -> Result<DVec3, SceneFileError> {
-    let (key, vector, sign) = match (toward, direction) {
-        (Some(toward), None) => ("toward", toward, 1.0),
-        (None, Some(direction)) => ("direction", direction, -1.0),
-        (Some(_), Some(direction)) => {
-            return Err(lines.span(direction.span().start).error(
-                "`toward` and `direction` both set the direction of the light; remove one of them",
-            ));
+impl LightTable {
+    pub(crate) fn of(light: &Light) -> Self {
+        let at = light.frame;
+        match light.kind {
+            LightKind::Head { strength } => Self::Head { color: Some(strength), strength: None },
+            LightKind::Directional { toward, strength, angular_radius } => {
+                let is_same = |found: f64| found.to_bits() == angular_radius.to_bits();
+                Self::Directional(DirectionalTable {
+                    at: Some(at),
+                    toward: Some(List(toward.into())),
+                    direction: None,
+                    angular_radius: Some(degrees::of(angular_radius, is_same)),
+                    angular_diameter: None,
+                    color: Some(strength),
+                    strength: None,
+                })
+            }
+            LightKind::Point { position, intensity } => {
+                let (position, color) = (List(position.into()), Some(intensity));
+                Self::Point { at, position, color, intensity: None }
+            }
+            LightKind::Sphere { center, radius, radiance } => {
+                let (position, color) = (List(center.into()), Some(radiance));
+                Self::Sphere { at, position, radius, color, radiance: None }
+            }
         }
-        (None, None) => {
-            return Err(table.error(
-                    "the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
-                     `direction = [x, y, z]`, the direction in which it shines",
-                ));
-        }
-    };
-    let toward = sign * DVec3::from(vector.get_ref().0);
-    unit(toward).map(|_| toward).ok_or_else(|| {
-            let [x, y, z] = vector.get_ref().0;
-            let span = lines.span(vector.span().start);
-            span.error(format!(
-                "`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0"
-            ))
-        })
-}
+    }
 
-/// Returns the angular radius in radians. The `default` is in degrees.
-fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> {
-    // The renderer accepts 0.001 radians or more; this is the next round number in degrees.
-    const LEAST: f64 = 0.06;
-    let within = |key, most, range| {
-        let given = keys.within(key, [0.0, most], range)?;
-        match given {
-            Some(degrees) if degrees != 0.0 => keys.within(key, [most / 90.0 * LEAST, most], range),
-            given => Ok(given),
-        }
-    };
-    let radius = within("angular_radius", 90.0, "0, or from 0.06 to 90 degrees")?;
-    let diameter = within("angular_diameter", 180.0, "0, or from 0.12 to 180 degrees")?;
-    match (radius, diameter) {
-        (Some(_), Some(_)) => Err(keys.table.error(
-            "`angular_radius` and `angular_diameter` exclude each other; remove one of them",
-        )),
-        (radius, diameter) => {
-            Ok(radius.or(diameter.map(|d| d / 2.0)).unwrap_or(default).to_radians())
-        }
+    pub(super) fn light(&self) -> Result<Light, KeyError> {
+        let (kind, frame) = match self {
+            Self::Head { color, strength } => {
+                let strength = times(*color, "strength", *strength)?;
+                (LightKind::Head { strength }, LightFrame::World)
+            }
+            Self::Directional(table) => (table.kind(0.0)?, table.at.unwrap_or_default()),
+            Self::Point { at, position, color, intensity } => {
+                let intensity = times(*color, "intensity", *intensity)?;
+                (LightKind::Point { position: place(*position)?, intensity }, *at)
+            }
+            Self::Sphere { at, position, radius, color, radiance } => {
+                let range = "a length greater than 0, from 2^-56 to 2^56";
+                let bounds = [MIN_LENGTH, MAX_LENGTH];
+                let radius = RangeError::unless_within("radius", *radius, bounds, range)?;
+                let radiance = times(*color, "radiance", *radiance)?;
+                (LightKind::Sphere { center: place(*position)?, radius, radiance }, *at)
+            }
+        };
+        Ok(Light { kind, frame })
     }
 }
 
+impl DirectionalTable {
+    pub(super) fn sun(&self) -> Result<Light, KeyError> {
+        match self.at {
+            None => Ok(Light { kind: self.kind(SUN_RADIUS)?, frame: LightFrame::World }),
+            Some(_) => {
+                Err("`at` does not apply to the sun, which stands in the world; remove it".into())
+            }
+        }
+    }
+
+    /// The light. Where nothing says how large it is, it has the `default` radius in degrees.
+    fn kind(&self, default: f64) -> Result<LightKind, KeyError> {
+        Ok(LightKind::Directional {
+            toward: self.aim()?,
+            strength: times(self.color, "strength", self.strength)?,
+            angular_radius: self.angular_radius(default)?,
+        })
+    }
+
+    /// The direction from the scene to the light.
+    fn aim(&self) -> Result<DVec3, KeyError> {
+        let (key, List([x, y, z]), sign) = match (self.toward, self.direction) {
+            (Some(toward), None) => ("toward", toward, 1.0),
+            (None, Some(direction)) => ("direction", direction, -1.0),
+            (Some(_), Some(_)) => {
+                return Err(
+                    "`direction` and `toward` both set the direction of the light; remove one of them".into(),
+                );
+            }
+            (None, None) => {
+                return Err(
+                    "the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
+                     `direction = [x, y, z]`, the direction in which it shines"
+                        .into(),
+                );
+            }
+        };
+        let toward = sign * DVec3::new(x, y, z);
+        unit(toward).map(|_| toward).ok_or_else(|| {
+            format!(
+                "`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0"
+            )
+            .into()
+        })
+    }
+
+    /// The angular radius in radians.
+    fn angular_radius(&self, default: f64) -> Result<f64, KeyError> {
+        // The renderer accepts 0.001 radians or more; this is the next round number in degrees.
+        const LEAST: f64 = 0.06;
+        let within = |key, degrees: Option<f64>, share: f64, range| {
+            let least = if degrees == Some(0.0) { 0.0 } else { share * LEAST };
+            let bounds = [least, share * 90.0];
+            degrees.map(|d| RangeError::unless_within(key, d, bounds, range)).transpose()
+        };
+        let (radius, diameter) = (self.angular_radius, self.angular_diameter);
+        let radius = within("angular_radius", radius, 1.0, "0, or from 0.06 to 90 degrees")?;
+        let diameter = within("angular_diameter", diameter, 2.0, "0, or from 0.12 to 180 degrees")?;
+        if radius.is_some() && diameter.is_some() {
+            return Err(
+                "`angular_radius` and `angular_diameter` exclude each other; remove one of them"
+                    .into(),
+            );
+        }
+        Ok(radius.or(diameter.map(|d| d / 2.0)).unwrap_or(default).to_radians())
+    }
+}
+
+/// A colour of light, multiplied by the number of a key.
 fn times(
     color: Option<LinearRgb>,
-    keys: &Keys<'_>,
     key: &'static str,
-) -> Result<LinearRgb, SceneFileError> {
+    by: Option<f64>,
+) -> Result<LinearRgb, KeyError> {
     let (most, range) = match key {
         "intensity" => (MOST_INTENSE, "from 0 to 1e18"),
         _ => (STRONGEST, "from 0 to 1e6"),
     };
-    let by = keys.within(key, [0.0, most], range)?.unwrap_or(1.0);
-    scaled(color.unwrap_or(LinearRgb::WHITE), by, "the light")
-        .map_err(|error| keys.table.error(error))
+    let by = RangeError::unless_within(key, by.unwrap_or(1.0), [0.0, most], range)?;
+    Ok(scaled(color.unwrap_or(LinearRgb::WHITE), by, "the light")?)
 }
 
-fn position(
-    vector: Option<Spanned<Vector>>,
-    kind: Kind,
-    keys: &Keys<'_>,
-) -> Result<DVec3, SceneFileError> {
-    let Some(vector) = vector else {
-        let kind = name_of(&kind);
-        return Err(keys
-            .table
-            .error(format!("a {kind} light needs a position; add `position = [x, y, z]`")));
-    };
-    let position = vector.get_ref().0;
+fn place(List(position): List<3>) -> Result<DVec3, KeyError> {
     if position.iter().all(|x| x.abs() <= MAX_LENGTH) {
-        return Ok(DVec3::from(position));
+        return Ok(position.into());
     }
     let [x, y, z] = position;
-    Err(keys.lines.span(vector.span().start).error(format!(
-        "`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56"
-    )))
-}
-
-pub(super) fn read(
-    table: Spanned<Table<LightTable>>,
-    lines: &Lines<'_>,
-) -> Result<Light, SceneFileError> {
-    let span = lines.span(table.span().start);
-    let table = table.into_inner().0;
-    let kind = table.kind;
-    let is_one = |kinds: &[Kind]| kinds.contains(&kind);
-    let (far, near) = (is_one(&[Kind::Directional]), is_one(&[Kind::Point, Kind::Sphere]));
-    refuse_foreign(
-        lines,
-        &name_of(&kind),
-        &[
-            ("at", range_of(&table.at), kind != Kind::Head),
-            ("toward", range_of(&table.toward), far),
-            ("direction", range_of(&table.direction), far),
-            ("angular_radius", range_of(&table.angular_radius), far),
-            ("angular_diameter", range_of(&table.angular_diameter), far),
-            ("position", range_of(&table.position), near),
-            ("radius", range_of(&table.radius), is_one(&[Kind::Sphere])),
-            ("strength", range_of(&table.strength), !near),
-            ("intensity", range_of(&table.intensity), is_one(&[Kind::Point])),
-            ("radiance", range_of(&table.radiance), is_one(&[Kind::Sphere])),
-        ],
-    )?;
-    let numbers = vec![
-        ("angular_radius", table.angular_radius),
-        ("angular_diameter", table.angular_diameter),
-        ("radius", table.radius),
-        ("strength", table.strength),
-        ("intensity", table.intensity),
-        ("radiance", table.radiance),
-    ];
-    let keys = Keys { lines, numbers, table: span };
-    let light = match kind {
-        Kind::Head => LightKind::Head { strength: times(table.color, &keys, "strength")? },
-        Kind::Directional => LightKind::Directional {
-            toward: aim(table.toward, table.direction, lines, span)?,
-            strength: times(table.color, &keys, "strength")?,
-            angular_radius: angular_radius(&keys, 0.0)?,
-        },
-        Kind::Point => LightKind::Point {
-            position: position(table.position, kind, &keys)?,
-            intensity: times(table.color, &keys, "intensity")?,
-        },
-        Kind::Sphere => {
-            let range = "a length greater than 0, from 2^-56 to 2^56";
-            let radius = keys.within("radius", [MIN_LENGTH, MAX_LENGTH], range)?;
-            LightKind::Sphere {
-                center: position(table.position, kind, &keys)?,
-                radius: radius.ok_or_else(|| {
-                    span.error(
-                        "a sphere light needs a radius; add `radius`, a length greater than 0",
-                    )
-                })?,
-                radiance: times(table.color, &keys, "radiance")?,
-            }
-        }
-    };
-    Ok(Light { kind: light, frame: table.at.map(Spanned::into_inner).unwrap_or_default() })
-}
-
-pub(super) fn read_sun(
-    table: Spanned<Table<SunTable>>,
-    lines: &Lines<'_>,
-) -> Result<Light, SceneFileError> {
-    let span = lines.span(table.span().start);
-    let table = table.into_inner().0;
-    let numbers = vec![
-        ("angular_radius", table.angular_radius),
-        ("angular_diameter", table.angular_diameter),
-        ("strength", table.strength),
-    ];
-    let keys = Keys { lines, numbers, table: span };
-    let kind = LightKind::Directional {
-        toward: aim(table.toward, table.direction, lines, span)?,
-        strength: times(table.color, &keys, "strength")?,
-        angular_radius: angular_radius(&keys, SUN_RADIUS)?,
-    };
-    Ok(Light { kind, frame: LightFrame::World })
+    Err(format!("`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56")
+        .into())
 }

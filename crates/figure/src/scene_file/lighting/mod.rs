@@ -7,45 +7,25 @@ mod studio;
 
 pub(super) use integrator::AskedIntegrator;
 pub use integrator::IntegratorKind;
-pub(super) use lights::{LightTable, SunTable};
+pub(super) use lights::{DirectionalTable, LightTable};
 pub(super) use sky::{GroundTable, SkyTable};
 pub(super) use studio::DepthCuePlan;
 
-use toml::Spanned;
-
-use super::span::{SceneFileError, WithSpan};
+use super::document::Document;
+use super::span::{KeyError, SceneFileError};
 use crate::settings::layers::Joined;
 use crate::style::OwnValues;
 use pinhole::internals::exact::Table;
 use pinhole::light::Light;
-use pinhole::render::{PathTracing, Sampling, Studio};
-use sky::{GroundPlan, SkyPlan};
+use pinhole::range::RangeError;
 use studio::StudioPlan;
-
-/// The keys and tables that concern light.
-pub(super) struct LightingTables {
-    pub(super) studio: Studio,
-    pub(super) depth_cue: Option<DepthCuePlan>,
-    pub(super) path: PathTracing,
-    pub(super) sampling: Sampling,
-    pub(super) denoise: bool,
-    pub(super) lights: Option<Vec<Spanned<Table<LightTable>>>>,
-    pub(super) sky: Option<Spanned<Table<SkyTable>>>,
-    pub(super) sun: Option<Spanned<Table<SunTable>>>,
-    pub(super) ground: Option<Spanned<Table<GroundTable>>>,
-}
 
 /// The contents of the tables, checked as far as that is possible without a scene.
 #[derive(Debug)]
 pub(super) struct SceneLighting {
     pub(super) studio: StudioPlan,
-    pub(super) path: PathTracing,
-    pub(super) denoise: bool,
-    pub(super) sampling: Sampling,
     /// The lights and the sun; `None` if the file names neither lights nor a sun nor a sky.
     pub(super) lights: Option<Vec<Light>>,
-    pub(super) sky: Option<SkyPlan>,
-    pub(super) ground: Option<WithSpan<GroundPlan>>,
     /// What the file gives itself, so that a style does not choose it.
     pub(super) given: OwnValues,
 }
@@ -62,24 +42,31 @@ fn given(layers: &Joined<'_>) -> OwnValues {
     }
 }
 
-impl LightingTables {
-    pub(super) fn read(self, layers: &Joined<'_>) -> Result<SceneLighting, SceneFileError> {
-        let lines = &layers.lines;
-        let refused = |table| move |error| layers.refused(table, &error);
-        self.path.check().map_err(refused("path"))?;
-        self.sampling.check().map_err(refused("sampling"))?;
-        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
-        let sun = self.sun.map(|sun| lights::read_sun(sun, lines)).transpose()?;
-        let lights = self.lights.into_iter().flatten().map(|light| lights::read(light, lines));
-        let lights = lights.chain(sun.map(Ok)).collect::<Result<Vec<_>, _>>()?;
-        Ok(SceneLighting {
-            studio: StudioPlan::new(self.studio, self.depth_cue, layers)?,
-            path: self.path,
-            denoise: self.denoise,
-            sampling: self.sampling,
+impl SceneLighting {
+    pub(super) fn read(
+        document: &Document,
+        depth_cue: Option<DepthCuePlan>,
+        layers: &Joined<'_>,
+    ) -> Result<Self, SceneFileError> {
+        let Document { studio, path, sampling, lights, sun, sky, ground, .. } = document;
+        let at = |table: &'static str| move |error: KeyError| layers.places.refused(table, error);
+        let unless =
+            |table, checked: Result<(), RangeError>| checked.map_err(|e| at(table)(e.into()));
+        path.iter().try_for_each(|Table(path)| unless("path", path.check()))?;
+        sampling.iter().try_for_each(|Table(one)| unless("sampling", one.check()))?;
+        sky.iter().try_for_each(|Table(sky)| sky.light().map(drop)).map_err(at("sky"))?;
+        ground.iter().try_for_each(|Table(ground)| ground.check()).map_err(at("ground"))?;
+        let names_light = lights.is_some() || sun.is_some() || sky.is_some();
+        let listed = lights.iter().flatten().enumerate().map(|(index, Table(light))| {
+            let refused = |error| layers.places.refused(&format!("lights.{index}"), error);
+            light.light().map_err(refused)
+        });
+        let sun = sun.iter().map(|Table(sun)| sun.sun().map_err(at("sun")));
+        let lights = listed.chain(sun).collect::<Result<Vec<_>, _>>()?;
+        let studio = studio.clone().unwrap_or_default().0;
+        Ok(Self {
+            studio: StudioPlan::new(studio, depth_cue, layers)?,
             lights: names_light.then_some(lights),
-            sky: self.sky.map(|sky| SkyPlan::read(sky, lines)).transpose()?,
-            ground: self.ground.map(|ground| GroundPlan::read(ground, lines)).transpose()?,
             given: given(layers),
         })
     }

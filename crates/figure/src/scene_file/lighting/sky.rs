@@ -1,192 +1,211 @@
-//! Reads the tables `[sky]` and `[ground]`.
+//! The tables `[sky]` and `[ground]`.
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use serde::Deserialize;
-use toml::Spanned;
+use serde::{Deserialize, Serialize};
 
-use crate::scene_file::span::{
-    Keys, Lines, Number, SceneFileError, Vector, WithSpan, default_color, name_of, range_of,
-    refuse_foreign, scaled,
-};
+use crate::scene_file::span::{KeyError, default_color, scaled};
 use pinhole::geometry::math::{MAX_LENGTH, unit};
 use pinhole::image::color::LinearRgb;
-use pinhole::internals::exact::Table;
+use pinhole::internals::exact::{List, degrees};
 use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Sky, SkyLight};
+use pinhole::range::RangeError;
 use pinhole::scene::Scene;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Constant,
-    Gradient,
-    Image,
+/// The table `[sky]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum SkyTable {
+    /// The same light from all directions.
+    Constant {
+        /// The colour; white by default.
+        #[serde(default = "white")]
+        color: LinearRgb,
+        /// Factor of the colour, from 0 to 1e6.
+        #[serde(default = "one")]
+        strength: f64,
+        /// Whether the camera sees the sky.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
+    /// Light that changes with the height y of its direction.
+    Gradient {
+        /// The colour straight up; white by default.
+        #[serde(default = "white")]
+        zenith: LinearRgb,
+        /// The colour at the horizon; a light grey by default.
+        #[serde(default = "horizon")]
+        horizon: LinearRgb,
+        /// The colour straight down; a grey by default.
+        #[serde(default = "nadir")]
+        nadir: LinearRgb,
+        /// Factor of the colours, from 0 to 1e6.
+        #[serde(default = "one")]
+        strength: f64,
+        /// Whether the camera sees the sky.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
+    /// An image of all directions.
+    Image {
+        /// The file, .hdr or .exr, relative to the scene file.
+        image: String,
+        /// Rotation about +y in degrees, counter-clockwise seen from above: -36000 to 36000.
+        #[serde(default)]
+        rotation: f64,
+        /// Factor of the colours, from 0 to 1e6.
+        #[serde(default = "one")]
+        strength: f64,
+        /// Whether the camera sees the sky.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SkyTable {
-    kind: Kind,
-    color: Option<Spanned<LinearRgb>>,
-    zenith: Option<Spanned<LinearRgb>>,
-    horizon: Option<Spanned<LinearRgb>>,
-    nadir: Option<Spanned<LinearRgb>>,
-    image: Option<Spanned<String>>,
-    rotation: Option<Number>,
-    strength: Option<Number>,
-    visible: Option<bool>,
+fn white() -> LinearRgb {
+    LinearRgb::WHITE
 }
 
-/// The sky as the file gives it; its image is not loaded yet.
-#[derive(Debug)]
-pub(crate) struct SkyPlan {
-    light: SkyPlanLight,
-    is_visible: bool,
+fn horizon() -> LinearRgb {
+    LinearRgb::gray(0.8)
 }
 
-#[derive(Debug)]
-enum SkyPlanLight {
-    Known(SkyLight),
-    Image { file: WithSpan<String>, strength: f32, rotation: f64 },
+fn nadir() -> LinearRgb {
+    LinearRgb::gray(0.4)
 }
 
-impl SkyPlan {
-    pub(super) fn read(
-        table: Spanned<Table<SkyTable>>,
-        lines: &Lines<'_>,
-    ) -> Result<Self, SceneFileError> {
-        let span = lines.span(table.span().start);
-        let table = table.into_inner().0;
-        let kind = table.kind;
-        refuse_foreign(
-            lines,
-            &name_of(&kind),
-            &[
-                ("color", range_of(&table.color), kind == Kind::Constant),
-                ("zenith", range_of(&table.zenith), kind == Kind::Gradient),
-                ("horizon", range_of(&table.horizon), kind == Kind::Gradient),
-                ("nadir", range_of(&table.nadir), kind == Kind::Gradient),
-                ("image", range_of(&table.image), kind == Kind::Image),
-                ("rotation", range_of(&table.rotation), kind == Kind::Image),
-            ],
-        )?;
-        let numbers = vec![("rotation", table.rotation), ("strength", table.strength)];
-        let keys = Keys { lines, numbers, table: span };
-        let strength = keys.within("strength", [0.0, 1e6], "from 0 to 1e6")?.unwrap_or(1.0);
-        let color = |value: Option<Spanned<LinearRgb>>, default: f32| {
-            let color = value.map_or(LinearRgb::gray(default), Spanned::into_inner);
-            scaled(color, strength, "the sky").map_err(|error| span.error(error))
-        };
-        // The defaults of the gradient are those of the sky without a scene file.
-        let light = match kind {
-            Kind::Constant => SkyPlanLight::Known(SkyLight::Constant(color(table.color, 1.0)?)),
-            Kind::Gradient => SkyPlanLight::Known(SkyLight::Gradient {
-                zenith: color(table.zenith, 1.0)?,
-                horizon: color(table.horizon, 0.8)?,
-                nadir: color(table.nadir, 0.4)?,
-            }),
-            Kind::Image => {
-                let range = "from -36000 to 36000 degrees";
-                let degrees = keys.within("rotation", [-36e3, 36e3], range)?.unwrap_or(0.0);
-                let file = table.image.ok_or_else(|| {
-                    span.error("a sky of the kind `image` needs a file; add `image = \"FILE.hdr\"`, or .exr")
-                })?;
-                SkyPlanLight::Image {
-                    file: lines.spanned(file),
-                    strength: strength as f32,
-                    rotation: degrees.to_radians(),
-                }
-            }
-        };
-        Ok(Self { light, is_visible: table.visible.unwrap_or(true) })
-    }
+fn one() -> f64 {
+    1.0
+}
 
+fn yes() -> bool {
+    true
+}
+
+impl SkyTable {
+    /// The path of the image, if the sky is one.
     pub(crate) fn image(&self) -> Option<&str> {
-        match &self.light {
-            SkyPlanLight::Image { file, .. } => Some(&file.value),
-            SkyPlanLight::Known(_) => None,
+        match self {
+            Self::Image { image, .. } => Some(image),
+            _ => None,
         }
     }
 
-    pub(crate) fn sky(&self, image: Option<Environment>) -> Result<Sky, SceneFileError> {
-        let light = match &self.light {
-            SkyPlanLight::Known(light) => light.clone(),
-            SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {
-                environment: Arc::new(image.ok_or_else(|| {
-                    file.span.error("the settings need this image of the sky, which was not given")
-                })?),
-                strength: *strength,
-                rotation: *rotation,
+    /// The table of a sky, whose image is in a file if it is one.
+    pub(crate) fn of(sky: &Sky, image: Option<String>) -> Self {
+        let (strength, visible) = (1.0, sky.is_visible);
+        match sky.light {
+            SkyLight::Constant(color) => Self::Constant { color, strength, visible },
+            SkyLight::Gradient { zenith, horizon, nadir } => {
+                Self::Gradient { zenith, horizon, nadir, strength, visible }
+            }
+            SkyLight::Image { strength, rotation, .. } => Self::Image {
+                image: image.unwrap_or_default(),
+                rotation: degrees::of(rotation, |found| found.to_bits() == rotation.to_bits()),
+                strength: strength.into(),
+                visible,
             },
+        }
+    }
+
+    /// The light of the sky; `None` for that of an image, whose numbers are checked.
+    pub(super) fn light(&self) -> Result<Option<SkyLight>, KeyError> {
+        let bounded = |strength: f64| {
+            RangeError::unless_within("strength", strength, [0.0, 1e6], "from 0 to 1e6")
         };
-        Ok(Sky { light, is_visible: self.is_visible })
+        Ok(match *self {
+            Self::Constant { color, strength, .. } => {
+                Some(SkyLight::Constant(scaled(color, bounded(strength)?, "the sky")?))
+            }
+            Self::Gradient { zenith, horizon, nadir, strength, .. } => {
+                let by = bounded(strength)?;
+                let scaled = |color| scaled(color, by, "the sky");
+                let (zenith, horizon, nadir) = (scaled(zenith)?, scaled(horizon)?, scaled(nadir)?);
+                Some(SkyLight::Gradient { zenith, horizon, nadir })
+            }
+            Self::Image { rotation, strength, .. } => {
+                let range = "from -36000 to 36000 degrees";
+                RangeError::unless_within("rotation", rotation, [-36e3, 36e3], range)?;
+                bounded(strength).map(|_| None)?
+            }
+        })
+    }
+
+    /// The sky, with its image if it has one.
+    pub(crate) fn sky(&self, image: Option<Environment>) -> Result<Sky, KeyError> {
+        let light = match (self.light()?, self) {
+            (None, Self::Image { rotation, strength, .. }) => SkyLight::Image {
+                environment: Arc::new(image.ok_or(
+                    "`image`: the settings need this image of the sky, which was not given",
+                )?),
+                strength: *strength as f32,
+                rotation: rotation.to_radians(),
+            },
+            (light, _) => light.unwrap_or(SkyLight::Constant(LinearRgb::BLACK)),
+        };
+        let (Self::Constant { visible, .. }
+        | Self::Gradient { visible, .. }
+        | Self::Image { visible, .. }) = self;
+        Ok(Sky { light, is_visible: *visible })
     }
 }
 
-#[derive(Deserialize)]
+/// The table `[ground]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroundTable {
-    height: Option<Number>,
-    point: Option<Spanned<Vector>>,
-    normal: Option<Spanned<Vector>>,
+    /// The height y of a level ground, in scene units; by default it touches the lowest sphere.
+    height: Option<f64>,
+    /// A point of the ground, instead of `height`.
+    point: Option<List<3>>,
+    /// The direction that is above the ground; +y by default.
+    normal: Option<List<3>>,
+    /// The colour; a light grey by default.
     #[serde(default = "default_color")]
     color: LinearRgb,
+    /// Whether only shadows on the ground are seen.
     #[serde(default)]
     shadow_catcher: bool,
 }
 
-/// The ground as the file gives it. Without a point, it will touch the lowest sphere of the scene.
-#[derive(Debug)]
-pub(crate) struct GroundPlan {
-    point: Option<DVec3>,
-    normal: DVec3,
-    color: LinearRgb,
-    is_shadow_catcher: bool,
-}
+impl GroundTable {
+    pub(crate) fn of(ground: &Ground) -> Self {
+        Self {
+            height: None,
+            point: Some(List(ground.point.into())),
+            normal: Some(List(ground.normal.into())),
+            color: ground.color,
+            shadow_catcher: ground.is_shadow_catcher,
+        }
+    }
 
-impl GroundPlan {
-    pub(super) fn read(
-        table: Spanned<Table<GroundTable>>,
-        lines: &Lines<'_>,
-    ) -> Result<WithSpan<Self>, SceneFileError> {
-        let span = lines.span(table.span().start);
-        let GroundTable { height, point, normal, color, shadow_catcher } = table.into_inner().0;
-        if let (Some(height), Some(_)) = (&height, point.as_ref().or(normal.as_ref())) {
-            return Err(lines.span(height.span().start).error(
-                "`height` cannot be combined with `point` or `normal`; remove one of them",
-            ));
+    pub(super) fn check(&self) -> Result<(), KeyError> {
+        if self.height.is_some() && (self.point.is_some() || self.normal.is_some()) {
+            return Err(
+                "`height` cannot be combined with `point` or `normal`; remove one of them".into()
+            );
         }
-        if let (Some(normal), None) = (&normal, &point) {
-            let span = lines.span(normal.span().start);
-            return Err(span.error("`normal` needs a point on the ground; add `point = [x, y, z]`"));
+        if self.normal.is_some() && self.point.is_none() {
+            return Err("`normal` needs a point on the ground; add `point = [x, y, z]`".into());
         }
-        let is_near = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= MAX_LENGTH);
-        for (key, vector) in [("point", &point), ("normal", &normal)] {
-            let Some(vector) = vector else {
-                continue;
-            };
-            let [x, y, z] = vector.get_ref().0;
+        for (key, vector) in [("point", self.point), ("normal", self.normal)] {
+            let Some(List([x, y, z])) = vector else { continue };
+            let is_near = [x, y, z].iter().all(|x| x.abs() <= MAX_LENGTH);
             let is_direction = key == "point" || unit(DVec3::new(x, y, z)).is_some();
-            if !(is_near(&[x, y, z]) && is_direction) {
-                return Err(lines.span(vector.span().start).error(format!(
-                    "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, \
-                     and a normal must not have the length 0"
-                )));
+            if !(is_near && is_direction) {
+                return Err(format!(
+                    "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, and a normal must \
+                     not have the length 0"
+                )
+                .into());
             }
         }
-        let keys = Keys { lines, numbers: vec![("height", height)], table: span };
         let range = "between -2^56 and 2^56";
-        let height = keys.within("height", [-MAX_LENGTH, MAX_LENGTH], range)?;
-        let point = point.map(|point| DVec3::from(point.get_ref().0));
-        let value = Self {
-            point: point.or(height.map(|height| DVec3::new(0.0, height, 0.0))),
-            normal: normal.map_or(DVec3::Y, |normal| DVec3::from(normal.get_ref().0)),
-            color,
-            is_shadow_catcher: shadow_catcher,
-        };
-        Ok(WithSpan { value, span })
+        let height = self.height.unwrap_or_default();
+        RangeError::unless_within("height", height, [-MAX_LENGTH, MAX_LENGTH], range)?;
+        Ok(())
     }
 
     pub(crate) fn ground(&self, scene: &Scene) -> Ground {
@@ -195,11 +214,13 @@ impl GroundPlan {
             let center = bounds.center();
             DVec3::new(center.x, bounds.min().y, center.z)
         };
+        let point = self.point.map(|point| DVec3::from(point.0));
+        let at_height = || self.height.map(|height| DVec3::new(0.0, height, 0.0));
         Ground {
-            point: self.point.unwrap_or_else(lowest),
-            normal: self.normal,
+            point: point.or_else(at_height).unwrap_or_else(lowest),
+            normal: self.normal.map_or(DVec3::Y, |normal| DVec3::from(normal.0)),
             color: self.color,
-            is_shadow_catcher: self.is_shadow_catcher,
+            is_shadow_catcher: self.shadow_catcher,
         }
     }
 }

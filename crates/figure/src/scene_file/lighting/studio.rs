@@ -21,8 +21,11 @@ pub(crate) struct StudioPlan {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct DepthCuePlan {
+    /// Distance from the camera at which fading begins; by default that of the nearest sphere.
     near: Option<f64>,
+    /// Distance from the camera at which only `color` is left; by default that of the farthest sphere.
     far: Option<f64>,
+    /// The colour to which others fade; by default the background.
     color: Option<LinearRgb>,
 }
 
@@ -52,9 +55,9 @@ impl StudioPlan {
             ("studio.outline", studio.outline.iter().try_for_each(Outline::check)),
             ("studio.depth_cue", depth_cue.iter().try_for_each(DepthCuePlan::check)),
         ] {
-            checked.map_err(|error| layers.refused(table, &error))?;
+            checked.map_err(|error| layers.places.refused(table, error))?;
         }
-        let span = layers.span("studio.depth_cue");
+        let span = layers.places.span("studio.depth_cue");
         Ok(Self { studio, depth_cue: depth_cue.map(|value| WithSpan { value, span }) })
     }
 
