@@ -9,59 +9,21 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ._errors import InputError
+from ._pinhole import keys_of, keys_of_data, short_forms
+
+#: Keys that say how a file is read, which are arguments of ``read`` under their own names, or tables of arrays.
+_READING = {"format", "frame", "topology", "columns", "radius"}
 
 #: The keys of a scene file that are about data. They are arguments of ``Spheres`` and ``read``.
-DATA_KEYS = (
-    "radius_scale",
-    "color",
-    "material",
-    "materials",
-    "opacity",
-    "elements",
-    "elements_by",
-    "leave_out",
-    "select",
-    "box",
-    "bonds",
-    "color_by",
-    "radius_by",
-    "opacity_by",
-    "emission_by",
-)
+DATA_KEYS = tuple(key for key in (*keys_of_data(), "elements", "materials") if key not in _READING)
 
 #: The keys of a scene file that are about pictures. They are arguments of ``render``.
-PICTURE_KEYS = (
-    "style",
-    "film",
-    "camera",
-    "output",
-    "background",
-    "shading",
-    "integrator",
-    "studio",
-    "path",
-    "sampling",
-    "lights",
-    "sky",
-    "sun",
-    "ground",
-    "legend",
-    "scale_bar",
-    "labels",
-    "text",
+PICTURE_KEYS = tuple(
+    key for key in keys_of("") if key not in {*DATA_KEYS, *_READING, "data", "spheres", "camera_path"}
 )
 
-#: Short forms of keys of tables.
-SHORT = {
-    "samples": ("sampling", "samples"),
-    "seed": ("sampling", "seed"),
-    "denoise": ("sampling", "denoise"),
-    "transparent": ("output", "transparent"),
-    "exposure": ("output", "exposure"),
-    "tone": ("output", "tone"),
-    "bits": ("output", "bits"),
-    "dpi": ("output", "dpi"),
-}
+#: Short forms of keys of tables, which are called like the flags of the program.
+SHORT = {name: (table, key) for name, table, key in short_forms()}
 
 #: A text, with the argument of each of its lines.
 Text = tuple[str, list[str]]

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from . import _settings
-from ._pinhole import SphereData
+from ._pinhole import SphereData, keys_of
 
 
 class Table(_settings.Tagged):
@@ -24,8 +24,8 @@ class Table(_settings.Tagged):
     names: ClassVar[tuple[str, ...]] = ()
     is_listed: ClassVar[bool] = False
 
-    def __init_subclass__(cls, of: str, keys: str, argument: str | None = None, listed: bool = False) -> None:
-        cls.name, cls.names, cls.is_listed = of, tuple(keys.split()), listed
+    def __init_subclass__(cls, of: str, argument: str | None = None, listed: bool = False) -> None:
+        cls.name, cls.names, cls.is_listed = of, tuple(keys_of(of)), listed
         cls.argument = argument or of
         cls.__module__ = "pinhole"
         # Help and completion show this signature.
@@ -66,101 +66,91 @@ def _toml(head: str, name: str, table: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-class Studio(Table, of="studio", keys="ambient occlusion shadows max_surfaces depth_cue outline"):
+class Studio(Table, of="studio"):
     """Direct light: its ambient light, shadows, ``Occlusion``, ``Outline`` and ``DepthCue``."""
 
 
-class Occlusion(Table, of="studio.occlusion", keys="radius samples"):
+class Occlusion(Table, of="studio.occlusion"):
     """Ambient light that spheres hide from each other, for ``Studio``."""
 
 
-class Outline(Table, of="studio.outline", keys="width color depth angle"):
+class Outline(Table, of="studio.outline"):
     """Lines along jumps in depth or direction, for ``Studio``."""
 
 
-class DepthCue(Table, of="studio.depth_cue", keys="near far color"):
+class DepthCue(Table, of="studio.depth_cue"):
     """Fading of colours with distance, for ``Studio``."""
 
 
-class Path(Table, of="path", keys="max_depth roulette_from light_sampling"):
+class Path(Table, of="path"):
     """Settings of path tracing."""
 
 
-class Sampling(Table, of="sampling", keys="samples seed filter denoise"):
+class Sampling(Table, of="sampling"):
     """The samples of each pixel."""
 
 
-class Light(
-    Table,
-    of="lights",
-    keys="kind at toward direction angular_radius angular_diameter position radius color strength intensity radiance",
-    listed=True,
-):
+class Light(Table, of="lights", listed=True):
     """A light, for a list: ``lights=[Light(kind="directional", toward=(1, 1, 1))]``."""
 
 
-class Sun(Table, of="sun", keys="toward direction angular_radius angular_diameter color strength"):
+class Sun(Table, of="sun"):
     """A sun with a visible disk."""
 
 
-class Sky(Table, of="sky", keys="kind color zenith horizon nadir image rotation strength visible"):
+class Sky(Table, of="sky"):
     """The surroundings, which give light to paths."""
 
 
-class Ground(Table, of="ground", keys="height point normal color shadow_catcher"):
+class Ground(Table, of="ground"):
     """A plane on which spheres lie."""
 
 
-class Output(Table, of="output", keys="exposure tone transparent bits dpi"):
+class Output(Table, of="output"):
     """The conversion of a picture to a PNG file."""
 
 
-class Legend(Table, of="legend", keys="title position"):
+class Legend(Table, of="legend"):
     """A legend for colours of numbers or categories."""
 
 
-class ScaleBar(Table, of="scale_bar", keys="length unit position"):
+class ScaleBar(Table, of="scale_bar"):
     """A line of a known length."""
 
 
-class Label(Table, of="labels", keys="text position", listed=True):
+class Label(Table, of="labels", listed=True):
     """A text in the picture, for a list."""
 
 
-class Text(Table, of="text", keys="scale color panel"):
+class Text(Table, of="text"):
     """The appearance of texts."""
 
 
-class Material(
-    Table,
-    of="materials.given",
-    keys="kind specular roughness ior attenuation_distance strength opacity",
-    argument="material",
-):
+class Material(Table, of="materials.given", argument="material"):
     """The material of spheres; an argument of ``Spheres``."""
 
 
-class ColorBy(Table, of="color_by", keys="column map reverse range log missing"):
+class ColorBy(Table, of="color_by"):
     """Colours from a column; an argument of ``Spheres``."""
 
 
-class RadiusBy(Table, of="radius_by", keys="column factor"):
+class RadiusBy(Table, of="radius_by"):
     """Radii from a column; an argument of ``Spheres``."""
 
 
-class OpacityBy(Table, of="opacity_by", keys="column factor"):
+class OpacityBy(Table, of="opacity_by"):
     """Opacities from a column; an argument of ``Spheres``."""
 
 
-class EmissionBy(Table, of="emission_by", keys="column factor"):
+class EmissionBy(Table, of="emission_by"):
     """Emitted light from a column; an argument of ``Spheres``."""
 
 
-class Bonds(Table, of="bonds", keys="factor length"):
+class Bonds(Table, of="bonds"):
     """Bonds between spheres; an argument of ``Spheres``."""
 
 
-class Box(Table, of="box", keys="width"):
+class Box(Table, of="box"):
     """The edges of the periodic cell; an argument of ``Spheres``."""
 
 

@@ -6,6 +6,7 @@
     reason = "functions of Python own what PyO3 makes of their arguments"
 )]
 
+use pinhole_figure::settings::flags::{FLAGS, Flag, Group};
 use pyo3::prelude::*;
 
 mod arrays;
@@ -26,6 +27,30 @@ fn panic_for_tests(py: Python<'_>, index: usize) -> PyResult<u8> {
     Ok(worker::run(py, None, move |_| Ok([1, 2, 3][index]))?)
 }
 
+/// The keys of a table of a scene file; of the file itself for an empty text.
+#[pyfunction]
+fn keys_of(table: &str) -> Vec<&'static str> {
+    pinhole_figure::settings::keys_of(table)
+}
+
+/// The keys at the top of a scene file that apply to its data.
+#[pyfunction]
+fn keys_of_data() -> Vec<&'static str> {
+    pinhole_figure::scene_file::KEYS_OF_DATA.to_vec()
+}
+
+/// The flags that give a key of a table at the top of a scene file: their names, the table and the key.
+#[pyfunction]
+fn short_forms() -> Vec<(String, &'static str, &'static str)> {
+    let groups = [Group::Look, Group::Output, Group::Annotation];
+    let flags = FLAGS.iter().filter(|flag| groups.contains(&flag.group));
+    let form = |flag: &'static Flag| {
+        let (table, key) = flag.key.split_once('.').filter(|(_, key)| !key.contains('.'))?;
+        Some((flag.name().replace('-', "_"), table, key))
+    };
+    flags.filter_map(form).collect()
+}
+
 /// The compiled half of pinhole. Use the package `pinhole` instead.
 #[pymodule]
 fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -42,6 +67,9 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(arrays::srgb_of_names, module)?)?;
     module.add_function(wrap_pyfunction!(image::png_of, module)?)?;
     module.add_function(wrap_pyfunction!(worker::wait_for_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(keys_of, module)?)?;
+    module.add_function(wrap_pyfunction!(keys_of_data, module)?)?;
+    module.add_function(wrap_pyfunction!(short_forms, module)?)?;
     module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;
     Ok(())
 }

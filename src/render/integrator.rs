@@ -178,6 +178,7 @@ impl Default for Occlusion {
 
 /// Depth cueing: colours fade linearly with the distance along the ray.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct DepthCue {
     /// Distance at which fading begins, in scene units.
     pub near: f64,

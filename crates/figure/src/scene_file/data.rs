@@ -129,7 +129,7 @@ pub(super) enum BoxValue {
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct BoxTable {
+pub(crate) struct BoxTable {
     /// Width of the edges in scene units, greater than 0; by default 1/300 of the cell's diagonal.
     width: Option<f64>,
 }
@@ -148,7 +148,7 @@ pub(super) enum BondsValue {
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct BondsTable {
+pub(crate) struct BondsTable {
     /// Factor of the sum of covalent radii below which two atoms are bonded, greater than 0.
     factor: Option<f64>,
     /// Distance in scene units below which any two spheres are bonded, greater than 0.

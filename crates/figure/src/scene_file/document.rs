@@ -31,7 +31,7 @@ use pinhole_data::load::FORMATS;
 /// All keys and tables at the top level of a scene file.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct Document {
+pub(crate) struct Document {
     /// The name of a style, whose keys are those that the scene does not give itself.
     pub(super) style: Option<String>,
     /// What computes the colour of a pixel: `primary`, `studio` or `path`. By default what other keys need.
@@ -121,8 +121,8 @@ pub(super) struct Document {
     pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
 }
 
-/// The keys that apply to `data`, beside the tables `[elements.NAME]`.
-const OF_DATA: [&str; 18] = [
+/// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.
+pub const KEYS_OF_DATA: [&str; 18] = [
     "format",
     "frame",
     "topology",
@@ -153,7 +153,7 @@ impl Document {
         let Some(file) = self.data.clone() else {
             let is_given = |key: &&str| places.keys.has(key);
             let element = self.elements.keys().next().map(|name| format!("elements.{name}"));
-            let orphan = OF_DATA.into_iter().find(is_given).map(str::to_owned).or(element);
+            let orphan = KEYS_OF_DATA.into_iter().find(is_given).map(str::to_owned).or(element);
             return orphan.map_or(Ok(None), |key| {
                 let span = places.span(&key);
                 let name = key.split('.').next().unwrap_or_default();
@@ -307,7 +307,7 @@ impl FilmTable {
 /// A table of the list `spheres`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SphereTable {
+pub(crate) struct SphereTable {
     /// The centre in scene units.
     center: List<3>,
     /// The radius in scene units, greater than 0.

@@ -1,11 +1,13 @@
 //! The layers from which settings are read, and the flags that reach them.
 
 pub mod flags;
+mod keys;
 pub(crate) mod layers;
 pub(crate) mod places;
 mod quoted;
 mod words;
 
+pub use keys::keys_of;
 pub use layers::{Layer, Sources};
 pub use quoted::quoted;
 pub use words::{list_of, size_of};

@@ -1,11 +1,12 @@
 //! `docs/reference/settings.md`: all keys of scene files, with the doc comments of the structs that have them.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
 use pinhole::camera::PinholeCamera;
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, Settled};
-use pinhole_figure::settings::flags::FLAGS;
+use pinhole_figure::settings::{self, flags::FLAGS};
 
 const FILES: &str = "crates/figure/src/scene_file/document.rs";
 const DATA: &str = "crates/figure/src/scene_file/data.rs";
@@ -188,9 +189,24 @@ fn the_page_of_settings_is_as_it_is_made() {
             "\n## {title}\n\n| key | value | default | flag | meaning |\n|---|---|---|---|---|\n"
         )
         .unwrap();
+        let of_source = names.iter().flat_map(|name| keys_of(&source, name));
+        let of_source: BTreeSet<String> = of_source.map(|key| key.name).collect();
+        let path = table.replace("KIND", "pinhole");
+        let known = path.split(", ").flat_map(settings::keys_of).filter(|key| *key != "kind");
+        let known: BTreeSet<String> = known
+            .chain(
+                // The list of the keys of a path is part of its table here.
+                if table == "camera_path" {
+                    settings::keys_of("camera_path.keys")
+                } else {
+                    Vec::new()
+                },
+            )
+            .map(str::to_owned)
+            .collect();
+        assert_eq!(of_source, known, "{table}");
         for name in names {
             let keys = keys_of(&source, name);
-            assert!(!keys.is_empty(), "{file} has no {name}");
             for Key { kind, name, value, meaning } in keys {
                 let path = if table.is_empty() { name.clone() } else { format!("{table}.{name}") };
                 let is_same = |key: &str| match path.strip_prefix("camera.") {
