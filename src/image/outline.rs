@@ -8,6 +8,7 @@ use glam::Vec2;
 use crate::image::color::LinearRgb;
 use crate::image::{Image, Layer, LayerSet, NO_ID};
 use crate::parallel;
+use crate::range::RangeError;
 
 /// The layers that drawing outlines needs.
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
@@ -37,6 +38,20 @@ impl Outline {
             depth: 0.01,
             angle: PI,
         }
+    }
+}
+
+impl Outline {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("width", self.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
+        within("depth", self.depth.into(), [0.0, 1e6], "0 or more")?;
+        within("angle", self.angle.into(), [0.0, f64::from(PI) + 1e-6], "from 0 to 180 degrees")
+            .map(drop)
     }
 }
 

@@ -1,10 +1,8 @@
 //! Checks of render settings: numbers out of range, and settings that contradict each other.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
-use super::{
-    DepthCue, Integrator, Occlusion, Outline, PathTracing, RenderSettings, Sampling, Studio,
-};
+use super::{Integrator, RenderSettings};
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{LightKind, Sky, SkyLight};
@@ -174,86 +172,6 @@ fn check_brightness(
     }
 }
 
-impl Sampling {
-    /// Checks that the number of samples is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if the number of samples is out of range.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let most = f64::from(Self::MAX_SAMPLES);
-        let range = "from 1 to 16777216";
-        RangeError::unless_within("samples", self.samples.into(), [1.0, most], range).map(drop)
-    }
-}
-
-impl PathTracing {
-    /// Checks that every number is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if a number is out of range. The error names the first one.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let within = RangeError::unless_within;
-        within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
-    }
-}
-
-impl Studio {
-    /// Checks that every number is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if a number is out of range. The error names the first one.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let most = self.max_surfaces.into();
-        RangeError::unless_within("max_surfaces", most, [1.0, 64.0], "from 1 to 64")?;
-        self.occlusion.iter().try_for_each(Occlusion::check)?;
-        self.depth_cue.iter().try_for_each(DepthCue::check)?;
-        self.outline.iter().try_for_each(Outline::check)
-    }
-}
-
-impl Occlusion {
-    /// Checks that every number is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if a number is out of range. The error names the first one.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let within = RangeError::unless_within;
-        within("samples", self.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
-        self.radius.map_or(Ok(()), |r| within("radius", r, LENGTH, LENGTH_WORDS).map(drop))
-    }
-}
-
-impl DepthCue {
-    /// Checks that every number is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if a number is out of range. The error names the first one.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let within = RangeError::unless_within;
-        within("near", self.near, [0.0, MAX_LENGTH], "0 or more, and less than 2^56")?;
-        within("far", self.far, [self.near.max(MIN_LENGTH), MAX_LENGTH], "more than `near`")?;
-        let range = "more than `near`";
-        let far = RangeError { parameter: "far", value: self.far, range };
-        if self.far > self.near { Ok(()) } else { Err(far) }
-    }
-}
-
-impl Outline {
-    /// Checks that every number is in its range.
-    ///
-    /// # Errors
-    /// Returns an error if a number is out of range. The error names the first one.
-    pub fn check(&self) -> Result<(), RangeError> {
-        let within = RangeError::unless_within;
-        within("width", self.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
-        within("depth", self.depth.into(), [0.0, 1e6], "0 or more")?;
-        within("angle", self.angle.into(), [0.0, PI + 1e-6], "from 0 to 180 degrees").map(drop)
-    }
-}
-
-const LENGTH: [f64; 2] = [MIN_LENGTH, MAX_LENGTH];
-const LENGTH_WORDS: &str = "a length greater than 0, from 2^-56 to 2^56";
-
 fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
     let within = |parameter, value, bounds, range| {
         RangeError::unless_within(parameter, value, bounds, range)
@@ -280,7 +198,8 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
             for x in center.to_array() {
                 within("center", x, [-MAX_LENGTH, MAX_LENGTH], "finite")?;
             }
-            within("radius", radius, LENGTH, LENGTH_WORDS)?;
+            let range = "a length greater than 0, from 2^-56 to 2^56";
+            within("radius", radius, [MIN_LENGTH, MAX_LENGTH], range)?;
         }
     }
     Ok(())

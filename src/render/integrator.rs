@@ -1,8 +1,10 @@
 //! Integrators: the algorithms that turn rays into colours, and their settings.
 
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::image::color::LinearRgb;
 use crate::image::outline::Outline;
 use crate::light::codes;
+use crate::range::RangeError;
 
 /// The algorithm that turns rays into colours.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -100,6 +102,17 @@ impl Default for PathTracing {
     }
 }
 
+impl PathTracing {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
+    }
+}
+
 impl LightSampling {
     /// The code of the method on a device.
     pub(crate) const fn code(self) -> u32 {
@@ -158,6 +171,20 @@ impl Default for Studio {
     }
 }
 
+impl Studio {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let most = self.max_surfaces.into();
+        RangeError::unless_within("max_surfaces", most, [1.0, 64.0], "from 1 to 64")?;
+        self.occlusion.iter().try_for_each(Occlusion::check)?;
+        self.depth_cue.iter().try_for_each(DepthCue::check)?;
+        self.outline.iter().try_for_each(Outline::check)
+    }
+}
+
 /// Ambient occlusion, which reduces ambient light to the share of cosine-weighted directions in which no opaque sphere
 /// is near.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -176,6 +203,20 @@ impl Default for Occlusion {
     }
 }
 
+impl Occlusion {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("samples", self.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
+        let range = "a length greater than 0, from 2^-56 to 2^56";
+        self.radius
+            .map_or(Ok(()), |r| within("radius", r, [MIN_LENGTH, MAX_LENGTH], range).map(drop))
+    }
+}
+
 /// Depth cueing: colours fade linearly with the distance along the ray.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -186,4 +227,19 @@ pub struct DepthCue {
     pub far: f64,
     /// The colour to which others fade.
     pub color: LinearRgb,
+}
+
+impl DepthCue {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of range. The error names the first one.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("near", self.near, [0.0, MAX_LENGTH], "0 or more, and less than 2^56")?;
+        within("far", self.far, [self.near.max(MIN_LENGTH), MAX_LENGTH], "more than `near`")?;
+        let range = "more than `near`";
+        let far = RangeError { parameter: "far", value: self.far, range };
+        if self.far > self.near { Ok(()) } else { Err(far) }
+    }
 }

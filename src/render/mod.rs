@@ -16,6 +16,7 @@ use crate::image::color::LinearRgb;
 use crate::image::denoise;
 use crate::image::outline;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky};
+use crate::range::RangeError;
 
 mod check;
 mod integrator;
@@ -71,6 +72,16 @@ pub struct Sampling {
 impl Sampling {
     /// The largest number of samples for each pixel, 2²⁴.
     pub const MAX_SAMPLES: u32 = 1 << 24;
+
+    /// Checks that the number of samples is in its range.
+    ///
+    /// # Errors
+    /// Returns an error if the number of samples is out of range.
+    pub fn check(&self) -> Result<(), RangeError> {
+        let most = f64::from(Self::MAX_SAMPLES);
+        let range = "from 1 to 16777216";
+        RangeError::unless_within("samples", self.samples.into(), [1.0, most], range).map(drop)
+    }
 }
 
 impl Default for Sampling {

@@ -1,13 +1,10 @@
-//! Layers of settings: which one wins, what errors name, and the page that lists all flags.
-
-use std::fmt::Write;
-use std::path::Path;
+//! Layers of settings: which one wins, and what errors name.
 
 use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::render::{Integrator, Outline, RenderSettings, Studio};
 use pinhole::{LinearRgb, Scene, Sphere};
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
-use pinhole_figure::settings::flags::{FLAGS, Flag, Group, Value};
+use pinhole_figure::settings::flags::{FLAGS, Flag, Value};
 use pinhole_figure::settings::{Layer, Sources};
 use pinhole_figure::style::Style;
 
@@ -202,43 +199,4 @@ fn every_flag_reaches_a_setting() {
 
 fn flag_named(name: &str) -> &'static Flag {
     Flag::of_name(name).unwrap()
-}
-
-/// `docs/reference/flags.md`, which `PINHOLE_UPDATE_SNAPSHOTS=1` rewrites.
-#[test]
-fn the_page_of_flags_is_as_it_is_made() {
-    let mut page = "# Flags and the keys that they give\n\n\
-        <!-- Made by `PINHOLE_UPDATE_SNAPSHOTS=1 cargo test -p pinhole-figure settings`. -->\n\n\
-        Each of these flags of `pinhole render` gives a key of a [scene file](scene-file.md). A flag takes precedence over \
-        the file, and the file over its style. `--set KEY=VALUE` reaches every key and takes precedence over all else. In \
-        keys of the camera, `*` is the kind of the camera.\n"
-        .to_owned();
-    let mut group = None;
-    for flag in FLAGS {
-        if group.replace(flag.group) != Some(flag.group) {
-            let title = match flag.group {
-                Group::Input => "Input",
-                Group::Camera => "Camera",
-                Group::Structure => "Selection, cell and bonds",
-                Group::Color => "Colours, radii and opacities from data",
-                Group::Annotation => "Annotations",
-                Group::Look => "Light and style",
-                Group::Output => "Output",
-            };
-            write!(page, "\n## {title}\n\n| flag | key | |\n|---|---|---|\n").unwrap();
-        }
-        let key = if flag.key.is_empty() { "any" } else { flag.key };
-        let value = match flag.alone {
-            None => format!(" {}", flag.shown),
-            Some(_) => format!("[={}]", flag.shown),
-        };
-        let help = flag.help.replace('|', "\\|").replace('<', "&lt;").replace("[_", "\\[_");
-        writeln!(page, "| `{}{value}` | `{key}` | {help} |", flag.flag).unwrap();
-    }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/flags.md");
-    if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
-        std::fs::write(&path, &page).unwrap();
-    }
-    let found = std::fs::read_to_string(&path).unwrap_or_default();
-    assert_eq!(found, page, "PINHOLE_UPDATE_SNAPSHOTS=1 rewrites the page");
 }

@@ -1,4 +1,5 @@
-//! `docs/reference/settings.md`: all keys of scene files, with the doc comments of the structs that have them.
+//! `docs/reference/settings.md`: all keys of scene files, with the doc comments of the structs that have them, and all
+//! flags.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -6,7 +7,10 @@ use std::path::Path;
 
 use pinhole::camera::PinholeCamera;
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, Settled};
-use pinhole_figure::settings::{self, flags::FLAGS};
+use pinhole_figure::settings::{
+    self,
+    flags::{FLAGS, Group},
+};
 
 const FILES: &str = "crates/figure/src/scene_file/document.rs";
 const DATA: &str = "crates/figure/src/scene_file/data.rs";
@@ -172,7 +176,7 @@ fn default_of(tables: &[toml::Table], path: &str) -> Option<String> {
 #[test]
 fn the_page_of_settings_is_as_it_is_made() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut page = "# All settings\n\n\
+    let mut page = "# All settings and their flags\n\n\
         <!-- Made by `PINHOLE_UPDATE_SNAPSHOTS=1 cargo test -p pinhole-figure settings`. -->\n\n\
         These are the keys of a [scene file](scene-file.md), which flags, `--set KEY=VALUE` and arguments in Python give \
         as well. Lengths are in scene units. A colour is a CSS name, `\"#rrggbb\"` or a linear triple `[r, g, b]`. Where \
@@ -244,10 +248,42 @@ fn the_page_of_settings_is_as_it_is_made() {
             |title: &str| title.split(", ").any(|title| title.split('.').next() == Some(&table));
         assert!(TABLES.iter().any(|(title, ..)| is_named(title)), "TABLES lacks {table}");
     }
+    write_flags(&mut page);
     let path = root.join("docs/reference/settings.md");
     if std::env::var_os("PINHOLE_UPDATE_SNAPSHOTS").is_some_and(|value| value == "1") {
         std::fs::write(&path, &page).unwrap();
     }
     let found = std::fs::read_to_string(&path).unwrap_or_default();
     assert_eq!(found, page, "PINHOLE_UPDATE_SNAPSHOTS=1 rewrites the page");
+}
+
+/// Writes the tables of flags, with the key of each.
+fn write_flags(page: &mut String) {
+    page.push_str(
+        "\n## Flags and the keys that they give\n\n\
+        A flag of `pinhole render` takes precedence over the file, and the file over its style. `--set KEY=VALUE` reaches \
+        every key and takes precedence over all else. In keys of the camera, `*` is the kind of the camera.\n",
+    );
+    let mut group = None;
+    for flag in FLAGS {
+        if group.replace(flag.group) != Some(flag.group) {
+            let title = match flag.group {
+                Group::Input => "Input",
+                Group::Camera => "Camera",
+                Group::Structure => "Selection, cell and bonds",
+                Group::Color => "Colours, radii and opacities from data",
+                Group::Annotation => "Annotations",
+                Group::Look => "Light and style",
+                Group::Output => "Output",
+            };
+            write!(page, "\n### {title}\n\n| flag | key | |\n|---|---|---|\n").unwrap();
+        }
+        let key = if flag.key.is_empty() { "any" } else { flag.key };
+        let value = match flag.alone {
+            None => format!(" {}", flag.shown),
+            Some(_) => format!("[={}]", flag.shown),
+        };
+        let help = flag.help.replace('|', "\\|").replace('<', "&lt;").replace("[_", "\\[_");
+        writeln!(page, "| `{}{value}` | `{key}` | {help} |", flag.flag).unwrap();
+    }
 }
