@@ -492,12 +492,11 @@ fn lines_are_those_of_a_second_drawing() {
         let mut rng = Rng::with_seed(seed);
         // More rows than the library draws at once.
         let image = pictured([rng.usize(20..110), rng.usize(20..300)], &mut rng);
-        let outline = Outline {
-            width: if seed % 10 == 0 { 64.0 } else { 0.5 + 6.0 * rng.f32() },
-            color: LinearRgb::new([rng.f32(), rng.f32(), 0.0]).unwrap(),
-            depth: [0.0, 0.001, 0.01, 0.1][rng.usize(0..4)],
-            angle: [0.0, 0.3, 0.6, 1.2, std::f32::consts::PI][rng.usize(0..5)],
-        };
+        let mut outline = Outline::thin();
+        outline.width = if seed % 10 == 0 { 64.0 } else { 0.5 + 6.0 * rng.f32() };
+        outline.color = LinearRgb::new([rng.f32(), rng.f32(), 0.0]).unwrap();
+        outline.depth = [0.0, 0.001, 0.01, 0.1][rng.usize(0..4)];
+        outline.angle = [0.0, 0.3, 0.6, 1.2, std::f32::consts::PI][rng.usize(0..5)];
         let studio = Studio { outline: Some(outline), ..Studio::default() };
         let settings =
             RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
