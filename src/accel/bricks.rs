@@ -59,7 +59,7 @@ pub struct Accel {
     pub(super) bricks: Vec<Brick>,
     pub(super) min: Vec3,
     pub(super) max: Vec3,
-    pub(super) may_part_equals: bool,
+    pub(super) may_split_duplicates: bool,
 }
 
 impl Accel {
@@ -90,8 +90,8 @@ impl Accel {
 
     /// Whether spheres with the same centre may be in different bricks.
     #[must_use]
-    pub fn may_part_equals(&self) -> bool {
-        self.may_part_equals
+    pub fn may_split_duplicates(&self) -> bool {
+        self.may_split_duplicates
     }
 }
 
@@ -112,7 +112,7 @@ pub struct Bricks<'a> {
     spheres: &'a [[f32; 4]],
     /// For each brick that has not been built, its spheres' indices in input order, ascending.
     parts: VecDeque<Vec<u32>>,
-    may_part_equals: bool,
+    may_split_duplicates: bool,
 }
 
 impl AccelPlan {
@@ -122,7 +122,7 @@ impl AccelPlan {
     pub fn bricks<'a>(&'a self, spheres: &'a [[f32; 4]]) -> Bricks<'a> {
         let count = spheres.len();
         let per_brick = count.div_ceil(self.brick_count).max(1);
-        let Division { parts, may_part_equals } = match self.structure {
+        let Division { parts, may_split_duplicates } = match self.structure {
             // Without a structure, each brick holds consecutive spheres in the order of ids.
             Structure::List => Division {
                 // The number of spheres fits into u32.
@@ -130,7 +130,7 @@ impl AccelPlan {
                     .into_iter()
                     .map(|range| (range.start as u32..range.end as u32).collect())
                     .collect(),
-                may_part_equals: self.brick_count > 1,
+                may_split_duplicates: self.brick_count > 1,
             },
             _ => divide(spheres, self.brick_count),
         };
@@ -139,17 +139,17 @@ impl AccelPlan {
         if parts.is_empty() {
             parts.push_back(Vec::new());
         }
-        Bricks { plan: self, spheres, parts, may_part_equals }
+        Bricks { plan: self, spheres, parts, may_split_duplicates }
     }
 
     /// Builds the planned structure. `spheres` must be those of the plan. [`AccelPlan::bricks`] needs less memory.
     #[must_use]
     pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
         let bricks = self.bricks(spheres);
-        let ((min, max), may_part_equals) = (bricks.bounds(), bricks.may_part_equals());
+        let ((min, max), may_split_duplicates) = (bricks.bounds(), bricks.may_split_duplicates());
         let bricks: Vec<Brick> = bricks.collect();
         let structure = self.structure.with_nested(bricks.iter().any(Brick::is_nested));
-        Accel { structure, bricks, min, max, may_part_equals }
+        Accel { structure, bricks, min, max, may_split_duplicates }
     }
 }
 
@@ -168,8 +168,8 @@ impl Bricks<'_> {
 
     /// Whether spheres with the same centre may be in different bricks.
     #[must_use]
-    pub fn may_part_equals(&self) -> bool {
-        self.may_part_equals
+    pub fn may_split_duplicates(&self) -> bool {
+        self.may_split_duplicates
     }
 
     fn build_part(&self, ids: Vec<u32>) -> Brick {

@@ -12,7 +12,7 @@ pub(super) struct Division {
     /// The ids of the spheres of each part, in ascending order.
     pub(super) parts: Vec<Vec<u32>>,
     /// Whether spheres with equal centres may be in different parts.
-    pub(super) may_part_equals: bool,
+    pub(super) may_split_duplicates: bool,
 }
 
 /// Divides spheres into parts of about the same number, by repeated median cuts across the longest side. The cuts halve
@@ -20,7 +20,7 @@ pub(super) struct Division {
 /// part enters.
 pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Division {
     if let Some(parts) = divide_by_sample(spheres, parts) {
-        return Division { parts, may_part_equals: false };
+        return Division { parts, may_split_duplicates: false };
     }
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
@@ -28,7 +28,7 @@ pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Division {
 /// Divides a list of ascending ids. The ids of each part ascend as well.
 fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     if parts <= 1 {
-        return Division { parts: vec![ids], may_part_equals: false };
+        return Division { parts: vec![ids], may_split_duplicates: false };
     }
     let axis = longest_side(spheres, &ids);
     let left_parts = parts / 2;
@@ -56,7 +56,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     let (mut all, others) =
         both(true, || cut(spheres, left, left_parts), || cut(spheres, right, parts - left_parts));
     all.parts.extend(others.parts);
-    all.may_part_equals |= others.may_part_equals || has_equals(spheres, &on_the_cut);
+    all.may_split_duplicates |= others.may_split_duplicates || has_equals(spheres, &on_the_cut);
     all
 }
 
@@ -248,7 +248,7 @@ mod tests {
             let coordinate = |id: &u32| spheres[*id as usize][0] + 0.0;
             sorted.sort_by(|a, b| coordinate(a).total_cmp(&coordinate(b)));
             for parts in [1, 2, 3] {
-                let Division { parts: bricks, may_part_equals } = divide(&spheres, parts);
+                let Division { parts: bricks, may_split_duplicates } = divide(&spheres, parts);
                 assert_eq!(bricks.len(), parts);
                 // The first cut is along x.
                 let middle = count as usize * (parts / 2) / parts;
@@ -269,7 +269,7 @@ mod tests {
                     && spheres.iter().any(|sphere| {
                         bricks.iter().filter(|ids| is_in(ids, &sphere[..3])).count() > 1
                     });
-                assert!(may_part_equals || !parts_equals, "{count} in {parts}");
+                assert!(may_split_duplicates || !parts_equals, "{count} in {parts}");
                 times_parted += u32::from(parts_equals);
             }
         }

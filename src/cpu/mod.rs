@@ -9,7 +9,7 @@
 use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
-use crate::render::{Decision, Nearest, Picture, RenderSettings, Watch};
+use crate::render::{Decision, NearestPicture, Picture, RenderSettings, Watch};
 
 mod denoise;
 pub(crate) mod light;
@@ -87,7 +87,7 @@ pub fn render_nearest<'a>(
     view: &View<'_>,
     settings: &RenderSettings,
     layers: LayerSet,
-) -> Result<Option<Nearest>, RenderError> {
+) -> Result<Option<NearestPicture>, RenderError> {
     let search = search.into();
     if settings.primary().is_none() {
         return settings.check(search.scene()).map(|()| None).map_err(RenderError::from);
@@ -101,5 +101,5 @@ pub fn render_nearest<'a>(
     });
     let (t, ids): (Vec<f64>, Vec<u32>) = hits.into_iter().unzip();
     let distances = t.iter().map(|t| *t as f32).collect();
-    Ok(Nearest::new(image, t, ids, distances))
+    Ok(NearestPicture::new(image, t, ids, distances))
 }

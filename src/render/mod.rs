@@ -30,7 +30,7 @@ pub use check::SettingsError;
 pub use integrator::{
     DepthCue, Integrator, LightSampling, Occlusion, PathTracing, PrimarySettings, Shading, Studio,
 };
-pub use nearest::{Nearest, NotOfOneScene};
+pub use nearest::{NearestPicture, NotOfOneScene};
 pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
 

@@ -8,10 +8,10 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 
 /// A picture of some spheres of a scene by primary rays, with the distance at which each ray hits.
-/// [`Nearest::keep_nearer`] merges such pictures of all parts of a scene into that of the whole, to the bit, in any
-/// order and grouping. A ray shows the nearest hit, and at equal distances the smallest id, as in all structures.
+/// [`NearestPicture::keep_nearer`] merges such pictures of all parts of a scene into that of the whole, to the bit, in
+/// any order and grouping. A ray shows the nearest hit, and at equal distances the smallest id, as in all structures.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Nearest {
+pub struct NearestPicture {
     image: Image,
     /// The distance along each ray from the renderer's start of the ray. Infinite for a miss.
     t: Vec<f64>,
@@ -31,12 +31,12 @@ const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 /// Extra width of a box around spheres, as a fraction of the scene's diagonal. It exceeds the margin of boxes.
 const WIDER: f64 = 1.0 / (1 << 14) as f64;
 
-impl Nearest {
-    /// The number of bytes per pixel in [`Nearest::to_le_bytes`], in addition to the layers.
+impl NearestPicture {
+    /// The number of bytes per pixel in [`NearestPicture::to_le_bytes`], in addition to the layers.
     pub const BYTES_PER_PIXEL: u64 = 12;
 
     /// A picture with the distances along the rays and the ids of all pixels, row by row. `None` unless both lists have
-    /// one entry per pixel. Only [`Nearest::hides`] needs the distances from the camera, which may be empty.
+    /// one entry per pixel. Only [`NearestPicture::hides`] needs the distances from the camera, which may be empty.
     pub(crate) fn new(image: Image, t: Vec<f64>, id: Vec<u32>, distance: Vec<f32>) -> Option<Self> {
         let pixels = image.color().len();
         let fits = t.len() == pixels && id.len() == pixels;
@@ -153,8 +153,8 @@ impl Nearest {
         bytes
     }
 
-    /// Makes a picture from the bytes that [`Nearest::to_le_bytes`] returned for these layers. `None` if the number of
-    /// bytes differs, or the memory cannot be reserved.
+    /// Makes a picture from the bytes that [`NearestPicture::to_le_bytes`] returned for these layers. `None` if the
+    /// number of bytes differs, or the memory cannot be reserved.
     #[must_use]
     pub fn from_le_bytes(size: [u32; 2], layers: LayerSet, bytes: &[u8]) -> Option<Self> {
         let pixels = usize::try_from(u64::from(size[0]) * u64::from(size[1])).ok()?;

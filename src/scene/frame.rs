@@ -89,10 +89,10 @@ pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bou
 /// Bounds and frame of a scene whose parts are loaded separately. All parts share them. They determine the arithmetic
 /// of rays, so each sphere is hit at the same distance, to the bit, as in the whole scene.
 ///
-/// It is made in two passes over the spheres. [`Whole::new`] needs the box of all of them, and [`Whole::add`] then
+/// It is made in two passes over the spheres. [`SceneExtent::new`] needs the box of all of them, and [`SceneExtent::add`] then
 /// needs each one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Whole {
+pub struct SceneExtent {
     /// The bounding box of all spheres as given, in world space.
     pub bounds: Bounds,
     /// The number of spheres.
@@ -113,7 +113,7 @@ pub struct Whole {
     pub radius_sum: f64,
 }
 
-impl Whole {
+impl SceneExtent {
     /// A whole without spheres yet, in the frame of spheres with the given bounding box.
     #[must_use]
     pub fn new(bounds: Bounds) -> Self {
@@ -182,13 +182,13 @@ mod tests {
             .collect()
     }
 
-    fn whole_of(spheres: &[[f64; 4]]) -> Whole {
+    fn whole_of(spheres: &[[f64; 4]]) -> SceneExtent {
         let bounds = spheres
             .iter()
             .map(|[x, y, z, radius]| Bounds::of_sphere(DVec3::new(*x, *y, *z), *radius))
             .reduce(Bounds::union)
             .unwrap();
-        let mut whole = Whole::new(bounds);
+        let mut whole = SceneExtent::new(bounds);
         spheres.iter().for_each(|sphere| whole.add(whole.in_frame(*sphere)));
         whole
     }

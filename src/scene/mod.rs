@@ -32,7 +32,7 @@ pub use appearance::{Appearance, Colors};
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
-pub use frame::Whole;
+pub use frame::SceneExtent;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
@@ -50,7 +50,7 @@ pub struct Scene {
     /// The number of added spheres, which come after the spheres of the data.
     added: usize,
     /// The scene that this is a part of, if other spheres are not in memory.
-    whole: Option<Whole>,
+    whole: Option<SceneExtent>,
 }
 
 impl Scene {
@@ -113,13 +113,13 @@ impl Scene {
     }
 
     /// Some spheres of a larger scene, in input order and in its frame. If pictures of parts by primary rays are merged
-    /// by [`Nearest`](crate::render::Nearest), the result is that of the whole, to the bit. Integrators with light need
-    /// all spheres.
+    /// by [`NearestPicture`](crate::render::NearestPicture), the result is that of the whole, to the bit. Integrators
+    /// with light need all spheres.
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside the whole scene.
     pub fn part(
-        whole: Whole,
+        whole: SceneExtent,
         spheres: Vec<[f32; 4]>,
         appearance: Appearance,
     ) -> Result<Self, SceneError> {
@@ -138,7 +138,7 @@ impl Scene {
 
     /// The scene that this is a part of. `None` if all spheres are here.
     #[must_use]
-    pub fn whole(&self) -> Option<Whole> {
+    pub fn whole(&self) -> Option<SceneExtent> {
         self.whole
     }
 

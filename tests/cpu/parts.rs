@@ -5,8 +5,8 @@ use pinhole::cpu::{self, RenderError, SampledPicture, SearchStructure};
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
 use pinhole::image::Layer;
-use pinhole::render::{Decision, Nearest, Outline, Progress, Sampling};
-use pinhole::scene::Whole;
+use pinhole::render::{Decision, NearestPicture, Outline, Progress, Sampling};
+use pinhole::scene::SceneExtent;
 use pinhole::{
     Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, View,
 };
@@ -100,8 +100,8 @@ fn spheres() -> Vec<[f32; 4]> {
     all
 }
 
-fn whole_of(scene: &Scene) -> Whole {
-    let mut whole = Whole::new(scene.bounds().unwrap());
+fn whole_of(scene: &Scene) -> SceneExtent {
+    let mut whole = SceneExtent::new(scene.bounds().unwrap());
     scene.spheres().iter().for_each(|sphere| whole.add(*sphere));
     whole
 }
@@ -114,7 +114,7 @@ fn settings() -> RenderSettings {
 }
 
 /// The pictures of parts. The spheres of each part are given by their ids.
-fn parts(scene: &Scene, ids: &[Vec<u32>], view: &View<'_>) -> Vec<Nearest> {
+fn parts(scene: &Scene, ids: &[Vec<u32>], view: &View<'_>) -> Vec<NearestPicture> {
     let whole = whole_of(scene);
     let part = |ids: &Vec<u32>| {
         let spheres = ids.iter().map(|id| scene.spheres()[*id as usize]).collect();
@@ -145,8 +145,8 @@ fn parts_in_any_order_and_grouping_make_the_picture_of_the_whole() {
                 // Sends the part as bytes, as between machines.
                 let size = [film.width(), film.height()];
                 let bytes = part.to_le_bytes();
-                let part = Nearest::from_le_bytes(size, LayerSet::ALL, &bytes).unwrap();
-                assert!(Nearest::from_le_bytes(size, LayerSet::ALL, &bytes[1..]).is_none());
+                let part = NearestPicture::from_le_bytes(size, LayerSet::ALL, &bytes).unwrap();
+                assert!(NearestPicture::from_le_bytes(size, LayerSet::ALL, &bytes[1..]).is_none());
                 let at = rng.usize(..left.len());
                 left[at].keep_nearer(&part).unwrap();
             }
@@ -165,10 +165,11 @@ fn a_part_hides_only_what_changes_nothing() {
     let view = View::new(&camera, film);
     let (near, far): (Vec<u32>, Vec<u32>) =
         (0..scene.len() as u32).partition(|id| scene.spheres()[*id as usize][2] > 0.5);
-    let [mut near, far] = <[Nearest; 2]>::try_from(parts(&scene, &[near, far], &view)).unwrap();
+    let [mut near, far] =
+        <[NearestPicture; 2]>::try_from(parts(&scene, &[near, far], &view)).unwrap();
     let bounds = |[x, y, z]: [f64; 3], radius| Bounds::of_sphere([x, y, z].into(), radius);
     let all = scene.bounds().unwrap();
-    let is_hidden = |nearest: &Nearest, bounds| nearest.hides(&view, &all, &bounds);
+    let is_hidden = |nearest: &NearestPicture, bounds| nearest.hides(&view, &all, &bounds);
     assert!(!is_hidden(&near, bounds([0.5, 0.5, 0.9], 0.1)));
     assert!(is_hidden(&near, bounds([7.0, 0.5, 0.5], 0.1)));
     let mut hidden = 0;

@@ -9,7 +9,7 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
 use pinhole::image::denoise::GUIDES;
 use pinhole::verify::run_file::{
-    self, Extras, LitSamples, Provenance, Run, RunFile, RunFileError, ShownPicture, write_with,
+    self, Extras, FinalPicture, LitSamples, Provenance, Run, RunFile, RunFileError, write_with,
 };
 use pinhole::verify::{
     Checker, LitCertificate, LitRecording, Outcome, PlainRender, Recording, RequestedCamera,
@@ -533,7 +533,7 @@ fn materials_and_pictures_are_kept() {
     let scene = Scene::from_parts(array, appearance).unwrap();
 
     let size = [3, 2];
-    let shown = ShownPicture { size, srgb: vec![[1, 2, 3]; 6], samples: 4, wanted: 64 };
+    let shown = FinalPicture { size, srgb: vec![[1, 2, 3]; 6], samples: 4, wanted: 64 };
     let pose = Pose::looking_at([2.0, 0.1, 5.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [6.0, 4.0]).unwrap();
     let view = View::new(&camera, Film::new(size[0], size[1]).unwrap());

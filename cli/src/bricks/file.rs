@@ -3,7 +3,7 @@
 
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec3, Vec3};
-use pinhole::scene::Whole;
+use pinhole::scene::SceneExtent;
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of a file of this version.
@@ -75,7 +75,7 @@ pub(super) enum StoredColors {
     Rgba8,
 }
 
-/// The numbers of [`Whole`] as bits.
+/// The numbers of [`SceneExtent`] as bits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WholeBits {
@@ -98,7 +98,7 @@ pub(super) fn corner(bits: [u32; 3]) -> Vec3 {
 }
 
 impl WholeBits {
-    pub(super) fn of(whole: &Whole) -> Self {
+    pub(super) fn of(whole: &SceneExtent) -> Self {
         let wide = |corner: DVec3| corner.to_array().map(f64::to_bits);
         Self {
             count: whole.count,
@@ -111,7 +111,7 @@ impl WholeBits {
     }
 
     /// Returns the bounds of the whole; `None` if numbers are not finite or corners are in the wrong order.
-    pub(super) fn whole(&self) -> Option<Whole> {
+    pub(super) fn whole(&self) -> Option<SceneExtent> {
         let [min, max] = self.bounds.map(|bits| DVec3::from(bits.map(f64::from_bits)));
         let bounds = extent(min, max)?;
         let [low, high] = self.spheres.map(corner);
@@ -120,7 +120,7 @@ impl WholeBits {
             |low: Vec3, high: Vec3| low.is_finite() && high.is_finite() && low.cmple(high).all();
         let [radius_min, radius_max] = self.radii.map(f32::from_bits);
         let is_whole = ordered(low, high) && ordered(center_min, center_max) && self.count > 0;
-        is_whole.then_some(Whole {
+        is_whole.then_some(SceneExtent {
             count: self.count,
             min: low,
             max: high,
@@ -129,7 +129,7 @@ impl WholeBits {
             radius_min,
             radius_max,
             radius_sum: f64::from_bits(self.radius_sum),
-            ..Whole::new(bounds)
+            ..SceneExtent::new(bounds)
         })
     }
 }

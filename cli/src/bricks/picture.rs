@@ -21,12 +21,12 @@ use pinhole::gpu::{Headless, PictureRequest, Wait};
 use pinhole::image::Image;
 #[cfg(feature = "gpu")]
 use pinhole::render::Decision;
-use pinhole::render::{Nearest, RenderSettings};
+use pinhole::render::{NearestPicture, RenderSettings};
 use pinhole::scene::Scene;
 
 pub(crate) fn render(file: &BrickFile, shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
     let nearest = nearest_of(file, 0..file.len(), shot)?;
-    Ok(nearest.into_iter().map(Nearest::into_image).collect())
+    Ok(nearest.into_iter().map(NearestPicture::into_image).collect())
 }
 
 /// Refuses light, which needs all spheres at once.
@@ -49,15 +49,15 @@ pub(crate) fn nearest_of(
     file: &BrickFile,
     bricks: Range<usize>,
     shot: &Shot<'_>,
-) -> Result<Vec<Nearest>, Failure> {
+) -> Result<Vec<NearestPicture>, Failure> {
     let Shot { input, views, .. } = *shot;
     check_without_light(file, &input.settings)?;
     // Both eyes see the bricks in about the same order.
     let order = nearest_first(file, bricks, &views[0]);
-    let mut nearest: Vec<Nearest> = Vec::new();
+    let mut nearest: Vec<NearestPicture> = Vec::new();
     for (number, brick) in order.iter().enumerate() {
         let bounds = file.bounds(*brick).with_context(|| file.path.display().to_string())?;
-        let is_hidden = |(view, nearest): (&View<'_>, &Nearest)| {
+        let is_hidden = |(view, nearest): (&View<'_>, &NearestPicture)| {
             nearest.hides(view, &file.whole().bounds, &bounds)
         };
         if !nearest.is_empty() && views.iter().zip(&nearest).all(is_hidden) {
@@ -97,7 +97,7 @@ fn nearest_first(file: &BrickFile, bricks: Range<usize>, view: &View<'_>) -> Vec
     order.into_iter().map(|(_, brick)| brick).collect()
 }
 
-fn of_scene(scene: &Scene, shot: &Shot<'_>) -> Result<Vec<Nearest>, Failure> {
+fn of_scene(scene: &Scene, shot: &Shot<'_>) -> Result<Vec<NearestPicture>, Failure> {
     let Shot { input, views, layers, opened, .. } = *shot;
     match opened {
         #[cfg(feature = "gpu")]
@@ -126,9 +126,9 @@ fn on_gpu(
     shot: &Shot<'_>,
     view: &View<'_>,
     choice: pinhole::accel::AccelChoice,
-) -> Result<Nearest, Failure> {
+) -> Result<NearestPicture, Failure> {
     let (settings, layers) = (&shot.input.settings, shot.layers);
-    let host_bytes_per_pixel = memory::ENCODING_BYTES_PER_PIXEL + Nearest::BYTES_PER_PIXEL;
+    let host_bytes_per_pixel = memory::ENCODING_BYTES_PER_PIXEL + NearestPicture::BYTES_PER_PIXEL;
     let request = PictureRequest::new(scene, view, settings, layers);
     let request = PictureRequest { host_bytes_per_pixel, ..request };
     let plan = |choice| headless.plan(&request, choice);

@@ -18,7 +18,7 @@ use crate::terminal::memory::readable;
 use crate::terminal::text;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
-use pinhole::scene::{Appearance, Colors, Scene, Whole};
+use pinhole::scene::{Appearance, Colors, Scene, SceneExtent};
 
 /// Number of bytes that are read at a time.
 const PIECE: usize = 1 << 20;
@@ -28,7 +28,7 @@ const PIECE: usize = 1 << 20;
 pub(crate) struct BrickFile {
     pub(super) path: PathBuf,
     pub(super) header: Header,
-    pub(super) whole: Whole,
+    pub(super) whole: SceneExtent,
 }
 
 /// A brick in memory.
@@ -51,7 +51,7 @@ impl BrickFile {
         Ok(Arc::new(Self { path: path.to_path_buf(), header, whole }))
     }
 
-    pub(crate) fn whole(&self) -> &Whole {
+    pub(crate) fn whole(&self) -> &SceneExtent {
         &self.whole
     }
 

@@ -18,7 +18,7 @@ use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed_w
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::{memory, threads};
-use pinhole::scene::{Colors, Scene, Whole};
+use pinhole::scene::{Colors, Scene, SceneExtent};
 use pinhole_data::load::Format as DataFormat;
 
 /// Default size of a brick in bytes: spheres and ids of 4 Mi spheres.
@@ -213,7 +213,7 @@ fn write(
     stage(1, "the box of all spheres");
     let bounds = stream.bounds()?.context("there are no spheres")?;
     stage(2, "how they are spread");
-    let mut whole = Whole::new(bounds);
+    let mut whole = SceneExtent::new(bounds);
     let low = (bounds.min() - whole.origin()).as_vec3();
     let mut cells = Cells::new(low, (bounds.max() - whole.origin()).as_vec3(), stream.count());
     let mut sample = Sample::new(stream.count(), bricks as u64);

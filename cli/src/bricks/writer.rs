@@ -13,7 +13,7 @@ use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec3, Vec3};
 use pinhole::scene::sphere::Sphere;
-use pinhole::scene::{Scene, SceneError, Whole};
+use pinhole::scene::{Scene, SceneError, SceneExtent};
 use pinhole_data::load::Format;
 
 /// Number of spheres that are read at a time.
@@ -62,7 +62,7 @@ impl Stream {
     /// Calls `each` with every sphere and its id. Spheres are in the frame of the whole.
     pub(crate) fn for_each(
         &self,
-        whole: &Whole,
+        whole: &SceneExtent,
         each: &mut dyn FnMut(u32, [f32; 4]) -> Result<()>,
     ) -> Result<()> {
         match self {

@@ -6,7 +6,7 @@ use self::target::Target;
 use crate::flags::common::Stereo;
 use crate::flags::render::RenderArgs;
 use crate::frames::args::{FrameRange, FramesArgs};
-use crate::frames::moving::WantedPath;
+use crate::frames::moving::PathRequest;
 pub(crate) use crate::frames::numbers::Overview;
 pub(super) use crate::frames::run::run;
 pub(crate) use crate::frames::run::{Ready, ReadyOptions, ready};
@@ -27,7 +27,7 @@ pub(super) fn is_movie(path: &Path) -> bool {
 
 #[derive(Clone, Debug)]
 enum Pictures {
-    Frames { range: FrameRange, camera_from: Option<FrameRange>, path: Option<WantedPath> },
+    Frames { range: FrameRange, camera_from: Option<FrameRange>, path: Option<PathRequest> },
     Turntable { count: u32 },
 }
 
@@ -95,7 +95,7 @@ impl SeriesRequest {
             None => Pictures::Frames {
                 range: frames.unwrap_or(FrameRange::ALL),
                 camera_from: camera_from.map(FrameRange::One),
-                path: path.map(WantedPath::read).transpose()?,
+                path: path.map(PathRequest::read).transpose()?,
             },
         };
         Ok(Some(Self { pictures, picture_name: name, target, fps: fps.unwrap_or(25), resume }))

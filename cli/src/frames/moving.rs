@@ -23,12 +23,12 @@ use pinhole_figure::scene_file::{SceneFile, parse_camera_path};
 const MOST_PICTURES: usize = 100_000;
 
 #[derive(Clone, Debug)]
-pub(crate) struct WantedPath {
+pub(crate) struct PathRequest {
     pub(crate) path: CameraPath,
     pub(crate) file: PathBuf,
 }
 
-impl WantedPath {
+impl PathRequest {
     pub(crate) fn read(file: &Path) -> Result<Self, Failure> {
         let name = || file.display().to_string();
         let text = String::from_utf8(read(file)?).map_err(|_| {
@@ -93,7 +93,7 @@ impl MovingCamera {
     /// Prepares the motion along a path around the spheres of a stage.
     pub(crate) fn on_path(
         source: &Source,
-        wanted: &WantedPath,
+        wanted: &PathRequest,
         frames_per_second: u32,
         stage: Stage,
     ) -> Result<Self, Failure> {

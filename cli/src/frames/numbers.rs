@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::frames::args::FrameRange;
-use crate::frames::moving::{WantedPath, in_frame};
+use crate::frames::moving::{PathRequest, in_frame};
 use crate::frames::target::Target;
 use crate::frames::union::{Union, scene_of};
 use crate::frames::{Pictures, SeriesRequest};
@@ -35,7 +35,7 @@ pub(crate) fn wanted_path(
     source: &Source,
     wanted: &SeriesRequest,
     notes: &mut Notes,
-) -> Result<Option<WantedPath>, Failure> {
+) -> Result<Option<PathRequest>, Failure> {
     let of_scene = source.camera_path()?;
     let by = match &wanted.pictures {
         Pictures::Frames { path: Some(path), .. } => {
@@ -52,7 +52,7 @@ pub(crate) fn wanted_path(
         notes.tell(replaced(&source.name(), by));
         return Ok(None);
     }
-    Ok(Some(WantedPath { path, file: source.path.clone() }))
+    Ok(Some(PathRequest { path, file: source.path.clone() }))
 }
 
 fn replaced(scene: &str, by: &str) -> String {
@@ -62,14 +62,14 @@ fn replaced(scene: &str, by: &str) -> String {
 pub(crate) fn numbers(
     source: &mut Source,
     wanted: &SeriesRequest,
-    path: Option<&WantedPath>,
+    path: Option<&PathRequest>,
     notes: &mut Notes,
 ) -> Result<Numbers, Failure> {
     let Pictures::Frames { range, camera_from, .. } = wanted.pictures else {
         let Pictures::Turntable { count } = wanted.pictures else { return Ok(Numbers::default()) };
         return Ok(Numbers { framed: None, all: (0..count as usize).collect(), is_still: true });
     };
-    let still_of = |path: &WantedPath| {
+    let still_of = |path: &PathRequest| {
         if camera_from.is_some() {
             return Err(Failure::usage(
                 "--camera-from applies only to several frames of a file; remove it",

@@ -7,7 +7,7 @@ use std::thread;
 use anyhow::Context;
 
 use super::union::{Union, swept};
-use crate::frames::moving::{Axis, Course, MovingCamera, Stage, WantedPath, up_of};
+use crate::frames::moving::{Axis, Course, MovingCamera, PathRequest, Stage, up_of};
 use crate::frames::numbers::{Notes, Numbers, Overview, frame};
 use crate::input::contents::Contents;
 use crate::input::{FramedScene, Input, Look, Source};
@@ -67,7 +67,7 @@ pub(super) fn frames(
     overview: &Overview,
     numbers: &Numbers,
     first: usize,
-    path: Option<(&WantedPath, u32)>,
+    path: Option<(&PathRequest, u32)>,
 ) -> Result<Start, Failure> {
     let missing = overview.colors.missing();
     let kinds = overview.kinds(source)?;
@@ -93,7 +93,7 @@ pub(super) fn frames(
 /// Reads the scene that a moving camera sees.
 pub(super) fn still(
     source: &Source,
-    path: &WantedPath,
+    path: &PathRequest,
     fps: u32,
     index: usize,
     first: usize,

@@ -20,7 +20,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::tell;
 use crate::terminal::threads;
 use pinhole::image::{Image, LayerSet};
-use pinhole::render::Nearest;
+use pinhole::render::NearestPicture;
 
 /// The time between two looks for parts that are not visible yet.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -220,7 +220,7 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
 fn picture(folder: &Folder, place: usize) -> Result<Vec<Image>, Failure> {
     let manifest = &folder.manifest;
     if manifest.is_by_depth() {
-        return Ok(nearest(folder)?.into_iter().map(Nearest::into_image).collect());
+        return Ok(nearest(folder)?.into_iter().map(NearestPicture::into_image).collect());
     }
     let [width, height] = manifest.size;
     let empty = (0..manifest.eyes).map(|_| Image::new(width, height, manifest.layer_set()));
@@ -240,8 +240,8 @@ fn picture(folder: &Folder, place: usize) -> Result<Vec<Image>, Failure> {
 }
 
 /// The nearest hit of every pixel in the parts of all groups of bricks. One part is in memory at a time.
-fn nearest(folder: &Folder) -> Result<Vec<Nearest>, Failure> {
-    let mut all: Vec<Nearest> = Vec::new();
+fn nearest(folder: &Folder) -> Result<Vec<NearestPicture>, Failure> {
+    let mut all: Vec<NearestPicture> = Vec::new();
     for unit in 0..folder.manifest.units {
         let Pictures::Depth(part) = read_part(folder, unit)? else {
             return Err(unusable(folder, unit, Problem::Foreign));

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use super::files;
 use crate::jobs::manifest::{Manifest, VERSION};
 use pinhole::image::Image;
-use pinhole::render::Nearest;
+use pinhole::render::NearestPicture;
 
 const START: &[u8] = b"pinhole part 1\n";
 
@@ -71,7 +71,7 @@ impl Problem {
 pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
     let (_, (_, [width, height])) = manifest.unit(unit);
     let pixels = u64::from(width) * u64::from(height) * u64::from(manifest.eyes);
-    let more = if manifest.is_by_depth() { Nearest::BYTES_PER_PIXEL } else { 0 };
+    let more = if manifest.is_by_depth() { NearestPicture::BYTES_PER_PIXEL } else { 0 };
     pixels * (manifest.layer_set().bytes_per_pixel() + more)
 }
 
@@ -79,7 +79,7 @@ pub(super) fn payload(manifest: &Manifest, unit: usize) -> u64 {
 pub(super) enum Pictures {
     Tile(Vec<Image>),
     /// The whole film, with the nearest hits in some bricks.
-    Depth(Vec<Nearest>),
+    Depth(Vec<NearestPicture>),
 }
 
 pub(super) fn write(header: &Header, pictures: &Pictures, out: &mut impl Write) -> io::Result<()> {
@@ -171,7 +171,8 @@ pub(super) fn read(
     // A file with the right length and digest was written in this way, so only memory can be missing.
     let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
     let pictures = if manifest.is_by_depth() {
-        let nearest = |bytes: &[u8]| Nearest::from_le_bytes(size, layers, bytes).ok_or(no_memory);
+        let nearest =
+            |bytes: &[u8]| NearestPicture::from_le_bytes(size, layers, bytes).ok_or(no_memory);
         Pictures::Depth(eyes.map(nearest).collect::<Result<_, _>>()?)
     } else {
         let image = |bytes: &[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(no_memory);

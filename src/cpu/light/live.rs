@@ -10,7 +10,7 @@ use super::context::{LightingContext, Surface};
 use super::maps::{TangentFrame, luminance, rgb};
 use super::sample::Address;
 use super::sources::{arrival, arrival_of_middle};
-use super::studio::{SeenSurface, fading};
+use super::studio::{VisibleSurface, fading};
 use super::surface_ray::{Interaction, Start, SurfaceRay, nearest};
 use crate::camera::film::YAxis;
 use crate::camera::{CameraKind, CameraVectors, View, sampling};
@@ -259,7 +259,7 @@ impl LiveLight<'_> {
         };
         let address = Address::new(pixel, *number, context.settings.sampling.seed);
         let direction = ray.direction;
-        let seen = SeenSurface { context, studio, interaction, direction, address, m: 0 };
+        let seen = VisibleSurface { context, studio, interaction, direction, address, m: 0 };
         let id = match interaction.surface {
             Surface::Sphere(id) => id,
             Surface::Ground => NO_ID,
@@ -275,7 +275,7 @@ impl LiveLight<'_> {
     }
 }
 
-impl SeenSurface<'_> {
+impl VisibleSurface<'_> {
     fn shaded(&self, mut found: LivePixel) -> LivePixel {
         let Self { context, studio, interaction, .. } = self;
         let (fade, fade_color) = fading(studio, interaction.distance);

@@ -27,7 +27,7 @@ pub(super) fn follow(
     for m in 0..studio.max_surfaces {
         let Some(interaction) = nearest(context, &surface_ray) else { break };
         depth += interaction.distance;
-        let view = SeenSurface {
+        let view = VisibleSurface {
             context,
             studio,
             interaction,
@@ -72,7 +72,7 @@ pub(super) fn fading(studio: &Studio, distance: f64) -> (f64, DVec3) {
 }
 
 /// A visible surface.
-pub(super) struct SeenSurface<'a> {
+pub(super) struct VisibleSurface<'a> {
     pub(super) context: &'a LightingContext<'a>,
     pub(super) studio: &'a Studio,
     pub(super) interaction: Interaction,
@@ -83,7 +83,7 @@ pub(super) struct SeenSurface<'a> {
     pub(super) m: u32,
 }
 
-impl SeenSurface<'_> {
+impl VisibleSurface<'_> {
     fn color(&self) -> DVec3 {
         let Self { context, studio, interaction, .. } = self;
         if let Some(emission) = context.emission(interaction.surface) {

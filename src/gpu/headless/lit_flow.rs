@@ -6,8 +6,8 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::lit::{
-    Attempt, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Moment,
-    RecordedBy, Recorder, Round, Step,
+    LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Moment, RecordedBy,
+    Recorder, Round, SampleStrategy, Step,
 };
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::profile::NotedPass;
@@ -24,7 +24,7 @@ pub(crate) struct LitWork<'a> {
     pub(crate) passes: &'a LitPasses,
     pub(crate) scenes: LitScene<'a>,
     pub(crate) lighting: &'a LightingData,
-    pub(crate) attempt: Attempt,
+    pub(crate) strategy: SampleStrategy,
 }
 
 impl LitWork<'_> {
@@ -43,8 +43,8 @@ impl LitWork<'_> {
     /// The dispatches of samples in these buffers.
     pub(crate) fn round(&self, frame: &LitFrame) -> Round<'_> {
         let Self { passes, scenes: LitScene { all: scene, occluders, .. }, lighting, .. } = *self;
-        let (room, attempt) = (frame.sizes.room(), self.attempt);
-        Round { passes, lighting, scene, occluders, room, attempt }
+        let (room, strategy) = (frame.sizes.room(), self.strategy);
+        Round { passes, lighting, scene, occluders, room, strategy }
     }
 }
 

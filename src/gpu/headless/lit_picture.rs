@@ -7,7 +7,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
 use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
-use crate::gpu::passes::lit::{Attempt, LitFrame, LitPasses, LitScene, LitSizes, sums};
+use crate::gpu::passes::lit::{LitFrame, LitPasses, LitScene, LitSizes, SampleStrategy, sums};
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::{Image, Layer, LayerSet, outline};
@@ -29,15 +29,16 @@ impl Headless {
         let lighting = &scenes.lighting();
         let key = scenes.key(lighting, &self.device.limits());
         let is_one_pass = self.options.one_pass && key.one_pass.is_some();
-        let mut attempt = if is_one_pass { Attempt::OnePass } else { Attempt::Steps };
+        let mut strategy =
+            if is_one_pass { SampleStrategy::OnePass } else { SampleStrategy::Steps };
         let (samples, totals) = loop {
             let gather = async |passes: &LitPasses| {
-                let work = LitWork { headless: self, passes, scenes, lighting, attempt };
+                let work = LitWork { headless: self, passes, scenes, lighting, strategy };
                 work.gather(&mut image, watch).await
             };
-            let gathered = self.with_lit_passes(attempt.key(key), gather).await;
-            match (gathered, attempt.easier(lighting)) {
-                (Err(GpuError::Steps), Some(easier)) => attempt = easier,
+            let gathered = self.with_lit_passes(strategy.key(key), gather).await;
+            match (gathered, strategy.easier(lighting)) {
+                (Err(GpuError::Steps), Some(easier)) => strategy = easier,
                 (done, _) => break done?,
             }
         };

@@ -12,7 +12,9 @@ use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, States, lon
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::lit::records::LightingParameters;
-use crate::gpu::passes::lit::{Attempt, LightingData, LitPasses, LitScene, LitSizes, Moment};
+use crate::gpu::passes::lit::{
+    LightingData, LitPasses, LitScene, LitSizes, Moment, SampleStrategy,
+};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
@@ -53,8 +55,8 @@ impl Headless {
         let Some(tile) = part.tile(&view.film, side) else { return Ok(()) };
         let mut keeper = Keeper::new(inputs(&scenes, lighting, tile));
         // Recorded states exist only between passes, so the samples are taken step by step.
-        let mut attempt = Attempt::Steps;
-        let key = attempt.key(scenes.key(lighting, &self.device.limits()));
+        let mut strategy = SampleStrategy::Steps;
+        let key = strategy.key(scenes.key(lighting, &self.device.limits()));
         self.with_lit_passes(key, async |passes: &LitPasses| {
             let is_first = Cell::new(true);
             let mut each = |recording: &LitRecording| {
@@ -62,10 +64,10 @@ impl Headless {
                 each(recording);
             };
             loop {
-                let work = LitWork { headless: self, passes, scenes, lighting, attempt };
+                let work = LitWork { headless: self, passes, scenes, lighting, strategy };
                 let done = work.record(tile, samples, &mut keeper, &mut each, watch).await;
-                match (done, attempt.easier(lighting)) {
-                    (Err(GpuError::Steps), Some(easier)) if is_first.get() => attempt = easier,
+                match (done, strategy.easier(lighting)) {
+                    (Err(GpuError::Steps), Some(easier)) if is_first.get() => strategy = easier,
                     (done, _) => return done,
                 }
             }

@@ -27,7 +27,7 @@ use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, UploadedBricks};
 use crate::gpu::shader::records::{Hit, SceneSpace};
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
-use crate::render::{Nearest, RenderSettings};
+use crate::render::{NearestPicture, RenderSettings};
 
 /// Callback with the index in the picture and the hit of each pixel that was traced.
 pub(crate) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
@@ -124,7 +124,7 @@ impl Headless {
             let parts: Vec<BandBrick> = frame.parts().collect();
             bricks.keep(&parts.iter().map(|part| part.brick).collect::<Vec<_>>());
             let mut done = TracedPixels::of(parts.iter().map(|part| part.groups.pixels()).sum());
-            let mut seen: Option<SeenPixels> = None;
+            let mut seen: Option<NearestDistances> = None;
             for (number, part) in parts.iter().enumerate() {
                 let region = frame.traced_groups(part.slot);
                 let own = space_of(&scene.space, &boxes[part.brick]);
@@ -176,7 +176,7 @@ impl Headless {
                 }
                 seen_buffer.record_copy(&mut encoder, frame.traced().0);
                 self.run_timed(encoder, noted, &[&seen_buffer.buffer]).await?;
-                seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
+                seen = Some(seen_buffer.read(|hits| NearestDistances::new(size, hits))?);
             }
             if let (Some(traced), Some(first)) = (&mut traced, parts.first()) {
                 let mut encoder = self.encoder();
@@ -214,10 +214,10 @@ impl Headless {
         plan: &RenderPlan,
         upload_watch: &mut UploadWatch<'_>,
         watch: &mut Watch<'_>,
-    ) -> Result<Nearest, GpuError> {
+    ) -> Result<NearestPicture, GpuError> {
         let PictureRequest { view, settings, layers, .. } = *request;
         let film = &view.film;
-        let mut whole = Nearest::misses([film.width(), film.height()], layers)?;
+        let mut whole = NearestPicture::misses([film.width(), film.height()], layers)?;
         let limits = self.device().limits();
         // The hits of a tile are in one buffer.
         let [width, height] = tile_size(&limits, self.shape(), film, false);
@@ -238,7 +238,7 @@ impl Headless {
             let image = self.render_by_brick(&tile_request, plan, upload_watch, watch, traced);
             let image = image.await?;
             let integrator = settings.integrator.name();
-            let part = Nearest::new(image, t, ids, distances);
+            let part = NearestPicture::new(image, t, ids, distances);
             whole.put(&part.ok_or(GpuError::NotPrimary { integrator })?, tile.origin)?;
         }
         Ok(whole)
@@ -247,7 +247,7 @@ impl Headless {
 
 /// The distance of the nearest hit so far in each pixel of a film.
 #[derive(Debug)]
-pub(crate) struct SeenPixels {
+pub(crate) struct NearestDistances {
     size: [u32; 2],
     /// Distance from the camera for each pixel, row by row; infinite for a miss.
     distances: Vec<f32>,
@@ -256,7 +256,7 @@ pub(crate) struct SeenPixels {
 /// Relative distance by which a box must be farther than a hit. It is more than the rounding of distances in f32.
 const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 
-impl SeenPixels {
+impl NearestDistances {
     /// The distances of hits that a kernel has written.
     pub(crate) fn new(size: [u32; 2], hits: &[Hit]) -> Self {
         let distance = |[t, id, _, distance]: &Hit| match *id {
@@ -315,8 +315,9 @@ mod tests {
         let (all, right) = (Groups::of_size([16, 16]), Groups { first: [1, 0], size: [1, 2] });
         let hit = |t: f32| [t.to_bits(), 0, 0, 0.5_f32.to_bits()];
         let mut hits = vec![[0, NO_ID, 0, 0]; 256];
-        let hides =
-            |hits: &[Hit], groups| SeenPixels::new([16, 16], hits).hide(&view, &space, groups);
+        let hides = |hits: &[Hit], groups| {
+            NearestDistances::new([16, 16], hits).hide(&view, &space, groups)
+        };
         assert!(!hides(&hits, all) && hides(&hits, right));
         for row in 10..12 {
             for column in 4..6 {
@@ -332,6 +333,10 @@ mod tests {
         }
         hits[16 * 10 + 4] = hit(6.4);
         let round = FisheyeCamera::new(pose, 3.0, 1.0).unwrap();
-        assert!(!SeenPixels::new([16, 16], &hits).hide(&View::new(&round, film), &space, all));
+        assert!(!NearestDistances::new([16, 16], &hits).hide(
+            &View::new(&round, film),
+            &space,
+            all
+        ));
     }
 }

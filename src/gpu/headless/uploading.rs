@@ -190,11 +190,11 @@ impl Headless {
         watch: &mut UploadWatch<'_>,
         built: &mut WhenBuilt<'_>,
     ) -> Result<SceneBuffers, GpuError> {
-        let BrickSource { space, may_part_equals, mut bricks } = bricks;
+        let BrickSource { space, may_split_duplicates, mut bricks } = bricks;
         let (summary, ids) = if cast_shadows {
             (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene))
         } else {
-            (SceneSummary::of(scene), ShapeIds::of_all(scene, may_part_equals))
+            (SceneSummary::of(scene), ShapeIds::of_all(scene, may_split_duplicates))
         };
         let (device, queue, total) = (self.device(), self.queue(), bricks.len());
         let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, &ids).await?;

@@ -12,8 +12,8 @@ use crate::gpu::host::lit_renderer::{LitRenderer, lit_key};
 use crate::gpu::host::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::lit::{
-    Attempt, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder,
-    Round,
+    LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder, Round,
+    SampleStrategy,
 };
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::Targets;
@@ -43,7 +43,7 @@ pub struct LitPicture {
     cursor: Cursor,
     is_cleared: bool,
     tickets: Tickets,
-    attempt: Attempt,
+    strategy: SampleStrategy,
     is_indirect: bool,
 }
 
@@ -95,7 +95,7 @@ impl LitPicture {
             cursor: Cursor::default(),
             is_cleared: false,
             tickets,
-            attempt: Attempt::OnePass,
+            strategy: SampleStrategy::OnePass,
             is_indirect: renderer.renderer().is_indirect,
         })
     }
@@ -121,7 +121,7 @@ impl LitPicture {
         self.data.check_renderer(renderer.renderer())?;
         self.data.check_film(view)?;
         let (scenes, lighting, key) = lit_key(device, scene, view, settings)?;
-        let (make, key) = (Make { device, queue }, self.attempt.key(key));
+        let (make, key) = (Make { device, queue }, self.strategy.key(key));
         let sizes = sizes_of(device, scenes, &lighting);
         let is_other_look = scene.look() != self.look;
         let mut begins_again = is_other_look || primary_of(settings) != self.primary;
@@ -183,7 +183,7 @@ impl LitPicture {
         }
         let news = self.tickets.news();
         if news.is_spent {
-            self.attempt = self.attempt.easier(&self.lighting).unwrap_or(self.attempt);
+            self.strategy = self.strategy.easier(&self.lighting).unwrap_or(self.strategy);
             self.begin_again();
             return Err(GpuError::Steps);
         }
@@ -300,7 +300,7 @@ impl LitPicture {
         let Self { passes, frame, lighting, resolve, data, cursor, .. } = self;
         let occluders = if lighting.mode.is_studio() { scene.studio_occluders()? } else { scene };
         let room = frame.sizes.room();
-        let round = Round { passes, lighting, scene, occluders, room, attempt: self.attempt };
+        let round = Round { passes, lighting, scene, occluders, room, strategy: self.strategy };
         let mut recorder = Recorder::new(frame, &passes.advance, self.is_indirect, place);
         let show = |encoder: &mut CommandEncoder, recorder: &mut Recorder<'_>, samples: u32| {
             recorder.record_resolve(encoder, resolve, data.target_group(), samples);

@@ -48,9 +48,9 @@ pub struct LivePicture {
     frames: [FrameParameters; 2],
     scene: SceneId,
     /// The current camera. `before` has the camera and the scene of the previous frame.
-    seen_from: SeenFrom,
+    seen_from: PreviousCamera,
     film: Film,
-    before: Option<(SeenFrom, SceneId)>,
+    before: Option<(PreviousCamera, SceneId)>,
     has_moving_lamps: bool,
     /// Number of frames that were recorded.
     count: u32,
@@ -120,7 +120,7 @@ impl LivePicture {
             targets,
             frames,
             scene: scene.id,
-            seen_from: SeenFrom::new(view.camera),
+            seen_from: PreviousCamera::new(view.camera),
             film: view.film,
             before: None,
             has_moving_lamps: false,
@@ -166,7 +166,7 @@ impl LivePicture {
         self.frames = frames_of(device, scenes);
         self.buffers.write_frame(queue, &self.frames);
         (self.lighting, self.scene) = (lighting, scene.id);
-        (self.seen_from, self.film) = (SeenFrom::new(view.camera), view.film);
+        (self.seen_from, self.film) = (PreviousCamera::new(view.camera), view.film);
         Ok(())
     }
 
@@ -348,12 +348,12 @@ const SAME_VIEW: u32 = 2;
 
 /// A camera that a frame was seen from. The points of the next frame are found in its picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SeenFrom {
+pub(super) struct PreviousCamera {
     kind: CameraKind,
     vectors: CameraVectors,
 }
 
-impl SeenFrom {
+impl PreviousCamera {
     pub(super) fn new(camera: &dyn Camera) -> Self {
         Self { kind: camera.kind(), vectors: camera.vectors() }
     }
@@ -367,9 +367,9 @@ impl SeenFrom {
 /// The record of a frame seen by the camera `now`. `before` is the camera of an earlier frame that shows the same
 /// surfaces. `most` are the maximum numbers of frames over which the shares of lamps and of ambient light are averaged.
 pub(super) fn record(
-    now: SeenFrom,
+    now: PreviousCamera,
     film: &Film,
-    before: Option<SeenFrom>,
+    before: Option<PreviousCamera>,
     most: [u32; 2],
 ) -> LiveView {
     let CameraVectors { origin, right, up, forward, .. } = now.vectors;

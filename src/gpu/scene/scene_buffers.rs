@@ -85,7 +85,7 @@ impl SceneBuffers {
     ) -> Result<Self, GpuError> {
         let plan = plan_of(device, scene);
         let bricks = BrickSource::from(plan.bricks(scene.spheres()));
-        let ids = ShapeIds::of_all(scene, bricks.may_part_equals);
+        let ids = ShapeIds::of_all(scene, bricks.may_split_duplicates);
         Self::upload(renderer, device, queue, SceneSummary::of(scene), bricks, &ids).await
     }
 
@@ -103,7 +103,7 @@ impl SceneBuffers {
         scene: &Scene,
         accel: &Accel,
     ) -> Result<Self, GpuError> {
-        let ids = ShapeIds::of_all(scene, accel.may_part_equals());
+        let ids = ShapeIds::of_all(scene, accel.may_split_duplicates());
         Self::upload(renderer, device, queue, SceneSummary::of(scene), accel.into(), &ids).await
     }
 

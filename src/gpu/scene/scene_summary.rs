@@ -95,10 +95,10 @@ pub(crate) struct ShapeIds {
 
 impl ShapeIds {
     /// The ids for a structure of all spheres. Spheres with the same centre may be in different bricks if
-    /// `may_part_equals`.
-    pub(crate) fn of_all(scene: &Scene, may_part_equals: bool) -> Self {
+    /// `may_split_duplicates`.
+    pub(crate) fn of_all(scene: &Scene, may_split_duplicates: bool) -> Self {
         // If equal spheres are always in the same brick, their indices in the structure suffice.
-        let duplicates = may_part_equals.then(|| Duplicates::of(scene.spheres()));
+        let duplicates = may_split_duplicates.then(|| Duplicates::of(scene.spheres()));
         let ids = duplicates.and_then(Duplicates::into_firsts);
         let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
         Self { ids, exclude_by }

@@ -48,22 +48,22 @@ pub(crate) struct BrickSpace {
 /// The bricks of a scene that are to be copied. Each may be built only when the iterator returns it.
 pub(crate) struct BrickSource<I> {
     pub(crate) space: BrickSpace,
-    pub(crate) may_part_equals: bool,
+    pub(crate) may_split_duplicates: bool,
     pub(crate) bricks: I,
 }
 
 impl<'a> From<&'a Accel> for BrickSource<std::slice::Iter<'a, Brick>> {
     fn from(accel: &'a Accel) -> Self {
         let space = BrickSpace { structure: accel.structure(), bounds: accel.bounds() };
-        let may_part_equals = accel.may_part_equals();
-        Self { space, may_part_equals, bricks: accel.bricks().iter() }
+        let may_split_duplicates = accel.may_split_duplicates();
+        Self { space, may_split_duplicates, bricks: accel.bricks().iter() }
     }
 }
 
 impl<'a> From<Bricks<'a>> for BrickSource<Bricks<'a>> {
     fn from(bricks: Bricks<'a>) -> Self {
         let space = BrickSpace { structure: bricks.structure(), bounds: bricks.bounds() };
-        Self { space, may_part_equals: bricks.may_part_equals(), bricks }
+        Self { space, may_split_duplicates: bricks.may_split_duplicates(), bricks }
     }
 }
 

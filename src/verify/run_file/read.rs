@@ -15,7 +15,7 @@ use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Appearance, Colors, Scene};
 use crate::text::shortened;
 use crate::verify::run_file::container::{Container, Flag, contradiction};
-use crate::verify::run_file::write::ShownPicture;
+use crate::verify::run_file::write::FinalPicture;
 use crate::verify::run_file::{
     LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256,
 };
@@ -97,7 +97,7 @@ impl<'a> RunFile<'a> {
     ///
     /// # Errors
     /// Returns an error if its shape is not valid.
-    pub fn shown(&self) -> Result<Option<ShownPicture>, RunFileError> {
+    pub fn shown(&self) -> Result<Option<FinalPicture>, RunFileError> {
         let Self { file } = self;
         if !file.has("shown") {
             return Ok(None);
@@ -106,7 +106,7 @@ impl<'a> RunFile<'a> {
         let size = [film.width(), film.height()];
         let srgb = file.items("shown", &[size[1] as usize, size[0] as usize])?;
         let (samples, wanted) = (file.whole("shown_samples")?, file.whole("shown_wanted")?);
-        Ok(Some(ShownPicture { size, srgb, samples, wanted }))
+        Ok(Some(FinalPicture { size, srgb, samples, wanted }))
     }
 }
 

@@ -21,12 +21,12 @@ pub struct Extras<'a> {
     /// A noisy picture, and the result of the device's denoiser.
     pub denoised: Option<[&'a Image; 2]>,
     /// The lit picture as it is shown to people.
-    pub shown: Option<&'a ShownPicture>,
+    pub shown: Option<&'a FinalPicture>,
 }
 
 /// A lit picture as people see it. It is not judged.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ShownPicture {
+pub struct FinalPicture {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
@@ -168,7 +168,7 @@ pub fn write_with(
             Array::new("denoised_color", &other, denoised.color(), |color| *color),
         ]);
     }
-    if let Some(ShownPicture { size: [width, height], srgb, samples, wanted }) = shown {
+    if let Some(FinalPicture { size: [width, height], srgb, samples, wanted }) = shown {
         if u64::from(*width) * u64::from(*height) != srgb.len() as u64 {
             return Err(io::Error::other("the shown picture does not have the size that it names"));
         }

@@ -16,7 +16,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::{progress, threads};
 use pinhole::image::Image;
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::run_file::{self, Extras, LitSamples, Run, RunFile, ShownPicture};
+use pinhole::verify::run_file::{self, Extras, FinalPicture, LitSamples, Run, RunFile};
 use pinhole::verify::{Certificate, Checker, LitCertificate};
 
 /// A recording to check, and the outputs to write.
@@ -39,7 +39,7 @@ pub(crate) struct KeptLight {
     /// The noisy picture and the denoised one.
     pub(crate) denoised: Option<[Image; 2]>,
     /// The lit picture to show.
-    pub(crate) shown: Option<ShownPicture>,
+    pub(crate) shown: Option<FinalPicture>,
 }
 
 /// Reads a run file and judges the light in it, sample by sample.

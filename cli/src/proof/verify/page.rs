@@ -12,7 +12,7 @@ use crate::proof::verify::report::Report;
 use pinhole::LinearRgb;
 use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;
-use pinhole::verify::run_file::{Run, ShownPicture};
+use pinhole::verify::run_file::{FinalPicture, Run};
 use pinhole::verify::{Certificate, TracedPixel, Verdict};
 use pinhole_figure::write::png;
 
@@ -53,7 +53,7 @@ pub(crate) fn page(
     run: &Run,
     certificate: &Certificate,
     report: &Report<'_>,
-    lit: Option<&ShownPicture>,
+    lit: Option<&FinalPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {
     let blocks = Blocks::new(certificate.size);
@@ -61,7 +61,7 @@ pub(crate) fn page(
     let image = &run.recording.image;
     let (color, depth) = (image.color(), image.depth().unwrap_or_default());
     let depths = depths(depth, verdicts);
-    let light = |lit: &ShownPicture| {
+    let light = |lit: &FinalPicture| {
         blocks.drawn(|block| mean(block.map(|i| LinearRgb::from_srgb8(lit.srgb[i]).to_array())))
     };
     let css = |verdict: &Verdict| {

@@ -27,7 +27,7 @@ use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
-use pinhole::verify::run_file::{self, LitSamples, Provenance, Run, ShownPicture};
+use pinhole::verify::run_file::{self, FinalPicture, LitSamples, Provenance, Run};
 use pinhole::verify::{Checker, LitCertificate, LitRecording};
 
 /// Renders a scene on an adapter and records it.
@@ -263,7 +263,7 @@ pub(crate) fn render_lit(
     headless: &Headless,
     input: &Input,
     choice: AccelChoice,
-) -> Result<ShownPicture, Failure> {
+) -> Result<FinalPicture, Failure> {
     let mut settings = input.settings.clone();
     let wanted = settings.sampling.samples;
     settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
@@ -288,7 +288,7 @@ pub(crate) fn render_lit(
 }
 
 /// Encodes the picture as the scene specifies, but with its background.
-fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> ShownPicture {
+fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> FinalPicture {
     let (color, alpha) = (image.color(), image.alpha());
     let srgb = (0..color.len()).map(|i| {
         to_srgb8(match (alpha, encoding.background) {
@@ -299,7 +299,7 @@ fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> Shown
         })
     });
     let size = [image.width(), image.height()];
-    ShownPicture { size, srgb: srgb.collect(), samples, wanted }
+    FinalPicture { size, srgb: srgb.collect(), samples, wanted }
 }
 
 #[cfg(test)]

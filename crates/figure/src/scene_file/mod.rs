@@ -27,7 +27,7 @@ use crate::annotate::AnnotationPlan;
 use crate::settings::flags::{FLAGS, Group};
 use crate::settings::layers::{Joined, Sources};
 use crate::style::{Style, fit};
-use lighting::{AskedIntegrator, SceneLighting};
+use lighting::{IntegratorChoice, SceneLighting};
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
 use pinhole::image::color::LinearRgb;
@@ -60,7 +60,7 @@ pub struct SceneFile {
     camera: WithSpan<CameraParameters>,
     camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
-    asked: AskedIntegrator,
+    asked: IntegratorChoice,
     /// The positions of the ground and of the image of the sky.
     spans: [Span; 2],
     flags: Vec<(String, &'static str)>,
@@ -101,7 +101,7 @@ impl SceneFile {
             annotations: document.annotations(places)?,
             background: document.background.unwrap_or(LinearRgb::WHITE),
             style: layers.style,
-            asked: AskedIntegrator::read(&layers, has_materials)?,
+            asked: IntegratorChoice::read(&layers, has_materials)?,
             lighting: SceneLighting::read(&document, depth_cue, &layers)?,
             data,
             camera: WithSpan { value: document.camera, span: places.span("camera") },

@@ -39,7 +39,7 @@ pub(crate) use live::{LiveKey, LivePasses, LiveView};
 pub(crate) use passes::{LitLayouts, LitPasses};
 pub(crate) use recorder::Recorder;
 pub(crate) use records::LitSizes;
-pub(crate) use round::{Attempt, Moment, Round, Step};
+pub(crate) use round::{Moment, Round, SampleStrategy, Step};
 
 /// A scene as a lit picture shows it.
 #[derive(Clone, Copy, Debug)]

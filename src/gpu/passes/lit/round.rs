@@ -97,7 +97,7 @@ pub(crate) enum Moment {
 
 /// The ways in which samples are taken, the quickest first. Each later one needs fewer iterations of an invocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Attempt {
+pub(crate) enum SampleStrategy {
     /// One pass takes whole samples, where there is such a pass.
     OnePass,
     /// A ray for each invocation, except rays towards ambient light.
@@ -106,7 +106,7 @@ pub(crate) enum Attempt {
     OneByOne,
 }
 
-impl Attempt {
+impl SampleStrategy {
     /// The next way, if some invocations needed too many iterations.
     pub(crate) fn easier(self, lighting: &LightingData) -> Option<Self> {
         match self {
@@ -137,7 +137,7 @@ pub(crate) struct Round<'a> {
     pub(crate) occluders: &'a SceneBuffers,
     /// Number of paths that the buffers have room for.
     pub(crate) room: u32,
-    pub(crate) attempt: Attempt,
+    pub(crate) strategy: SampleStrategy,
 }
 
 /// Maximum number of samples that an invocation takes in the pass over whole samples.
@@ -349,7 +349,7 @@ impl<'a> Steps<'a> {
         let first = &self.round.scene.bricks[0].surface_group;
         let lights = lighting.casts_shadow.len() as u32;
         let directions = lighting.parameters.occlusion_samples;
-        let at_once = self.round.occluders.rays_at_once(self.round.attempt.at_once());
+        let at_once = self.round.occluders.rays_at_once(self.round.strategy.at_once());
         for surface in 0..lighting.max_surfaces {
             let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.max_surfaces);
             self.extend(dispatch)?;

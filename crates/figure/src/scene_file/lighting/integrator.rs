@@ -41,7 +41,7 @@ impl IntegratorKind {
 
 /// What the layers say about the integrator.
 #[derive(Debug)]
-pub(crate) struct AskedIntegrator {
+pub(crate) struct IntegratorChoice {
     /// The integrator that a flag names.
     by_flag: Option<IntegratorKind>,
     /// The integrator that the file or the style names, or that tables, materials or opacities need.
@@ -60,7 +60,7 @@ const TABLES: [(&str, Option<IntegratorKind>); 4] = [
     ("sky", Some(IntegratorKind::Path)),
 ];
 
-impl AskedIntegrator {
+impl IntegratorChoice {
     /// `has_materials` says whether any surface is not matt and opaque.
     pub(crate) fn read(layers: &Joined<'_>, has_materials: bool) -> Result<Self, SceneFileError> {
         let lines = &layers.places.lines;

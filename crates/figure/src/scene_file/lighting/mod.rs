@@ -5,7 +5,7 @@ mod lights;
 mod sky;
 mod studio;
 
-pub(super) use integrator::AskedIntegrator;
+pub(super) use integrator::IntegratorChoice;
 pub use integrator::IntegratorKind;
 pub(super) use lights::{DirectionalTable, LightTable};
 pub(super) use sky::{GroundTable, SkyTable};
