@@ -13,7 +13,7 @@ use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
 use crate::look::{self, Look, SceneText};
 use crate::render::OnDevice;
-use crate::scene::{DataExtras, DataScene, scene_of};
+use crate::scene::{DataExtras, scene_of};
 use crate::worker;
 use pinhole::camera::Viewpoint;
 use pinhole::glam::DVec3;
@@ -22,6 +22,7 @@ use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::scene_file::DataScene;
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -62,7 +63,17 @@ impl SphereData {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
         let has_radii = given.radii;
-        let DataScene { scene, key, notes } = scene_of(loaded, text, given)?;
+        let (scene, key, notes) = match given.colors {
+            // Such colours need no list of distinct colours, which takes long to make.
+            Some(colors) => {
+                let scene = Scene::from_parts(loaded.spheres, colors.into());
+                (scene.map_err(Fault::input)?, None, loaded.notes)
+            }
+            None => {
+                let DataScene { scene, color_key, notes, .. } = scene_of(loaded, text, given)?;
+                (scene, color_key, notes)
+            }
+        };
         let scene = Mutex::new(Arc::new(scene));
         Ok(Self {
             scene,

@@ -69,13 +69,13 @@ impl SphereArray {
         }
     }
 
-    /// Multiplies every radius by `factor`. The precision of the array stays the same.
-    pub fn scale_radii(&mut self, factor: f64) {
+    /// Replaces each radius by `radius_of` its index and itself. The precision of the array stays the same.
+    pub fn map_radii(&mut self, radius_of: impl Fn(usize, f64) -> f64) {
         match self {
-            Self::F32(spheres) => {
-                spheres.iter_mut().for_each(|s| s[3] = (f64::from(s[3]) * factor) as f32);
+            Self::F32(all) => {
+                (0..).zip(all).for_each(|(i, s)| s[3] = radius_of(i, s[3].into()) as f32);
             }
-            Self::F64(spheres) => spheres.iter_mut().for_each(|s| s[3] *= factor),
+            Self::F64(all) => (0..).zip(all).for_each(|(i, s)| s[3] = radius_of(i, s[3])),
         }
     }
 

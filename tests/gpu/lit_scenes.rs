@@ -84,7 +84,7 @@ pub(crate) fn text(of: &str, name: &str) -> String {
 /// The spheres of a scene file, and its view.
 pub(crate) fn read(of: &str, name: &str) -> (Vec<Sphere>, View) {
     let file = SceneFile::parse(&text(of, name)).unwrap();
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
     let sky = file.sky_image().map(sky_image);
     let settings = file.settings(file.integrator().unwrap(), &scene, camera.as_ref(), sky);

@@ -17,7 +17,7 @@ impl View {
     /// The view of a scene file without data.
     pub(crate) fn from_toml(text: &str) -> Self {
         let file = SceneFile::parse(text).unwrap();
-        let scene = file.scene(&[]).unwrap();
+        let scene = file.scene().unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
         let settings = file.settings(IntegratorKind::Primary, &scene, camera.as_ref(), None);
         Self { scene, camera, film: file.film, settings: settings.unwrap() }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Error, Result, anyhow};
 
 use crate::bricks::BrickFile;
 use crate::input::data::{self, DataOptions, as_usage};
@@ -14,11 +14,11 @@ use crate::terminal::failure::Failure;
 use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
-use pinhole_data::added::Additions;
+use pinhole::scene::sphere::Sphere;
 use pinhole_data::load::{self, Column, Dataset};
-use pinhole_data::select::{KeptSpheres, Selection};
-use pinhole_figure::color_by::{ColorBy, ColorKey, Mapping};
-use pinhole_figure::scene_file::{AppliedData, Data, IntegratorKind, SceneFile};
+use pinhole_data::select::KeptSpheres;
+use pinhole_figure::color_by::{ColorBy, ColorKey};
+use pinhole_figure::scene_file::{Data, DataError, DataScene, IntegratorKind, SceneFile};
 use pinhole_figure::settings::flags::Group;
 
 /// What a file holds. The scene may be moved out of it.
@@ -101,20 +101,6 @@ impl Source {
         Ok(self.prepared(file, scene, details))
     }
 
-    /// Copies the columns of the spheres that `select` keeps, if they are asked for.
-    fn columns_of(&self, loaded: &Dataset, select: Option<&Selection>) -> Vec<Column> {
-        match (self.keeps_columns, select) {
-            (false, _) => Vec::new(),
-            (true, None) => loaded.columns.clone(),
-            (true, Some(select)) => {
-                let mut kept = loaded.clone();
-                // Where this fails, so does what is drawn.
-                let _ = select.apply(&mut kept);
-                kept.columns
-            }
-        }
-    }
-
     /// Returns the text of the scene file.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         let not_text = |_| {
@@ -180,7 +166,7 @@ impl Source {
     fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Details), Failure> {
         let file_name = || self.path.display().to_string();
         let Some(place) = self.data_place(file)? else {
-            return Ok((file.scene(&[]).with_context(file_name)?, Details::default()));
+            return Ok((file.scene().with_context(file_name)?, Details::default()));
         };
         let in_scene = || self.in_scene();
         let read = self.read_data(&place);
@@ -188,46 +174,29 @@ impl Source {
         let mut loaded =
             if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
         let mut data = place.data;
-        let color = data.color.unwrap_or_else(default_color);
         let has_atoms = loaded.labels("species").is_some();
-        let columns = self.columns_of(&loaded, data.select.as_ref());
-        let kinds = self.kinds.clone().or_else(|| ColorBy::of_kinds(&loaded));
-        let colors_itself = data.mapping.color.is_some() || data.color.is_some();
-        let kinds = kinds.filter(|_| is_data && !colors_itself);
-        let mut notes = Vec::new();
-        if let Some(by) = &kinds {
-            notes.push(format!("{}: {}", self.path.display(), note(by)));
-            let mut by = by.clone();
-            self.joined.apply_to(&mut by);
-            data.mapping.color = Some(by);
+        let mut kinds = None;
+        if is_data {
+            kinds = data.color_by_kinds(&loaded, self.kinds.clone());
+            data.mapping.color.iter_mut().for_each(|by| self.joined.apply_to(by));
+            let note = kinds.as_ref().map(|by| by.note_of_kinds("--color CSS"));
+            loaded.notes.extend(note.map(|note| format!("{}: {note}", self.path.display())));
         }
-        let details =
-            Details { has_atoms, columns, kinds, color: data.color, ..Details::default() };
-        if is_data && data.is_plain() {
-            let selected = data.select.as_ref().map(|select| select.apply(&mut loaded));
-            let kept = selected.transpose().context("--select").with_context(file_name)?;
-            let Mapping { color: by, radius, .. } = &data.mapping;
-            let has_colors = by.is_some() && details.kinds.is_none();
-            loaded.correct_notes(has_colors, radius.is_some(), |_| false);
-            let mut all = std::mem::take(&mut loaded.notes);
-            all.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
-            all.append(&mut notes);
-            let additions = Additions { keeps_radii: data.radius.is_some(), ..data.additions };
-            let made = data.mapping.scene_with(loaded, color, &additions);
-            let (scene, mapped, added) = made.with_context(file_name)?;
-            all.extend_from_slice(mapped.notes());
-            all.extend_from_slice(added.notes());
-            let bonds = additions.bonds.as_ref().map(|_| added.bonds());
-            let color_key = mapped.key().cloned();
-            return Ok((scene, Details { notes: all, color_key, kept, bonds, ..details }));
-        }
-        let AppliedData { spheres, color_key, notes: all, kept, added, .. } =
-            data.apply(loaded).with_context(in_scene)?;
-        notes.splice(0..0, all);
-        let scene = file.scene_of(spheres, color);
-        let scene = scene.with_context(file_name)?.with_added(added.len());
-        let bonds = data.additions.bonds.is_some().then_some(added.bonds());
-        Ok((scene, Details { notes, color_key, kept, bonds, ..details }))
+        let own: Vec<Sphere> = file.spheres().collect();
+        let made = data.scene(loaded, &own).map_err(|error| match error {
+            DataError::Scene(error) if !is_data => {
+                Error::new(file.at_sphere(&error)).context(file_name())
+            }
+            DataError::Select(error) if is_data => {
+                Error::new(error).context("--select").context(file_name())
+            }
+            error => Error::new(error).context(in_scene()),
+        });
+        let DataScene { scene, color_key, columns, notes, kept, bonds, .. } = made?;
+        let columns = if self.keeps_columns { columns } else { Vec::new() };
+        let color = data.color;
+        let details = Details { has_atoms, columns, kinds, color, notes, ..Details::default() };
+        Ok((scene, Details { color_key, kept, bonds, ..details }))
     }
 
     /// Finds the data of a scene file; `None` if it has none.
@@ -263,12 +232,4 @@ impl Source {
             _ => format!("{}: `data`", self.path.display()),
         }
     }
-}
-
-/// The note about the colors by kind of a data file where neither the file nor a flag gives colors.
-pub(crate) fn note(by: &ColorBy) -> String {
-    let column = &by.column;
-    format!(
-        "there are no colors; the spheres are colored by {column}; --color CSS gives all one color"
-    )
 }

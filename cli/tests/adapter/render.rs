@@ -28,7 +28,7 @@ fn demo(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     succeed(&mut command(&folder, "demo --backend gpu"));
     let file = SceneFile::parse(include_str!("../../../examples/demo.toml")).unwrap();
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
     let kind = file.integrator().unwrap();
     let settings = file.settings(kind, &scene, camera.as_ref(), None).unwrap();

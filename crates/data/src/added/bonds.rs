@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::{DVec3, I64Vec3};
 
-use super::spheres::{AddError, AddedSpheres, Base, Look, string_between, string_count};
-use crate::load::{Covalent, covalent};
+use super::spheres::{AddError, AddedSpheres, Look, string_between, string_count};
+use crate::load::{Covalent, Dataset, covalent};
 use pinhole::internals::text::{listed, shortened};
 use pinhole::scene::sphere_array::SphereArray;
 
@@ -73,9 +73,9 @@ fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
 }
 
 impl Bonds {
-    pub(super) fn add(&self, base: &Base<'_>, added: &mut AddedSpheres) -> Result<(), AddError> {
-        let count = base.spheres.len();
-        let points: Vec<DVec3> = (0..count).map(|index| center(base.spheres, index).0).collect();
+    pub(super) fn add(&self, data: &Dataset, added: &mut AddedSpheres) -> Result<(), AddError> {
+        let count = data.spheres.len();
+        let points: Vec<DVec3> = (0..count).map(|index| center(&data.spheres, index).0).collect();
         let bonds = match self.length {
             BondLength::Below(length) => {
                 check("length", length)?;
@@ -83,14 +83,14 @@ impl Bonds {
             }
             BondLength::Covalent(factor) => {
                 check("factor", factor)?;
-                covalent_bonds(factor, base, &points, &mut added.notes)?
+                covalent_bonds(factor, data, &points, &mut added.notes)?
             }
         };
         added.bonds = bonds.len();
         let most = count.saturating_mul(MOST_ADDED[0]).saturating_add(MOST_ADDED[1]);
         for [a, b] in bonds {
             let ((from, ball_a), (to, ball_b)) =
-                (center(base.spheres, a as usize), center(base.spheres, b as usize));
+                (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
             let radius = STICK * ball_a.min(ball_b);
             let (length, middle) = ((to - from).length(), 0.5 * (from + to));
             let along = (to - from) / length;
@@ -116,7 +116,7 @@ impl Bonds {
                 added.push(string, Look::Sphere(atom));
             }
         }
-        if base.cell.is_some() {
+        if data.cell.is_some() {
             added
                 .notes
                 .push("bonds across the borders of the periodic cell are not drawn".to_owned());
@@ -145,11 +145,11 @@ fn no_elements() -> AddError {
 /// Finds pairs of spheres that are closer than `factor` times the sum of their covalent radii.
 fn covalent_bonds(
     factor: f64,
-    base: &Base<'_>,
+    data: &Dataset,
     points: &[DVec3],
     notes: &mut Vec<String>,
 ) -> Result<Vec<[u32; 2]>, AddError> {
-    let labels = base.species.ok_or_else(no_elements)?;
+    let labels = data.labels("species").ok_or_else(no_elements)?;
     let known: Vec<Option<Covalent>> = labels.names.iter().map(|name| covalent(name)).collect();
     let largest = known.iter().flatten().map(|known| known.radius).fold(0.0, f64::max);
     if largest <= 0.0 && !points.is_empty() {

@@ -8,13 +8,12 @@ mod bonds;
 mod spheres;
 
 pub use bonds::{BondLength, Bonds};
-pub use spheres::{AddError, AddedSpheres, Base};
+pub use spheres::{AddError, AddedSpheres};
 
 use glam::DVec3;
 
 use crate::load::{ColumnValues, Dataset};
 use pinhole::image::color::LinearRgb;
-use pinhole::scene::sphere_array::SphereArray;
 use spheres::{Look, string_between, string_count};
 
 /// The shapes to add to the spheres of data.
@@ -54,27 +53,20 @@ impl Additions {
             let species = indices.get(row).and_then(|index| factors.get(*index as usize));
             species.copied().unwrap_or(other)
         };
-        match &mut loaded.spheres {
-            SphereArray::F32(spheres) => spheres.iter_mut().enumerate().for_each(|(row, s)| {
-                s[3] = (f64::from(s[3]) * factor(row)) as f32;
-            }),
-            SphereArray::F64(spheres) => {
-                spheres.iter_mut().enumerate().for_each(|(row, s)| s[3] *= factor(row));
-            }
-        }
+        loaded.spheres.map_radii(|row, radius| radius * factor(row));
     }
 
     /// Returns the spheres to add to these spheres of data.
     ///
     /// # Errors
     /// Returns an error if there is no cell to draw, if no bonds can be found, or if a length is out of range.
-    pub fn add(&self, base: &Base<'_>) -> Result<AddedSpheres, AddError> {
+    pub fn add(&self, data: &Dataset) -> Result<AddedSpheres, AddError> {
         let mut added = AddedSpheres::default();
         if let Some(bonds) = &self.bonds {
-            bonds.add(base, &mut added)?;
+            bonds.add(data, &mut added)?;
         }
         if let Some(edges) = &self.cell {
-            edges.add(base, &mut added)?;
+            edges.add(data, &mut added)?;
         }
         Ok(added)
     }
@@ -107,14 +99,14 @@ impl CellEdges {
         Self { width: Some(width) }
     }
 
-    fn add(&self, base: &Base<'_>, added: &mut AddedSpheres) -> Result<(), AddError> {
-        let edges = base.cell.ok_or_else(|| {
+    fn add(&self, data: &Dataset, added: &mut AddedSpheres) -> Result<(), AddError> {
+        let edges = data.cell.ok_or_else(|| {
             AddError(
                 "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"
                     .to_owned(),
             )
         })?;
-        let origin = DVec3::from(base.cell_origin);
+        let origin = DVec3::from(data.cell_origin);
         let [a, b, c] = edges.map(DVec3::from);
         let diagonals = [a + b + c, a + b - c, a - b + c, b + c - a];
         let diagonal = diagonals.into_iter().map(DVec3::length).fold(0.0, f64::max);

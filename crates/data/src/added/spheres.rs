@@ -4,10 +4,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::load::{Dataset, Labels};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::material::SurfaceProperties;
-use pinhole::scene::sphere::Sphere;
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole::scene::{Appearance, Colors};
 
@@ -27,32 +25,6 @@ pub(super) enum Look {
     Sphere(u32),
     /// Matt and opaque, in this colour.
     Own(LinearRgb),
-}
-
-/// The spheres to which others are added.
-#[derive(Clone, Copy, Debug)]
-pub struct Base<'a> {
-    /// Centres and radii as they are drawn.
-    pub spheres: &'a SphereArray,
-    /// The species of each sphere.
-    pub species: Option<&'a Labels>,
-    /// The three edges of the periodic cell.
-    pub cell: Option<[[f64; 3]; 3]>,
-    /// A corner of the cell.
-    pub cell_origin: [f64; 3],
-}
-
-impl<'a> Base<'a> {
-    /// The spheres of a file.
-    #[must_use]
-    pub fn of(loaded: &'a Dataset) -> Self {
-        Self {
-            spheres: &loaded.spheres,
-            species: loaded.labels("species"),
-            cell: loaded.cell,
-            cell_origin: loaded.cell_origin,
-        }
-    }
 }
 
 impl AddedSpheres {
@@ -97,20 +69,6 @@ impl AddedSpheres {
                 all.extend(self.spheres.iter().map(|sphere| sphere.map(|value| value as f32)));
             }
             SphereArray::F64(all) => all.extend_from_slice(&self.spheres),
-        }
-    }
-
-    /// Appends the spheres to those that they were made for.
-    pub fn extend_spheres(&self, all: &mut Vec<Sphere>) {
-        for ([x, y, z, radius], look) in self.spheres.iter().zip(self.looks()) {
-            let like = match look {
-                Look::Sphere(index) => all.get(index as usize).copied(),
-                Look::Own(color) => Some(Sphere::new([0.0; 3], 1.0, color)),
-            };
-            all.extend(like.map(|mut sphere| {
-                (sphere.center, sphere.radius) = ([*x, *y, *z], *radius);
-                sphere
-            }));
         }
     }
 

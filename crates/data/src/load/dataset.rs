@@ -144,8 +144,17 @@ impl Dataset {
     }
 
     /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. Spheres
-    /// beyond the end of `is_kept` stay.
+    /// beyond the end of `is_kept` stay. If any is left out, a new column `index` has the former indices, unless the data
+    /// has a column of this name.
     pub fn keep(&mut self, is_kept: &[bool]) {
+        if !is_kept.contains(&false) {
+            return;
+        }
+        if !self.columns.iter().any(|column| column.name.eq_ignore_ascii_case("index")) {
+            let indices = (0..self.spheres.len()).map(|index| index as f64).collect();
+            let values = ColumnValues::Numbers(indices);
+            self.columns.push(Column { name: "index".to_owned(), values });
+        }
         match &mut self.spheres {
             SphereArray::F32(spheres) => retain(spheres, is_kept),
             SphereArray::F64(spheres) => retain(spheres, is_kept),

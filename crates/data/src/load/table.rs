@@ -306,14 +306,7 @@ impl TableColumn {
 }
 
 fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {
-    match spheres {
-        SphereArray::F32(all) => {
-            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row) as f32);
-        }
-        SphereArray::F64(all) => {
-            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row));
-        }
-    }
+    spheres.map_radii(|row, _| radius(row));
 }
 
 fn center(spheres: &SphereArray, row: usize) -> DVec3 {

@@ -27,7 +27,7 @@ pub use parse::SelectError;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::load::{Column, ColumnValues, Dataset};
+use crate::load::{Column, Dataset};
 use pinhole::scene::sphere_array::SphereArray;
 
 /// An expression that chooses the spheres to keep.
@@ -84,8 +84,7 @@ impl Selection {
         evaluate::evaluate(&self.expression, &self.text, spheres, columns)
     }
 
-    /// Leaves out the spheres that do not match, with their colours and other values. A new column `index` has the
-    /// former indices of the spheres, unless the data has a column of this name.
+    /// Leaves out the spheres that do not match, as [`Dataset::keep`] does.
     ///
     /// # Errors
     /// Returns the errors of [`Selection::matches`], and an error if there are spheres but none matches. The data
@@ -97,13 +96,7 @@ impl Selection {
             let hint = notes.first().map_or(String::new(), |note| format!("; {note}"));
             return Err(SelectError::Nothing { expression: self.text.clone(), of, hint });
         }
-        if kept < of {
-            if !loaded.columns.iter().any(|column| column.name.eq_ignore_ascii_case("index")) {
-                let values = ColumnValues::Numbers((0..of).map(|index| index as f64).collect());
-                loaded.columns.push(Column { name: "index".to_owned(), values });
-            }
-            loaded.keep(&is_kept);
-        }
+        loaded.keep(&is_kept);
         Ok(KeptSpheres { kept, of, notes })
     }
 }

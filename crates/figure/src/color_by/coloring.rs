@@ -8,7 +8,7 @@ use super::key::{Category, ColorKey, ColorScale, KeyKind};
 use super::maps::MapName;
 use super::number::short;
 use super::scale::{Scale, entry, is_shown};
-use super::{ColorBy, Coloring, Limits, hex, is_kept};
+use super::{ColorBy, Coloring, Limits, hex};
 use pinhole::image::color::LinearRgb;
 use pinhole::internals::text::one_line;
 use pinhole_data::column;
@@ -21,12 +21,7 @@ const MOST_CATEGORIES: usize = 8;
 impl ColorBy {
     /// Whether the numbers of a column are categories. They are if a palette is chosen, or if they are few
     /// different whole numbers and no choice needs a scale.
-    pub(super) fn are_categories(
-        &self,
-        found: &column::NamedColumn<'_>,
-        values: &[f64],
-        left_out: &[bool],
-    ) -> bool {
+    pub(super) fn are_categories(&self, found: &column::NamedColumn<'_>, values: &[f64]) -> bool {
         if self.categories.is_some() {
             return true;
         }
@@ -40,8 +35,8 @@ impl ColorBy {
             return false;
         }
         let mut different: Vec<f64> = Vec::new();
-        for (index, value) in values.iter().enumerate() {
-            if value.is_nan() || !is_kept(left_out, index) || different.contains(value) {
+        for value in values {
+            if value.is_nan() || different.contains(value) {
                 continue;
             }
             if value.fract() != 0.0 || value.abs() > 1e9 || different.len() == MOST_CATEGORIES {
@@ -56,26 +51,21 @@ impl ColorBy {
         &self,
         column: &str,
         values: &[f64],
-        left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         let mut notes = Vec::new();
-        let kept = || {
-            let kept = values.iter().enumerate().filter(|(index, _)| is_kept(left_out, *index));
-            kept.map(|(_, value)| *value)
-        };
-        let scale = self.scale(column, kept(), &mut notes)?;
+        let scale = self.scale(column, values.iter().copied(), &mut notes)?;
         let map = self.map.unwrap_or(MapName::VIRIDIS).reversed_if(self.is_reversed);
         let scale = ColorScale::new(scale, map.colors());
         let missing_index = scale.colors().len();
         let indices =
             values.iter().map(|value| scale.index(*value).unwrap_or(missing_index) as u32);
         let indices = indices.collect();
-        let missing = kept().filter(|value| !is_shown(*value, self.is_log)).count();
+        let missing = values.iter().filter(|value| !is_shown(**value, self.is_log)).count();
         self.note_missing(column, missing, self.is_log, &mut notes);
         if self.limits != super::Limits::default() {
             let [low, high] = scale.scale().range();
-            let outside = kept().filter(|v| is_shown(*v, self.is_log) && (*v < low || *v > high));
-            let outside = outside.count();
+            let is_outside = |v: f64| is_shown(v, self.is_log) && (v < low || v > high);
+            let outside = values.iter().filter(|value| is_outside(**value)).count();
             if outside > 0 {
                 let spheres = if outside == 1 { "sphere" } else { "spheres" };
                 notes.push(format!(
@@ -185,16 +175,11 @@ impl ColorBy {
         &self,
         column: &str,
         labels: &Labels,
-        left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         self.refuse_scale(|| format!("`{column}` holds text"))?;
         let mut counts = vec![0_usize; labels.names.len()];
-        for (index, label) in labels.indices.iter().enumerate() {
-            if let Some(count) =
-                counts.get_mut(*label as usize).filter(|_| is_kept(left_out, index))
-            {
-                *count += 1;
-            }
+        for label in &labels.indices {
+            counts.get_mut(*label as usize).into_iter().for_each(|count| *count += 1);
         }
         let is_used = |label: &usize| counts[*label] > 0 && !labels.names[*label].trim().is_empty();
         let mut used: Vec<usize> = (0..labels.names.len()).filter(is_used).collect();
@@ -208,14 +193,13 @@ impl ColorBy {
         let categories =
             used.iter().map(|label| (one_line(&labels.names[*label]), counts[*label])).collect();
         let indices = labels.indices.iter().map(of).collect();
-        self.color_categories(column, categories, indices, 0, left_out)
+        self.color_categories(column, categories, indices, 0)
     }
 
     pub(super) fn color_whole_numbers(
         &self,
         column: &str,
         values: &[f64],
-        left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         let palette = self.map.unwrap_or(MapName::OKABE_ITO).name();
         self.refuse_scale(|| format!("`{palette}` is a palette for categories"))?;
@@ -231,8 +215,8 @@ impl ColorBy {
             .as_ref()
             .map(|names| names.iter().filter_map(|name| name.parse().ok()).collect());
         let mut others = 0;
-        for (index, value) in values.iter().enumerate() {
-            if value.is_nan() || !is_kept(left_out, index) {
+        for value in values {
+            if value.is_nan() {
                 continue;
             }
             if given.as_ref().is_some_and(|given| !given.contains(value)) {
@@ -258,7 +242,7 @@ impl ColorBy {
         };
         let indices = values.iter().map(index_of).collect();
         let named = categories.iter().map(|(value, count)| (format!("{value}"), *count)).collect();
-        self.color_categories(column, named, indices, others, left_out)
+        self.color_categories(column, named, indices, others)
     }
 
     fn refuse_scale(&self, why: impl Fn() -> String) -> Result<(), ColorByError> {
@@ -281,7 +265,6 @@ impl ColorBy {
         categories: Vec<(String, usize)>,
         mut indices: Vec<u32>,
         mut others: usize,
-        left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         let mut notes = Vec::new();
         let categories = match &self.categories {
@@ -310,11 +293,9 @@ impl ColorBy {
             ));
         }
         let mut missing = 0;
-        for (index, category) in indices.iter_mut().enumerate() {
-            if *category == NONE {
-                *category = count as u32;
-                missing += usize::from(is_kept(left_out, index));
-            }
+        for category in indices.iter_mut().filter(|category| **category == NONE) {
+            *category = count as u32;
+            missing += 1;
         }
         self.note_missing(column, missing - others, false, &mut notes);
         if others > 0 {

@@ -1,8 +1,6 @@
 //! The error of a column that cannot give colours, radii, opacities or strengths of light.
 
 use super::scale::ScaleError;
-use pinhole::scene::SceneError;
-use pinhole_data::added::AddError;
 use pinhole_data::column::ColumnError;
 
 /// The reason why a column does not give colours, radii, opacities or strengths of light.
@@ -18,10 +16,4 @@ pub enum ColorByError {
     /// The values, the range or the factor do not suit the request.
     #[error("{0}")]
     Values(String),
-    /// A sphere is out of range.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// Bonds or the edges of the cell cannot be added.
-    #[error(transparent)]
-    Add(#[from] AddError),
 }

@@ -18,11 +18,11 @@ use pinhole_data::load::Dataset;
 /// let mut by = ColorBy::column("x");
 /// let mut joined = JoinedKeys::default();
 /// for spheres in &frames {
-///     joined.add(&by.apply(spheres, &[], &[])?.key);
+///     joined.add(&by.apply(spheres, &[])?.key);
 /// }
 /// joined.apply_to(&mut by);
-/// let first = by.apply(&frames[0], &[], &[])?;
-/// let last = by.apply(&frames[1], &[], &[])?;
+/// let first = by.apply(&frames[0], &[])?;
+/// let last = by.apply(&frames[1], &[])?;
 /// assert_eq!(first.key, last.key);
 /// # Ok::<(), pinhole_figure::color_by::ColorByError>(())
 /// ```
@@ -117,5 +117,15 @@ impl ColorBy {
             loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()))
         };
         KINDS.into_iter().find(are_kinds).map(Self::column)
+    }
+
+    /// The note about colours by kind that nobody asked for. `key` is a flag or keyword that gives all spheres one
+    /// colour, with its value.
+    #[must_use]
+    pub fn note_of_kinds(&self, key: &str) -> String {
+        let column = &self.column;
+        format!(
+            "there are no colors; the spheres are colored by {column}; {key} gives all one color"
+        )
     }
 }

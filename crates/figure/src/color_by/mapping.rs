@@ -4,14 +4,11 @@ use std::collections::HashMap;
 
 use super::error::ColorByError;
 use super::number::short;
-use super::{ColorBy, ColorKey, Coloring, is_kept};
-use pinhole::image::color::LinearRgb;
+use super::{ColorBy, Coloring};
 use pinhole::scene::material::{Material, SurfaceProperties};
-use pinhole::scene::sphere_array::SphereArray;
-use pinhole::scene::{Appearance, Colors, Scene};
-use pinhole_data::added::{AddedSpheres, Additions, Base};
+use pinhole::scene::{Appearance, Colors};
 use pinhole_data::column::numbers;
-use pinhole_data::load::{Column, Dataset};
+use pinhole_data::load::Dataset;
 
 /// The columns that determine colour, radius, opacity and strength of light, each if it is given.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,52 +40,33 @@ const fn one() -> f64 {
 }
 
 /// The properties of spheres from columns; see [`Mapping::apply`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MappedColumns {
-    coloring: Option<Coloring>,
+#[derive(Default)]
+pub(crate) struct MappedColumns {
+    pub(crate) coloring: Option<Coloring>,
+    /// Levels from 0 to 255 of opacities from 0 to 1.
     opacities: Option<Vec<u8>>,
     strengths: Option<Strengths>,
-    notes: Vec<String>,
+    /// Notes for the user, one line each.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Mapping {
-    /// Whether no column is given.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Returns this mapping, completed by `other`.
-    #[must_use]
-    pub fn or(self, other: Self) -> Self {
-        Self {
-            color: self.color.or(other.color),
-            radius: self.radius.or(other.radius),
-            opacity: self.opacity.or(other.opacity),
-            emission: self.emission.or(other.emission),
-        }
-    }
-
-    /// Looks up the columns. Radii are written to `spheres`; colours, opacities and strengths of light are returned.
-    /// `left_out` has true for each sphere that is left out of the picture; it may be empty.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such column, or its values cannot be used.
-    pub fn apply(
-        &self,
-        spheres: &mut SphereArray,
-        columns: &[Column],
-        left_out: &[bool],
-    ) -> Result<MappedColumns, ColorByError> {
+    /// Looks up the columns. Radii are written to the spheres; colours, opacities and strengths of light are returned.
+    /// Opacities are those of the column, or else of the data.
+    pub(crate) fn apply(&self, loaded: &mut Dataset) -> Result<MappedColumns, ColorByError> {
+        let Dataset { spheres, columns, .. } = loaded;
         let mut mapped = MappedColumns::default();
         if let Some(by) = &self.color {
-            let mut coloring = by.apply(spheres, columns, left_out)?;
+            let mut coloring = by.apply(spheres, columns)?;
             mapped.notes.append(&mut coloring.notes);
             mapped.coloring = Some(coloring);
         }
         if let Some(column) = &self.opacity {
             let (name, values) = numbers(column, spheres, columns)?;
             mapped.opacities = Some(opacities(&name, &values, &mut mapped.notes));
+        } else if let Some(of_data) = &loaded.opacities {
+            let level = |opacity: &f32| (opacity * 255.0).round() as u8;
+            mapped.opacities = Some(of_data.iter().map(level).collect());
         }
         if let Some(by) = &self.emission {
             let (name, values) = numbers(&by.column, spheres, columns)?;
@@ -96,159 +74,66 @@ impl Mapping {
         }
         if let Some(by) = &self.radius {
             let (name, values) = numbers(&by.column, spheres, columns)?;
-            let values = values.into_owned();
-            set_radii(spheres, &name, by.factor, &values, left_out)?;
+            let radii = radii(by, &name, &values)?;
+            spheres.map_radii(|index, radius| radii.get(index).copied().unwrap_or(radius));
         }
         Ok(mapped)
     }
-
-    /// Makes a scene from a file's spheres, and returns it with the properties from columns. Spheres without a colour
-    /// from a column or the file have `color`. Opacities are those of the column, or else of the file.
-    ///
-    /// # Errors
-    /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
-    pub fn scene(
-        &self,
-        loaded: Dataset,
-        color: LinearRgb,
-    ) -> Result<(Scene, MappedColumns), ColorByError> {
-        let (scene, mapped, _) = self.scene_with(loaded, color, &Additions::default())?;
-        Ok((scene, mapped))
-    }
-
-    /// Makes a scene like [`Mapping::scene`], with bonds or the edges of the cell after the spheres of the file. Added
-    /// spheres do not affect the range of colours.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Mapping::scene`], and an error if the file lacks data for the additions.
-    pub fn scene_with(
-        &self,
-        mut loaded: Dataset,
-        color: LinearRgb,
-        additions: &Additions,
-    ) -> Result<(Scene, MappedColumns, AddedSpheres), ColorByError> {
-        let mut mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
-        if self.radius.is_none() {
-            additions.shrink(&mut loaded);
-        }
-        let added = additions.add(&Base::of(&loaded))?;
-        if let (None, Some(of_file)) = (&mapped.opacities, &loaded.opacities) {
-            let level = |opacity: &f32| (opacity * 255.0).round() as u8;
-            mapped.opacities = Some(of_file.iter().map(level).collect());
-        }
-        let base = match loaded.colors {
-            Some(colors) if mapped.coloring.is_none() => Colors::distinct(&colors),
-            _ => Colors::One(color),
-        };
-        let count = loaded.spheres.len();
-        let mut appearance = mapped.appearance(count, base, SurfaceProperties::default());
-        if !added.is_empty() {
-            appearance = added.extend_appearance(&appearance, count);
-            added.extend_array(&mut loaded.spheres);
-        }
-        let scene = Scene::from_parts(loaded.spheres, appearance)?.with_added(added.len());
-        Ok((scene, mapped, added))
-    }
 }
 
-fn set_radii(
-    spheres: &mut SphereArray,
-    column: &str,
-    factor: f64,
-    values: &[f64],
-    left_out: &[bool],
-) -> Result<(), ColorByError> {
-    check_factor(column, factor)?;
-    for (index, value) in values.iter().enumerate() {
-        let value = value * factor;
-        // A radius must not become zero in f32 either.
-        if !(value.is_finite() && value as f32 > 0.0) && is_kept(left_out, index) {
-            return Err(ColorByError::Values(format!(
-                "sphere {index} would have the radius {}; a radius from `{column}` must be finite and greater than 0",
-                short(value)
-            )));
-        }
+fn radii(by: &RadiusBy, column: &str, values: &[f64]) -> Result<Vec<f64>, ColorByError> {
+    check_factor(column, by.factor)?;
+    let radii: Vec<f64> = values.iter().map(|value| value * by.factor).collect();
+    // A radius must not become zero in f32 either.
+    let is_radius = |radius: &f64| radius.is_finite() && *radius as f32 > 0.0;
+    match radii.iter().enumerate().find(|(_, radius)| !is_radius(radius)) {
+        None => Ok(radii),
+        Some((index, radius)) => Err(ColorByError::Values(format!(
+            "sphere {index} would have the radius {}; a radius from `{column}` must be finite and greater than 0",
+            short(*radius)
+        ))),
     }
-    let radii = values.iter().map(|value| value * factor);
-    match spheres {
-        SphereArray::F32(spheres) => {
-            spheres.iter_mut().zip(radii).for_each(|(sphere, radius)| sphere[3] = radius as f32);
-        }
-        SphereArray::F64(spheres) => {
-            spheres.iter_mut().zip(radii).for_each(|(sphere, radius)| sphere[3] = radius);
-        }
-    }
-    Ok(())
 }
 
 impl MappedColumns {
-    /// The meaning of the colours, if columns gave colours.
-    #[must_use]
-    pub fn key(&self) -> Option<&ColorKey> {
-        self.coloring.as_ref().map(|coloring| &coloring.key)
-    }
-
-    /// Notes for the user, one line each.
-    #[must_use]
-    pub fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
-    /// The colour of a sphere by its index in input order, if columns gave colours.
-    #[must_use]
-    pub fn color(&self, index: usize) -> Option<LinearRgb> {
-        self.coloring.as_ref()?.color(index)
-    }
-
-    /// The surface properties of a sphere. `base` gives those that no column determines.
-    #[must_use]
-    pub fn surface(&self, base: SurfaceProperties, index: usize) -> SurfaceProperties {
-        let levels = self.levels(index);
-        self.of_levels(base, levels)
-    }
-
-    fn levels(&self, index: usize) -> [Option<u8>; 2] {
-        let strength = self.strengths.as_ref().and_then(|s| s.indices.get(index).copied());
-        let opacity = self.opacities.as_ref().and_then(|levels| levels.get(index).copied());
-        [strength, opacity]
-    }
-
-    fn of_levels(
-        &self,
-        base: SurfaceProperties,
-        [strength, opacity]: [Option<u8>; 2],
-    ) -> SurfaceProperties {
-        let strength = strength
-            .and_then(|level| self.strengths.as_ref()?.strengths.get(usize::from(level)).copied());
-        let material = strength.map_or(base.material, |strength| Material::Emissive { strength });
-        let opacity = opacity.map_or(1.0, |level| f32::from(level) / 255.0);
-        SurfaceProperties { material, opacity: base.opacity * opacity }
-    }
-
-    /// The appearance of `count` spheres. `colors` and `base` apply where no column determines colours and surfaces.
-    #[must_use]
-    pub fn appearance(&self, count: usize, colors: Colors, base: SurfaceProperties) -> Appearance {
-        let mut surfaces = Vec::new();
-        let mut indices = Vec::new();
-        if self.opacities.is_some() || self.strengths.is_some() {
-            let mut known = HashMap::new();
-            indices = (0..count)
-                .map(|index| {
-                    let levels = self.levels(index);
-                    *known.entry(levels).or_insert_with(|| {
-                        surfaces.push(self.of_levels(base, levels));
-                        // There are at most 256 levels of opacity and of strength.
-                        surfaces.len() as u32 - 1
-                    })
-                })
-                .collect();
+    /// The appearance of `count` spheres. Where no column determines them, colours are `colors`. The surface that no
+    /// column determines is, of each sphere, the one of `bases` whose index is in `base_of`, or else the first.
+    pub(crate) fn appearance(
+        self,
+        count: usize,
+        colors: Colors,
+        bases: &[SurfaceProperties],
+        base_of: &[u32],
+    ) -> Appearance {
+        let Self { coloring, opacities, strengths, .. } = self;
+        let by_column = |Coloring { palette, indices, .. }| Colors::Palette { palette, indices };
+        let appearance = Appearance::new(coloring.map_or(colors, by_column));
+        let are_equal = base_of.is_empty() && opacities.is_none() && strengths.is_none();
+        if are_equal || count == 0 {
+            return appearance.with_surface(bases.first().copied().unwrap_or_default());
         }
-        let colors = self.coloring.as_ref().map_or(colors, Coloring::to_colors);
-        let appearance = Appearance::new(colors);
-        match surfaces.is_empty() {
-            true => appearance.with_surface(base),
-            false => appearance.with_surfaces(surfaces, indices),
-        }
+        let surface = |base: u32, strength: Option<u8>, opacity: Option<u8>| {
+            let mut surface = bases.get(base as usize).copied().unwrap_or_default();
+            let of_level = |level: u8| strengths.as_ref()?.strengths.get(usize::from(level));
+            if let Some(strength) = strength.and_then(of_level) {
+                surface.material = Material::Emissive { strength: *strength };
+            }
+            surface.opacity *= opacity.map_or(1.0, |level| f32::from(level) / 255.0);
+            surface
+        };
+        // Only surfaces that occur are listed. There are at most 256 levels of opacity and of strength.
+        let (mut surfaces, mut known) = (Vec::new(), HashMap::new());
+        let indices = (0..count).map(|index| {
+            let base = base_of.get(index).copied().unwrap_or_default();
+            let strength = strengths.as_ref().and_then(|s| s.indices.get(index).copied());
+            let opacity = opacities.as_ref().and_then(|levels| levels.get(index).copied());
+            *known.entry((base, strength, opacity)).or_insert_with(|| {
+                surfaces.push(surface(base, strength, opacity));
+                surfaces.len() as u32 - 1
+            })
+        });
+        let indices = indices.collect();
+        appearance.with_surfaces(surfaces, indices)
     }
 }
 

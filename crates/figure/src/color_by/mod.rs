@@ -8,7 +8,7 @@
 //! use pinhole::SphereArray;
 //!
 //! let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0]]);
-//! let colored = ColorBy::column("x").apply(&spheres, &[], &[])?;
+//! let colored = ColorBy::column("x").apply(&spheres, &[])?;
 //! // Viridis begins with a dark violet, and ends with yellow.
 //! assert_eq!(colored.color(0).unwrap().to_srgb8(), [0x44, 0x01, 0x54]);
 //! assert_eq!(colored.color(1).unwrap().to_srgb8(), [0xfd, 0xe7, 0x25]);
@@ -28,7 +28,7 @@ mod scale;
 pub use error::ColorByError;
 pub use joined::JoinedKeys;
 pub use key::{Category, ColorKey, ColorScale, KeyKind};
-pub use mapping::{EmissionBy, MappedColumns, Mapping, RadiusBy};
+pub use mapping::{EmissionBy, Mapping, RadiusBy};
 pub use maps::{MapError, MapName};
 pub use pinhole_data::column::ColumnError;
 pub use scale::{Limit, Limits, Scale, ScaleError};
@@ -36,7 +36,6 @@ pub use scale::{Limit, Limits, Scale, ScaleError};
 use serde::{Deserialize, Serialize};
 
 use pinhole::image::color::LinearRgb;
-use pinhole::scene::Colors;
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole_data::column;
 use pinhole_data::load::{Column, ColumnValues};
@@ -104,8 +103,7 @@ impl ColorBy {
         }
     }
 
-    /// Computes the colours of the spheres. `left_out` has true for each sphere that is left out of the picture,
-    /// whose value does not affect the range; it may be empty.
+    /// Computes the colours of the spheres.
     ///
     /// # Errors
     /// Returns an error if there is no such column, if it has no value that can be shown, if the range is wrong, or if
@@ -114,15 +112,14 @@ impl ColorBy {
         &self,
         spheres: &SphereArray,
         columns: &[Column],
-        left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         let found = column::column(&self.column, spheres, columns)?;
         match found.values.as_ref() {
-            ColumnValues::Labels(labels) => self.color_labels(&found.name, labels, left_out),
-            ColumnValues::Numbers(values) if self.are_categories(&found, values, left_out) => {
-                self.color_whole_numbers(&found.name, values, left_out)
+            ColumnValues::Labels(labels) => self.color_labels(&found.name, labels),
+            ColumnValues::Numbers(values) if self.are_categories(&found, values) => {
+                self.color_whole_numbers(&found.name, values)
             }
-            ColumnValues::Numbers(values) => self.color_numbers(&found.name, values, left_out),
+            ColumnValues::Numbers(values) => self.color_numbers(&found.name, values),
         }
     }
 }
@@ -147,16 +144,6 @@ impl Coloring {
     pub fn color(&self, index: usize) -> Option<LinearRgb> {
         self.palette.get(*self.indices.get(index)? as usize).copied()
     }
-
-    /// Returns the colours for a scene, 4 bytes for each sphere.
-    pub(crate) fn to_colors(&self) -> Colors {
-        Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
-    }
-}
-
-/// Whether the sphere with this index is in the picture.
-fn is_kept(left_out: &[bool], index: usize) -> bool {
-    !left_out.get(index).copied().unwrap_or(false)
 }
 
 fn hex([r, g, b]: [u8; 3]) -> String {

@@ -8,10 +8,7 @@ use crate::color_by::Mapping;
 use pinhole::image::color::LinearRgb;
 use pinhole::range::RangeError;
 use pinhole::scene::material::SurfaceProperties;
-use pinhole::scene::sphere::Sphere;
-use pinhole::scene::sphere_array::SphereArray;
-use pinhole_data::added::{AddError, AddedSpheres, Additions, Base, BondLength, Bonds, CellEdges};
-use pinhole_data::load::{Dataset, Labels};
+use pinhole_data::added::{Additions, BondLength, Bonds, CellEdges};
 use pinhole_data::select::Selection;
 
 /// A reference to a data file, and the keys of the scene file that concern its spheres.
@@ -78,16 +75,6 @@ pub(super) struct ElementTable {
 }
 
 impl Data {
-    /// Whether no key gives spheres a look or a radius of their own, but for columns.
-    #[must_use]
-    pub fn is_plain(&self) -> bool {
-        self.elements.is_empty()
-            && self.elements_by.is_empty()
-            && self.leave_out.is_empty()
-            && self.surface == SurfaceProperties::default()
-            && self.radius_scale.to_bits() == 1.0_f64.to_bits()
-    }
-
     /// A reference to a data file, without any other key.
     #[must_use]
     pub fn of_file(file: impl Into<String>) -> Self {
@@ -189,29 +176,4 @@ impl BondsValue {
         };
         Ok(Some(Bonds::new(length)))
     }
-}
-
-/// Adds spheres to those of data. `kept` has the index in `loaded` of each sphere.
-pub(super) fn add_spheres(
-    additions: &Additions,
-    spheres: &mut Vec<Sphere>,
-    loaded: &Dataset,
-    kept: &[usize],
-) -> Result<AddedSpheres, AddError> {
-    if additions.is_empty() {
-        return Ok(AddedSpheres::default());
-    }
-    let place = |sphere: &Sphere| {
-        let [x, y, z] = sphere.center;
-        [x, y, z, sphere.radius]
-    };
-    let array = SphereArray::F64(spheres.iter().map(place).collect());
-    let species = loaded.labels("species").map(|labels| Labels {
-        names: labels.names.clone(),
-        indices: kept.iter().filter_map(|index| labels.indices.get(*index).copied()).collect(),
-    });
-    let base = Base { spheres: &array, species: species.as_ref(), ..Base::of(loaded) };
-    let added = additions.add(&base)?;
-    added.extend_spheres(spheres);
-    Ok(added)
 }

@@ -5,7 +5,7 @@
 
 mod camera_path;
 mod data;
-mod data_spheres;
+mod data_scene;
 mod document;
 mod lighting;
 mod mapping;
@@ -16,7 +16,7 @@ pub(crate) mod span;
 pub use camera_path::parse_camera_path;
 pub(crate) use data::{BondsTable, BoxTable};
 pub use data::{Data, Element};
-pub use data_spheres::{AppliedData, DataError, DataSpheres};
+pub use data_scene::{DataError, DataScene};
 pub use document::KEYS_OF_DATA;
 pub(crate) use document::{Document, SphereTable};
 pub use lighting::IntegratorKind;
@@ -38,7 +38,7 @@ use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, RenderSettings, Sampling, SettingsError};
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere::Sphere;
-use pinhole::scene::{Colors, Scene, SceneError};
+use pinhole::scene::{Scene, SceneError};
 use span::{Span, WithSpan, scaled};
 
 /// The contents of a scene file.
@@ -114,42 +114,19 @@ impl SceneFile {
         })
     }
 
-    /// Makes the scene: first the file's own spheres, then those of its data.
+    /// Makes the scene of the file's own spheres. [`Data::scene`] makes that of its data.
     ///
     /// # Errors
-    /// Names the first sphere that is out of range. The position is that of the sphere, or of the key `data`.
-    pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
-        let own = self.spheres.iter().map(|sphere| sphere.value);
-        let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
-        Scene::new(&spheres).map_err(|error| self.spanned(&error))
+    /// Names the first sphere that is out of range, with its position.
+    pub fn scene(&self) -> Result<Scene, SceneFileError> {
+        let own: Vec<Sphere> = self.spheres().collect();
+        Scene::new(&own).map_err(|error| self.at_sphere(&error))
     }
 
-    /// Makes the scene like [`SceneFile::scene`], from what [`Data::apply`] returns. Spheres without a colour of their
-    /// own get the `color`, and the surface properties that the file gives. If the file has no spheres of its own, an
-    /// array is not copied.
-    ///
-    /// # Errors
-    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
-    pub fn scene_of(&self, data: DataSpheres, color: LinearRgb) -> Result<Scene, SceneFileError> {
-        let (data, mapped) = match data {
-            DataSpheres::Spheres(spheres) => return self.scene(&spheres),
-            DataSpheres::Array(data, mapped) => (data, mapped),
-        };
-        let surface = self.data().map(|data| data.surface).unwrap_or_default();
-        if self.spheres.is_empty() {
-            let appearance = mapped.appearance(data.len(), Colors::One(color), surface);
-            return Scene::from_parts(data, appearance).map_err(|error| self.spanned(&error));
-        }
-        let of_data = |(index, mut sphere): (usize, Sphere)| {
-            sphere.color = mapped.color(index).unwrap_or(color);
-            sphere.surface = mapped.surface(surface, index);
-            sphere
-        };
-        let spheres: Vec<Sphere> = data.with_color(color).enumerate().map(of_data).collect();
-        self.scene(&spheres)
-    }
-
-    fn spanned(&self, error: &SceneError) -> SceneFileError {
+    /// Adds the position of a sphere, or of the key `data`, to an error of a scene: first the file's own spheres, then
+    /// those of its data.
+    #[must_use]
+    pub fn at_sphere(&self, error: &SceneError) -> SceneFileError {
         let &SceneError::Sphere { index, error: ref fault } = error else {
             return Span::START.error(error);
         };

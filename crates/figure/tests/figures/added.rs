@@ -1,11 +1,11 @@
 //! Bonds and the edges of cells: which of them exist, the positions of their spheres, and their appearance.
 
 use pinhole::glam::DVec3;
-use pinhole::{LinearRgb, Scene, SphereArray};
+use pinhole::{Scene, SphereArray};
 use pinhole_data::added::{Additions, BondLength, Bonds, CellEdges};
 use pinhole_data::load::{self, Dataset, Options};
-use pinhole_figure::color_by::{ColorBy, ColorByError, Mapping};
-use pinhole_figure::scene_file::SceneFile;
+use pinhole_figure::color_by::{ColorBy, Mapping};
+use pinhole_figure::scene_file::{Data, DataError, DataScene, SceneFile};
 
 fn read(text: &str) -> Dataset {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
@@ -19,11 +19,13 @@ fn bonds() -> Additions {
     Additions { bonds: Some(Bonds::default()), ..Additions::default() }
 }
 
+fn made(loaded: Dataset, additions: &Additions) -> Result<DataScene, DataError> {
+    Data { additions: additions.clone(), ..Data::of_file("a.xyz") }.scene(loaded, &[])
+}
+
 fn scene(loaded: Dataset, additions: &Additions) -> (Scene, usize) {
-    let (scene, _, added) =
-        Mapping::default().scene_with(loaded, LinearRgb::WHITE, additions).unwrap();
-    assert_eq!(scene.added(), added.len());
-    (scene, added.bonds())
+    let made = made(loaded, additions).unwrap();
+    (made.scene, made.bonds.unwrap_or_default())
 }
 
 fn center(sphere: &[f32; 4]) -> DVec3 {
@@ -74,8 +76,7 @@ fn the_user_chooses_lengths_and_radii() {
     // Sticks inside the atoms' spheres are not drawn.
     assert_eq!(kept.added(), 0);
     for bad in [BondLength::Below(f64::NAN), BondLength::Covalent(0.0), BondLength::Below(-1.0)] {
-        let made = Mapping::default().scene_with(read(WATER), LinearRgb::WHITE, &of(bad));
-        let Err(ColorByError::Add(error)) = made else { panic!("{bad:?}") };
+        let Err(DataError::Add(error)) = made(read(WATER), &of(bad)) else { panic!("{bad:?}") };
         assert!(error.to_string().ends_with("it must be finite and greater than 0"), "{error}");
     }
     let far = of(BondLength::Below(f64::MAX));
@@ -89,11 +90,13 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     loaded.opacities = Some(vec![1.0, 0.2, 1.0, 1.0, 1.0, 1.0]);
     let additions = Additions { cell: Some(CellEdges::default()), ..bonds() };
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]);
-    let (plain, plain_mapped) = mapping.scene(loaded.clone(), LinearRgb::WHITE).unwrap();
-    let (scene, mapped, added) = mapping.scene_with(loaded, LinearRgb::WHITE, &additions).unwrap();
+    let data = Data { mapping, ..Data::of_file("a.xyz") };
+    let plain = data.scene(loaded.clone(), &[]).unwrap();
+    let made = Data { additions, ..data }.scene(loaded, &[]).unwrap();
     // The range, the legend and the appearance of the atoms are the same as without additions.
-    assert_eq!(mapped.key(), plain_mapped.key());
-    assert_eq!(mapped.notes(), plain_mapped.notes());
+    assert_eq!(made.color_key, plain.color_key);
+    assert_eq!(made.notes[..plain.notes.len()], plain.notes);
+    let (scene, plain) = (made.scene, plain.scene);
     for id in 0..6 {
         assert_eq!((scene.color(id), scene.surface(id)), (plain.color(id), plain.surface(id)));
     }
@@ -103,8 +106,8 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     assert!(sticks.iter().all(|id| scene.surface(*id) == scene.surface(1)));
     assert!((scene.surface(1).opacity - 0.2).abs() < 1e-6);
     let last = scene.len() as u32 - 1;
-    assert_eq!((scene.surface(last).opacity, scene.added()), (1.0, added.len()));
-    assert!(added.notes()[0].contains("borders of the periodic cell"));
+    assert_eq!((scene.surface(last).opacity, scene.added()), (1.0, scene.len() - 6));
+    assert!(made.notes[made.notes.len() - 1].contains("borders of the periodic cell"));
 }
 
 #[test]
@@ -149,10 +152,8 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
 
 #[test]
 fn what_is_missing_is_an_error() {
-    let error = |loaded: Dataset, additions: &Additions| {
-        let made = Mapping::default().scene_with(loaded, LinearRgb::WHITE, additions);
-        made.unwrap_err().to_string()
-    };
+    let error =
+        |loaded: Dataset, additions: &Additions| made(loaded, additions).unwrap_err().to_string();
     let edges = |width: Option<f64>| Additions {
         cell: Some(width.map_or_else(CellEdges::default, CellEdges::of_width)),
         ..Additions::default()
@@ -182,14 +183,11 @@ fn scene_files_select_and_add() {
     let file = SceneFile::parse(text).unwrap();
     let mut loaded = read(WATER);
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]);
-    let applied = file.data().unwrap().apply(loaded).unwrap();
-    assert_eq!(applied.kept.as_ref().map(|kept| (kept.kept, kept.of)), Some((3, 6)));
-    assert_eq!(applied.added.bonds(), 2);
-    let pinhole_figure::scene_file::DataSpheres::Spheres(spheres) = applied.spheres else {
-        panic!("additions make spheres")
-    };
-    assert_eq!(spheres.len(), 3 + applied.added.len());
+    let made = file.data().unwrap().scene(loaded, &[]).unwrap();
+    assert_eq!(made.kept.as_ref().map(|kept| (kept.kept, kept.of)), Some((3, 6)));
+    assert_eq!(made.bonds, Some(2));
+    let spheres = made.scene.spheres();
+    assert_eq!(spheres.len(), 3 + made.scene.added());
     // A radius given by the file is not reduced.
-    assert!((spheres[0].radius - 0.7).abs() < 1e-12 && (spheres[1].radius - 0.3).abs() < 1e-12);
-    assert!((spheres[spheres.len() - 1].radius - 0.05).abs() < 1e-12);
+    assert_eq!([0, 1, spheres.len() - 1].map(|id| spheres[id][3]), [0.7, 0.3, 0.05]);
 }

@@ -23,7 +23,7 @@ fn categories(names: &[&str]) -> ColorKey {
     };
     let columns = [Column { name: "kind".to_owned(), values: ColumnValues::Labels(labels) }];
     let spheres = SphereArray::F32(vec![[0.0; 4]; names.len()]);
-    ColorBy::column("kind").apply(&spheres, &columns, &[]).unwrap().key
+    ColorBy::column("kind").apply(&spheres, &columns).unwrap().key
 }
 
 /// A colour key of a scale.
@@ -32,7 +32,7 @@ fn scale(values: &[f64], is_log: bool) -> ColorKey {
     let columns = [Column { name: "value".to_owned(), values }];
     let spheres = SphereArray::F32(vec![[0.0; 4]; 2]);
     let by = ColorBy { is_log, ..ColorBy::column("value") };
-    by.apply(&spheres, &columns, &[]).unwrap().key
+    by.apply(&spheres, &columns).unwrap().key
 }
 
 /// A picture of one colour.

@@ -1,13 +1,13 @@
 //! Colours, radii, opacities and strengths of light from columns, and selections by expressions over columns.
 
-use pinhole::scene::Colors;
-use pinhole::{LinearRgb, Material, Scene, SphereArray, SurfaceProperties};
+use pinhole::{LinearRgb, Material, SphereArray};
 use pinhole_data::column;
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_data::select::{SelectError, Selection};
 use pinhole_figure::color_by::{
     ColorBy, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING, Mapping, RadiusBy,
 };
+use pinhole_figure::scene_file::{Data, DataError, DataScene};
 
 fn spheres(count: usize) -> SphereArray {
     SphereArray::F64((0..count).map(|i| [i as f64, 10.0 + i as f64, 0.5, 1.0 + i as f64]).collect())
@@ -38,7 +38,7 @@ fn gray(column: &str) -> ColorBy {
 /// The grey levels that a mapping gives `values`, and its notes.
 fn levels(by: &ColorBy, values: &[f64]) -> (Vec<u8>, Vec<String>) {
     let columns = [numbers(&by.column, values)];
-    let coloring = by.apply(&spheres(values.len()), &columns, &[]).unwrap();
+    let coloring = by.apply(&spheres(values.len()), &columns).unwrap();
     let level = |index| coloring.color(index).unwrap().to_srgb8()[0];
     ((0..values.len()).map(level).collect(), coloring.notes)
 }
@@ -52,7 +52,7 @@ fn category_names(key: &ColorKey) -> Vec<(&str, usize)> {
 
 /// The colours that a mapping gives spheres with these texts.
 fn colors_of(by: &ColorBy, texts: &[&str]) -> Vec<[u8; 3]> {
-    let coloring = by.apply(&spheres(texts.len()), &[labels("t", texts)], &[]).unwrap();
+    let coloring = by.apply(&spheres(texts.len()), &[labels("t", texts)]).unwrap();
     (0..texts.len()).map(|index| coloring.color(index).unwrap().to_srgb8()).collect()
 }
 
@@ -62,7 +62,7 @@ fn frames_together_give_a_category_one_color() {
     let mut by = ColorBy::column("t");
     let mut joined = JoinedKeys::default();
     for texts in frames {
-        let found = by.apply(&spheres(texts.len()), &[labels("t", texts)], &[]).unwrap();
+        let found = by.apply(&spheres(texts.len()), &[labels("t", texts)]).unwrap();
         joined.add(&found.key);
     }
     let alone = frames.map(|texts| colors_of(&by, texts));
@@ -71,7 +71,7 @@ fn frames_together_give_a_category_one_color() {
     let [first, second, third] = frames.map(|texts| colors_of(&by, texts));
     assert_eq!([first[0], first[0]], [second[1], third[0]]);
     assert!(first[1] != second[0]);
-    let found = by.apply(&spheres(1), &[labels("t", &["d"])], &[]).unwrap();
+    let found = by.apply(&spheres(1), &[labels("t", &["d"])]).unwrap();
     assert_eq!(category_names(&found.key), [("a", 0), ("b", 0), ("c", 0)]);
     assert_eq!(found.color(0).unwrap().to_srgb8(), MISSING);
     assert_eq!(
@@ -86,7 +86,7 @@ fn frames_together_have_one_range_if_any_is_on_a_scale() {
     let mut by = ColorBy::column("t");
     let mut joined = JoinedKeys::default();
     let key = |by: &ColorBy, values: &[f64]| {
-        by.apply(&spheres(values.len()), &[numbers("t", values)], &[]).unwrap().key
+        by.apply(&spheres(values.len()), &[numbers("t", values)]).unwrap().key
     };
     assert!(matches!(key(&by, frames[0]).kind, KeyKind::Categories(_)));
     frames.iter().for_each(|values| joined.add(&key(&by, values)));
@@ -103,7 +103,7 @@ fn frames_together_have_one_range_if_any_is_on_a_scale() {
     let mut joined = JoinedKeys::default();
     joined.add(&key(&by, &[10.0, 9.0]));
     joined.apply_to(&mut by);
-    let found = by.apply(&spheres(2), &[numbers("t", &[9.0, 0.5])], &[]).unwrap();
+    let found = by.apply(&spheres(2), &[numbers("t", &[9.0, 0.5])]).unwrap();
     assert_eq!(category_names(&found.key), [("9", 1), ("10", 0)]);
     assert_eq!(found.color(1).unwrap().to_srgb8(), MISSING);
 }
@@ -145,21 +145,27 @@ fn what_is_missing_is_gray_and_counted() {
     assert_eq!(found, [0, 0x80, 255, 255]);
     assert_eq!(notes[1], "1 sphere has no value in `t` and is shown in #808080");
     let columns = [numbers("t", &[f64::NAN; 3])];
-    let error = gray("t").apply(&spheres(3), &columns, &[]).unwrap_err();
+    let error = gray("t").apply(&spheres(3), &columns).unwrap_err();
     assert_eq!(error.to_string(), "the column `t` has no finite number, so it gives no colors");
     assert_eq!(MISSING, [0x80; 3]);
 }
 
 #[test]
 fn spheres_that_are_left_out_do_not_count() {
-    let columns = [numbers("t", &[0.0, 1.0, 1000.0, f64::NAN])];
-    let left_out = [false, false, true, true];
-    let coloring = gray("t").apply(&spheres(4), &columns, &left_out).unwrap();
-    assert_eq!(coloring.color(1), Some(LinearRgb::WHITE));
-    assert_eq!(coloring.key.missing, None);
-    let columns = [labels("chain", &["A", "B", "C", ""])];
-    let coloring = ColorBy::column("chain").apply(&spheres(4), &columns, &left_out).unwrap();
-    assert_eq!(category_names(&coloring.key), [("A", 1), ("B", 1)]);
+    let mut loaded = Dataset::new(spheres(4));
+    loaded.columns =
+        vec![numbers("t", &[0.0, 1.0, 1000.0, f64::NAN]), labels("chain", &["A", "B", "C", ""])];
+    let color = |by: ColorBy| {
+        let mapping = Mapping { color: Some(by), ..Mapping::default() };
+        let leave_out = vec![("chain".to_owned(), vec!["C".to_owned(), String::new()])];
+        Data { mapping, leave_out, ..Data::of_file("a.xyz") }.scene(loaded.clone(), &[]).unwrap()
+    };
+    let made = color(gray("t"));
+    assert_eq!((made.scene.len(), made.scene.color(1)), (2, LinearRgb::WHITE));
+    assert_eq!(made.color_key.unwrap().missing, None);
+    assert_eq!(made.columns.last(), Some(&numbers("index", &[0.0, 1.0])));
+    let made = color(ColorBy::column("chain"));
+    assert_eq!(category_names(&made.color_key.unwrap()), [("A", 1), ("B", 1)]);
 }
 
 #[test]
@@ -182,14 +188,14 @@ fn a_range_of_equal_percentiles_is_widened() {
     assert!(matches!([found[0], found[7]], [127 | 128, 255]), "{found:?}");
     assert!(notes[0].starts_with("both ends of the range of `t` are 1, so colors show 0.9 to 1.1"));
     let by = ColorBy { limits: "5,".parse().unwrap(), ..gray("t") };
-    let error = by.apply(&spheres(2), &[numbers("t", &[1.0, 2.0])], &[]).unwrap_err();
+    let error = by.apply(&spheres(2), &[numbers("t", &[1.0, 2.0])]).unwrap_err();
     assert!(error.to_string().contains("it is 5 to 2; its ends must be finite"), "{error}");
 }
 
 #[test]
 fn texts_have_colors_in_their_order() {
     let columns = [labels("chain", &["B", "A", "B", " ", "C"])];
-    let coloring = ColorBy::column("CHAIN").apply(&spheres(5), &columns, &[]).unwrap();
+    let coloring = ColorBy::column("CHAIN").apply(&spheres(5), &columns).unwrap();
     assert_eq!(category_names(&coloring.key), [("A", 1), ("B", 2), ("C", 1)]);
     // The first colours of Okabe and Ito.
     assert_eq!(coloring.color(1).unwrap().to_srgb8(), [0xe6, 0x9f, 0x00]);
@@ -197,11 +203,11 @@ fn texts_have_colors_in_their_order() {
     assert_eq!(coloring.color(3).unwrap().to_srgb8(), MISSING);
     assert_eq!(coloring.key.missing, Some(MISSING));
     let by = ColorBy { is_log: true, ..ColorBy::column("chain") };
-    let error = by.apply(&spheres(5), &columns, &[]).unwrap_err();
+    let error = by.apply(&spheres(5), &columns).unwrap_err();
     assert!(error.to_string().contains("applies only to numbers on a color map"), "{error}");
     // Whole numbers are sorted as numbers.
     let columns = [labels("residue", &["10", "9", "-1"])];
-    let coloring = ColorBy::column("residue").apply(&spheres(3), &columns, &[]).unwrap();
+    let coloring = ColorBy::column("residue").apply(&spheres(3), &columns).unwrap();
     assert_eq!(category_names(&coloring.key), [("-1", 1), ("9", 1), ("10", 1)]);
 }
 
@@ -209,7 +215,7 @@ fn texts_have_colors_in_their_order() {
 fn a_palette_repeats_with_a_note_and_a_map_does_not() {
     let texts: Vec<String> = (0..20).map(|i| format!("r{i:02}")).collect();
     let columns = [labels("r", &texts.iter().map(String::as_str).collect::<Vec<_>>())];
-    let coloring = ColorBy::column("r").apply(&spheres(20), &columns, &[]).unwrap();
+    let coloring = ColorBy::column("r").apply(&spheres(20), &columns).unwrap();
     assert_eq!(coloring.color(0), coloring.color(8));
     assert!(
         coloring.notes[0]
@@ -217,7 +223,7 @@ fn a_palette_repeats_with_a_note_and_a_map_does_not() {
         "{:?}",
         coloring.notes
     );
-    let coloring = gray("r").apply(&spheres(20), &columns, &[]).unwrap();
+    let coloring = gray("r").apply(&spheres(20), &columns).unwrap();
     let ends = [0, 19].map(|index| coloring.color(index).unwrap().to_srgb8()[0]);
     assert_eq!(ends, [0, 255]);
     assert!(coloring.notes.is_empty());
@@ -226,7 +232,7 @@ fn a_palette_repeats_with_a_note_and_a_map_does_not() {
 #[test]
 fn few_whole_numbers_are_categories_unless_a_scale_is_asked_for() {
     let columns = [numbers("type", &[3.0, 1.0, 2.0, 1.0])];
-    let categories = ColorBy::column("type").apply(&spheres(4), &columns, &[]).unwrap();
+    let categories = ColorBy::column("type").apply(&spheres(4), &columns).unwrap();
     assert_eq!(category_names(&categories.key), [("1", 2), ("2", 1), ("3", 1)]);
     for by in [
         gray("type"),
@@ -234,12 +240,12 @@ fn few_whole_numbers_are_categories_unless_a_scale_is_asked_for() {
         ColorBy { limits: "0,3".parse().unwrap(), ..ColorBy::column("type") },
         ColorBy::column("index"),
     ] {
-        let scale = by.apply(&spheres(4), &columns, &[]).unwrap();
+        let scale = by.apply(&spheres(4), &columns).unwrap();
         assert!(matches!(scale.key.kind, KeyKind::Scale(_)), "{by:?}");
     }
     let columns = [numbers("t", &[0.5, 1.0])];
     let palette = ColorBy { map: Some("tol-muted".parse().unwrap()), ..ColorBy::column("t") };
-    let error = palette.apply(&spheres(2), &columns, &[]).unwrap_err();
+    let error = palette.apply(&spheres(2), &columns).unwrap_err();
     assert!(error.to_string().contains("`t` contains 0.5"), "{error}");
 }
 
@@ -280,21 +286,23 @@ fn columns_are_found_by_name() {
     assert_eq!(error.to_string(), "the column `t` has 1 values, but there are 2 spheres");
 }
 
+fn mapped(columns: Vec<Column>, count: usize, mapping: Mapping) -> Result<DataScene, DataError> {
+    let mut loaded = Dataset::new(spheres(count));
+    loaded.columns = columns;
+    Data { mapping, ..Data::of_file("a.xyz") }.scene(loaded, &[])
+}
+
 #[test]
 fn a_mapping_makes_a_scene() {
-    let columns = [numbers("q", &[0.0, 0.5, 1.0, 2.0]), numbers("mass", &[1.0, 2.0, 3.0, 4.0])];
+    let columns = vec![numbers("q", &[0.0, 0.5, 1.0, 2.0]), numbers("mass", &[1.0, 2.0, 3.0, 4.0])];
     let mapping = Mapping {
         color: Some(gray("mass")),
         radius: Some(RadiusBy { column: "Mass".to_owned(), factor: 0.5 }),
         opacity: Some("q".to_owned()),
         emission: None,
     };
-    let mut array = spheres(4);
-    let mapped = mapping.apply(&mut array, &columns, &[]).unwrap();
-    assert!(mapped.notes().iter().any(|note| note.contains("outside 0 to 1")));
-    let appearance =
-        mapped.appearance(4, Colors::One(LinearRgb::BLACK), SurfaceProperties::default());
-    let scene = Scene::from_parts(array, appearance).unwrap();
+    let DataScene { scene, notes, .. } = mapped(columns, 4, mapping).unwrap();
+    assert!(notes.iter().any(|note| note.contains("outside 0 to 1")));
     assert_eq!([0, 3].map(|id| scene.color(id).to_srgb8()[0]), [0, 255]);
     let radii: Vec<f32> = scene.spheres().iter().map(|sphere| sphere[3]).collect();
     assert_eq!(radii, [0.5, 1.0, 1.5, 2.0]);
@@ -304,11 +312,10 @@ fn a_mapping_makes_a_scene() {
 
 #[test]
 fn strengths_make_spheres_emit_light() {
-    let columns = [numbers("l", &[1.0, 100.0, 0.0])];
     let emission = EmissionBy { column: "l".to_owned(), factor: 2.0 };
     let mapping = Mapping { emission: Some(emission), ..Mapping::default() };
-    let mapped = mapping.apply(&mut spheres(3), &columns, &[]).unwrap();
-    let strength = |index| match mapped.surface(SurfaceProperties::default(), index).material {
+    let made = mapped(vec![numbers("l", &[1.0, 100.0, 0.0])], 3, mapping).unwrap();
+    let strength = |id| match made.scene.surface(id).material {
         Material::Emissive { strength } => strength,
         other => panic!("{other:?}"),
     };
@@ -317,15 +324,13 @@ fn strengths_make_spheres_emit_light() {
 
 #[test]
 fn radii_must_be_positive() {
-    let columns = [numbers("r", &[1.0, f64::NAN])];
     let radius = RadiusBy { column: "r".to_owned(), factor: 1.0 };
     let mapping = Mapping { radius: Some(radius), ..Mapping::default() };
-    let error = mapping.apply(&mut spheres(2), &columns, &[]).unwrap_err().to_string();
+    let error = mapped(vec![numbers("r", &[1.0, f64::NAN])], 2, mapping).unwrap_err().to_string();
     assert_eq!(
         error,
         "sphere 1 would have the radius NaN; a radius from `r` must be finite and greater than 0"
     );
-    assert!(mapping.apply(&mut spheres(2), &columns, &[false, true]).is_ok());
 }
 
 /// Six spheres at x = 0 to 5, with texts and numbers.

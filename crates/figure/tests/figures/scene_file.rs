@@ -10,9 +10,12 @@ use pinhole::light::{LightKind, SkyLight};
 use pinhole::render::{DepthCue, Occlusion, Outline, Studio};
 use pinhole::{
     Encoding, Film, Integrator, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere,
-    SurfaceProperties, ToneCurve,
+    SphereArray, SurfaceProperties, ToneCurve,
 };
-use pinhole_figure::scene_file::{Data, IntegratorKind, SceneFile, SceneFileError, Settled};
+use pinhole_data::load::Dataset;
+use pinhole_figure::scene_file::{
+    Data, DataError, IntegratorKind, SceneFile, SceneFileError, Settled,
+};
 use pinhole_figure::settings::Sources;
 use pinhole_figure::style::Style;
 
@@ -25,7 +28,7 @@ pub(crate) fn parse(text: &str) -> SceneFile {
 
 /// The settings of a file that uses primary rays.
 fn settings(file: &SceneFile) -> RenderSettings {
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
     file.settings(IntegratorKind::Primary, &scene, camera.as_ref(), None).unwrap()
 }
@@ -34,7 +37,7 @@ fn settings(file: &SceneFile) -> RenderSettings {
 fn an_empty_file_is_a_picture_of_nothing() {
     let file = parse("");
     assert_eq!([file.film.width(), file.film.height()], [800, 600]);
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     assert!(scene.is_empty());
     assert_eq!(file.camera(&file.film, &scene).unwrap().kind(), CameraKind::Pinhole);
 }
@@ -46,7 +49,7 @@ fn the_example_has_the_expected_contents() {
     assert_eq!(primary.shading, Shading::Flat);
     assert_eq!(primary.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
     assert_eq!(file.film.y_axis(), YAxis::Down);
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     assert_eq!(
         scene.spheres(),
         [[-4.0, 0.0, 0.0, 2.0], [4.0, 0.0, 0.0, 2.0], [0.0, 0.0, 3.0, 2.0]]
@@ -79,7 +82,7 @@ fn colors_in_three_ways() {
          [[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor='#ff6347'\n\
          [[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor=[0.25, 1, 3.5]\n",
     );
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     assert_eq!(scene.color(0), LinearRgb::from_srgb8([255, 99, 71]));
     assert_eq!(scene.color(0), scene.color(1));
     assert_eq!(scene.color(2).to_array(), [0.25, 1.0, 3.5]);
@@ -92,11 +95,16 @@ fn data_comes_behind_the_files_own_spheres() {
     );
     let data = file.data().unwrap();
     assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", Some(3), 0.5));
-    let more = pinhole::Sphere::new([5.0, 0.0, 0.0], 2.0, LinearRgb::BLACK);
-    assert_eq!(file.scene(&[more]).unwrap().spheres()[1], [5.0, 0.0, 0.0, 2.0]);
+    let own: Vec<_> = file.spheres().collect();
+    let scene = |radii: &[f64]| {
+        let spheres = radii.iter().map(|radius| [5.0, 0.0, 0.0, *radius]).collect();
+        data.scene(Dataset::new(SphereArray::F64(spheres)), &own).map(|made| made.scene)
+    };
+    let made = scene(&[4.0]).unwrap();
+    assert_eq!(made.spheres(), [[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 2.0]]);
 
-    let bad = pinhole::Sphere::new(more.center, -2.0, more.color);
-    let error = file.scene(&[more, bad]).unwrap_err();
+    let Err(DataError::Scene(error)) = scene(&[4.0, -4.0]) else { panic!("-4 is no radius") };
+    let error = file.at_sphere(&error);
     assert_eq!((error.line, error.column), (1, 8));
     assert!(error.message.starts_with("sphere 1 of a.xyz: its radius is -2.0"), "{error}");
 }
@@ -112,7 +120,7 @@ fn a_camera_without_an_eye_frames_the_scene() {
         "[camera.fisheye]\nangle = 360\n",
     ] {
         let file = parse(&format!("{camera}[[spheres]]\ncenter=[10,20,30]\nradius=2\n"));
-        let scene = file.scene(&[]).unwrap();
+        let scene = file.scene().unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
         let ray = camera.ray_in_world(DVec2::ZERO);
         assert!((ray.direction - DVec3::NEG_Z).length() < 1e-12);
@@ -136,7 +144,7 @@ fn a_message_is_short_and_harmless() {
 #[test]
 fn many_spheres() {
     let text = "[[spheres]]\ncenter=[0,0,0]\nradius=1\n".repeat(30_000);
-    assert_eq!(parse(&text).scene(&[]).unwrap().len(), 30_000);
+    assert_eq!(parse(&text).scene().unwrap().len(), 30_000);
 }
 
 #[test]
@@ -157,7 +165,7 @@ fn noise_never_panics() {
             }
         }
         if let Ok(file) = SceneFile::parse(&text.into_iter().collect::<String>())
-            && let Ok(scene) = file.scene(&[])
+            && let Ok(scene) = file.scene()
         {
             let _ = file.camera(&file.film, &scene);
         }
@@ -329,7 +337,7 @@ fn a_background_is_left_alone_by_every_curve() {
 fn camera(table: &str) -> Result<Box<dyn Camera>, String> {
     let text = format!("{table}\n[[spheres]]\ncenter=[0,0,-2]\nradius=1\n");
     let file = SceneFile::parse(&text).map_err(|error| error.message)?;
-    let scene = file.scene(&[]).unwrap();
+    let scene = file.scene().unwrap();
     file.camera(&Film::new(30, 20).unwrap(), &scene).map_err(|error| error.message)
 }
 
@@ -390,7 +398,7 @@ fn a_panorama_without_an_eye_stands_in_the_middle() {
 fn two_eyes_are_a_table_within() {
     let eyes = |table: &str| {
         let file = SceneFile::parse(&format!("{table}\n")).unwrap();
-        let scene = file.scene(&[]).unwrap();
+        let scene = file.scene().unwrap();
         file.stereo_pair(&file.film, &scene).unwrap().map(|pair| {
             pair.map(|eye| (eye.ray_in_world(DVec2::ZERO).origin.x, eye.vectors().numbers[0]))
         })
@@ -408,7 +416,7 @@ fn two_eyes_are_a_table_within() {
 fn first_error(text: &str) -> Option<SceneFileError> {
     let settings = || {
         let file = SceneFile::parse(text)?;
-        let scene = file.scene(&[])?;
+        let scene = file.scene()?;
         let camera = file.camera(&file.film, &scene)?;
         let kind = file.integrator().unwrap_or(IntegratorKind::Studio);
         file.settings(kind, &scene, camera.as_ref(), None)

@@ -7,14 +7,14 @@ use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
-use pinhole_figure::scene_file::{AppliedData, DataSpheres, IntegratorKind, SceneFile};
+use pinhole_figure::scene_file::{DataScene, IntegratorKind, SceneFile};
 
 use crate::scene_file::parse;
 
 const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
 
 fn scene(file: &SceneFile) -> Scene {
-    file.scene(&[]).unwrap_or_else(|error| panic!("{error}"))
+    file.scene().unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn lighting(text: &str) -> RenderSettings {
@@ -147,12 +147,13 @@ fn molecule() -> Dataset {
 
 #[test]
 fn elements_are_named_by_columns_and_some_are_left_out() {
-    let apply =
-        |text: &str| parse(&format!("data = 'a.pdb'\n{text}")).data().unwrap().apply(molecule());
+    let made = |text: &str| {
+        let file = parse(&format!("data = 'a.pdb'\n{text}"));
+        file.data().unwrap().scene(molecule(), &[])
+    };
     let radii = |text: &str| {
-        let AppliedData { spheres, notes, .. } = apply(text).unwrap();
-        let DataSpheres::Spheres(atoms) = spheres else { panic!("atoms have colours") };
-        (atoms.iter().map(|atom| atom.radius).collect::<Vec<_>>(), notes)
+        let DataScene { scene, notes, .. } = made(text).unwrap();
+        (scene.spheres().iter().map(|atom| atom[3]).collect::<Vec<_>>(), notes)
     };
     let tables = "[elements.A]\nradius = 2\n[elements.HOH]\nradius = 5\n";
     let (found, notes) = radii(&format!("elements_by = ['residue', 'chain']\n{tables}"));
@@ -176,11 +177,11 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
             "`leave_out`: a.pdb has no text column `charge`; its text columns are species, residue, chain",
         ),
     ] {
-        assert_eq!(apply(text).unwrap_err().to_string(), wanted);
+        assert_eq!(made(text).unwrap_err().to_string(), wanted);
     }
     let plain = parse("data = 'a.npy'\nleave_out = { chain = ['A'] }\n");
-    let refused =
-        plain.data().unwrap().apply(Dataset::new(SphereArray::F32(Vec::new()))).unwrap_err();
+    let empty = Dataset::new(SphereArray::F32(Vec::new()));
+    let refused = plain.data().unwrap().scene(empty, &[]).unwrap_err();
     assert_eq!(
         refused.to_string(),
         "`leave_out` applies only to data with text, such as the names of atoms, and a.npy has none; remove it"
@@ -195,30 +196,29 @@ fn data_gets_common_properties_or_those_of_its_species() {
          [elements.O]\nradius = 3\ncolor = 'red'\n[elements.C1]\nmaterial = 'glass'\n[elements.X]\n",
     );
     let data = file.data().unwrap();
-    let AppliedData { spheres: atoms, notes, .. } = data.apply(molecule()).unwrap();
+    let DataScene { scene, notes, .. } = data.scene(molecule(), &[]).unwrap();
     assert_eq!(
         notes,
         ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]
     );
-    let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
     let metal =
         SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
-    let radii: Vec<f64> = atoms.iter().map(|atom| atom.radius).collect();
+    let radii: Vec<f32> = scene.spheres().iter().map(|atom| atom[3]).collect();
     assert_eq!(radii, [3.0, 1.0, 1.0, 3.0]);
-    assert_eq!(atoms[0].color, LinearRgb::from_srgb8([255, 0, 0]));
-    assert_eq!((atoms[1].color, atoms[1].surface), (LinearRgb::WHITE, metal));
-    assert_eq!(atoms[0].surface, metal);
-    assert!(matches!(atoms[2].surface.material, Material::Dielectric { .. }));
-    assert_eq!(atoms[2].surface.opacity, 0.75);
+    assert_eq!(scene.color(0), LinearRgb::from_srgb8([255, 0, 0]));
+    assert_eq!((scene.color(1), scene.surface(1)), (LinearRgb::WHITE, metal));
+    assert_eq!(scene.surface(0), metal);
+    assert!(matches!(scene.surface(2).material, Material::Dielectric { .. }));
+    assert_eq!(scene.surface(2).opacity, 0.75);
 }
 
 #[test]
 fn arrays_get_the_common_surface_properties() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
-        let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
-        let scene =
-            file.scene_of(DataSpheres::Array(spheres, Box::default()), LinearRgb::WHITE).unwrap();
+        let loaded = Dataset::new(SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]));
+        let own: Vec<_> = file.spheres().collect();
+        let scene = file.data().unwrap().scene(loaded, &own).unwrap().scene;
         let last = scene.len() as u32 - 1;
         assert_eq!(scene.surface(last).opacity, 0.5);
         assert_eq!(scene.surface(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });
@@ -384,7 +384,7 @@ fn every_example_is_right() {
         let place = path.display();
         let text = std::fs::read_to_string(&path).unwrap();
         let file = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{place}: {error}"));
-        let scene = file.scene(&[]).unwrap_or_else(|error| panic!("{place}: {error}"));
+        let scene = file.scene().unwrap_or_else(|error| panic!("{place}: {error}"));
         // A file without spheres must refer to data, which is not loaded here.
         assert!(!scene.is_empty() || file.data().is_some(), "{place}");
         let camera = file.camera(&file.film, &scene);
