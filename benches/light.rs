@@ -44,11 +44,8 @@ impl Subject<'_> {
     fn picture(&self, settings: &RenderSettings) -> (f64, Picture) {
         let started = Instant::now();
         let go_on = &mut |_: &_| Decision::GoOn;
-        let picture = self
-            .headless
-            .render_uploaded(&self.scene, &self.view, settings, LayerSet::COLOR, go_on)
-            .wait()
-            .unwrap();
+        let picture =
+            self.headless.render_uploaded(&self.scene, &self.view, settings, LayerSet::COLOR, go_on).wait().unwrap();
         (started.elapsed().as_secs_f64(), picture)
     }
 }
@@ -67,8 +64,7 @@ fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Ren
 fn path(samples: u32, max_depth: u32) -> RenderSettings {
     let light_sampling = LightSampling::Chance;
     let mut lighting = studio(samples, None, Vec::new());
-    lighting.integrator =
-        Integrator::Path(PathTracing { max_depth, roulette_from: 64, light_sampling });
+    lighting.integrator = Integrator::Path(PathTracing { max_depth, roulette_from: 64, light_sampling });
     lighting.sky = Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true };
     lighting
 }
@@ -92,10 +88,7 @@ fn measure(headless: &Headless, standard: Standard) {
         ("two shadows", studio(2, None, lights.clone())),
         ("path, 1 bounce", path(2, 1)),
         ("path, 3 bounces", path(2, 3)),
-        (
-            "studio: two shadows, 16 ambient rays",
-            studio(1, Some(Occlusion { radius: None, samples: 16 }), lights),
-        ),
+        ("studio: two shadows, 16 ambient rays", studio(1, Some(Occlusion { radius: None, samples: 16 }), lights)),
     ];
     let mut best = vec![f64::INFINITY; pictures.len()];
     let mut hits = vec![0.0; pictures.len()];
@@ -125,9 +118,7 @@ fn measure(headless: &Headless, standard: Standard) {
     println!("{name}: {traced:.1} % of the camera's rays are traced, {met:.1} % meet a sphere");
     println!("  a primary ray, bare            {:8.1} ns", 1e9 * primary);
     let [flat, headlight, bare] = [plain[0], plain[1], bare].map(|seconds| 1e3 * seconds);
-    println!(
-        "  a picture: flat {flat:.1} ms, headlight {headlight:.1} ms; tracing alone {bare:.1} ms"
-    );
+    println!("  a picture: flat {flat:.1} ms, headlight {headlight:.1} ms; tracing alone {bare:.1} ms");
     let report = |what: &str, seconds: f64, rays: f64| {
         let ray = seconds / rays;
         println!("  {what:30} {:8.1} ns, {:.2} of a primary ray", 1e9 * ray, ray / primary);

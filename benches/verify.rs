@@ -12,12 +12,7 @@
 //! cargo bench --bench verify -- adversary 100    # devices that round as they like: all scenes of the campaign in small,
 //!                                                # and this number of random scenes and studios for each
 //! ```
-#![allow(
-    clippy::panic,
-    clippy::print_stdout,
-    clippy::unwrap_used,
-    reason = "a benchmark may panic, and prints"
-)]
+#![allow(clippy::panic, clippy::print_stdout, clippy::unwrap_used, reason = "a benchmark may panic, and prints")]
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -27,13 +22,9 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{
-    Decision, Headless, HeadlessOptions, PictureRequest, SampleRequest, Structures, Wait,
-};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, PictureRequest, SampleRequest, Structures, Wait};
 use pinhole::internals::ShaderEdit;
-use pinhole::verify::{
-    Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict,
-};
+use pinhole::verify::{Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 #[path = "../tests/support/spheres.rs"]
@@ -180,19 +171,12 @@ fn cost(headless: &Headless) {
     for (name, count, side) in [("3", 3, 1024), ("100", 100, 1024), ("2000", 2000, 512)] {
         let scene = grey(spheres::random(count, 1, |rng| 0.05 + 0.1 * rng.f32()));
         let film = Film::new(side, side).unwrap();
-        let camera =
-            PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
         let recording = record(headless, &scene, &camera, &film);
         let (mut reference, mut check) = (Duration::MAX, Duration::MAX);
         for _ in 0..5 {
             let started = Instant::now();
-            cpu::render(
-                &scene,
-                &View::new(&camera, film),
-                &RenderSettings::default(),
-                LayerSet::DATA,
-            )
-            .unwrap();
+            cpu::render(&scene, &View::new(&camera, film), &RenderSettings::default(), LayerSet::DATA).unwrap();
             reference = reference.min(started.elapsed());
             let started = Instant::now();
             let certificate = Checker::new(&scene).unwrap().certify(&recording);
@@ -217,8 +201,7 @@ fn fences(fenced: &Headless) {
         let [file, find, replace] = [file, find, replace].map(str::to_owned);
         ShaderEdit { file, find, replace }
     };
-    let open =
-        |edits| Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() }).wait();
+    let open = |edits| Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() }).wait();
     let bare = open(vec![
         edit("math/fence.wgsl", "bitcast<f32>(bitcast<u32>(v) ^ runtime_zero())", "v"),
         edit("math/fence.wgsl", "bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(runtime_zero()))", "v"),
@@ -231,18 +214,13 @@ fn fences(fenced: &Headless) {
         let scene = grey(standard.spheres().unwrap());
         let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
         for choice in [AccelChoice::Auto, AccelChoice::Tree] {
-            let structures: Structures =
-                fenced.plan_accel(&scene, choice).build(scene.spheres()).into();
+            let structures: Structures = fenced.plan_accel(&scene, choice).build(scene.spheres()).into();
             let devices = [fenced, &bare, &known];
-            let buffers =
-                devices.map(|headless| headless.upload(&scene, &structures).wait().unwrap());
+            let buffers = devices.map(|headless| headless.upload(&scene, &structures).wait().unwrap());
             let mut best = [Duration::MAX; 3];
             for round in 0..=ROUNDS {
                 for (which, headless) in devices.into_iter().enumerate() {
-                    let time = headless
-                        .measure(&buffers[which], &View::new(&camera, film))
-                        .wait()
-                        .unwrap();
+                    let time = headless.measure(&buffers[which], &View::new(&camera, film)).wait().unwrap();
                     // The clock of a software device counts only the work that it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
@@ -288,8 +266,7 @@ fn margins() {
                 let structures: Structures = plan.build(scene.spheres()).into();
                 let buffers = headless.upload(&scene, &structures).wait().unwrap();
                 let (settings, go_on) = (RenderSettings::default(), |_: &_| Decision::GoOn);
-                let recording =
-                    headless.record(&buffers, &view, &settings, &mut { go_on }).wait().unwrap();
+                let recording = headless.record(&buffers, &view, &settings, &mut { go_on }).wait().unwrap();
                 let hit = |pixel: &pinhole::verify::TracedPixel| (pixel.t.to_bits(), pixel.id);
                 recording.pixels.iter().map(hit).collect::<Vec<_>>()
             };
@@ -314,9 +291,8 @@ type NamedScene = (&'static str, Scene);
 fn campaign_scenes(round: u64) -> Vec<NamedScene> {
     let seed = 7 + 100 * round;
     let made = |kind: Kind, count| kind.spheres(count, seed).unwrap();
-    let offset = |spheres: Vec<[f32; 4]>| {
-        spheres.into_iter().map(|[x, y, z, r]| [x + 1e6, y - 2e6, z + 5e5, r]).collect()
-    };
+    let offset =
+        |spheres: Vec<[f32; 4]>| spheres.into_iter().map(|[x, y, z, r]| [x + 1e6, y - 2e6, z + 5e5, r]).collect();
     [
         ("random, 100", made(Kind::Random, 100)),
         ("random, 100000", made(Kind::Random, 100_000)),
@@ -336,10 +312,7 @@ fn campaign_scenes(round: u64) -> Vec<NamedScene> {
         ("one around all", spheres::one_around_all(3000)),
         ("dense in places", spheres::clusters(20, 500)),
         ("two to the 45", spheres::scaled(&spheres::four_decades(3000), 2_f32.powi(45))),
-        (
-            "two to the -40",
-            spheres::scaled(&spheres::random(3000, seed - 5, |_| 0.02), 2_f32.powi(-40)),
-        ),
+        ("two to the -40", spheres::scaled(&spheres::random(3000, seed - 5, |_| 0.02), 2_f32.powi(-40))),
         ("offset by a million", offset(spheres::random(500, seed - 4, |_| 64.0))),
         ("a ground of radius a million", {
             let mut spheres = spheres::random(500, seed - 3, |_| 0.03);
@@ -406,10 +379,7 @@ fn lit_campaign(headless: &Headless, seeds: Range<u64>, view: ViewOf) {
         let checker = Checker::new(&scene).unwrap();
         let mut certificate = LitCertificate::default();
         let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
-        headless
-            .record_lit(&buffers, &view, &settings, SampleRequest::middle(&[0, 1]), each, go_on)
-            .wait()
-            .unwrap();
+        headless.record_lit(&buffers, &view, &settings, SampleRequest::middle(&[0, 1]), each, go_on).wait().unwrap();
         assert_ne!(certificate.outcome(), Outcome::Violated, "seed {seed}: {name}: {certificate}");
         let stages = certificate.stages();
         let share = stages.undecided as f64 / stages.checked as f64;

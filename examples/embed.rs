@@ -24,8 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A host already has an adapter, a device, a queue and a texture. WebGPU's default limits are enough.
     let adapter = adapter::choose(None).wait()?;
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let format = RendererOptions::default().color.texture_format();
     let usage = wgpu::TextureUsages::STORAGE_BINDING;
     let texture = shared::texture(&device, [WIDTH, HEIGHT], format, usage);

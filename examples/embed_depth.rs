@@ -12,8 +12,8 @@ use std::error::Error;
 
 use pinhole::camera::{DepthOrder, HostCamera};
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, Frame, Picker, Renderer,
-    RendererOptions, SceneBuffers, TargetTextures, Wait, adapter, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, Frame, Picker, Renderer, RendererOptions,
+    SceneBuffers, TargetTextures, Wait, adapter, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use wgpu::TextureFormat;
@@ -28,20 +28,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The host has a device, matrices and attachments.
     let adapter = adapter::choose(None).wait()?;
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let (to_view, projection) = host_matrices();
-    let [color, depth] =
-        [TextureFormat::Rgba8UnormSrgb, TextureFormat::Depth32Float].map(|format| {
-            shared::texture(
-                &device,
-                [WIDTH, HEIGHT],
-                format,
-                wgpu::TextureUsages::RENDER_ATTACHMENT,
-            )
-        });
-    let [color_view, depth_view] = [&color, &depth]
-        .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+    let [color, depth] = [TextureFormat::Rgba8UnormSrgb, TextureFormat::Depth32Float]
+        .map(|format| shared::texture(&device, [WIDTH, HEIGHT], format, wgpu::TextureUsages::RENDER_ATTACHMENT));
+    let [color_view, depth_view] =
+        [&color, &depth].map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
     let square = host_square(&device);
 
     // Pictures of spheres have data layers, because the host's depth is computed from them.
@@ -55,8 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // These are made once for a kind of render pass, and once for each set of targets.
     let compared = CompositeDepth::new(depth.format(), DepthOrder::NearIsOne);
-    let composite =
-        Composite::new(&device, &CompositeOptions::new(color.format(), compared)).wait()?;
+    let composite = Composite::new(&device, &CompositeOptions::new(color.format(), compared)).wait()?;
     let mut picture = CompositePicture::new(&composite, &device, &targets).wait()?;
     let mut picker = Picker::new(&device, 3).wait()?;
 
@@ -72,17 +63,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             view: &color_view,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
-                store: wgpu::StoreOp::Store,
-            },
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &depth_view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Store,
-            }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..wgpu::RenderPassDescriptor::default()
@@ -101,10 +86,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// A camera 12 in front of the origin, slightly turned, and a projection with reversed depth and no far plane.
 fn host_matrices() -> ([[f32; 4]; 4], [[f32; 4]; 4]) {
     let (sin, cos) = (0.35, 0.936_749_9);
-    let to_view =
-        [[1.0, 0.0, 0.0, 0.0], [0.0, cos, sin, 0.0], [0.0, -sin, cos, 0.0], [0.0, 0.0, -12.0, 1.0]];
-    let projection =
-        [[2.1, 0.0, 0.0, 0.0], [0.0, 2.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+    let to_view = [[1.0, 0.0, 0.0, 0.0], [0.0, cos, sin, 0.0], [0.0, -sin, cos, 0.0], [0.0, 0.0, -12.0, 1.0]];
+    let projection = [[2.1, 0.0, 0.0, 0.0], [0.0, 2.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
     (to_view, projection)
 }
 

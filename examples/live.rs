@@ -14,8 +14,8 @@ use std::time::Instant;
 use pinhole::camera::PinholeCamera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
-    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers,
-    TargetTextures, Wait, adapter, wgpu,
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait,
+    adapter, wgpu,
 };
 use pinhole::render::{Integrator, Occlusion, Studio};
 use pinhole::{Film, LinearRgb, RenderSettings, View};
@@ -54,10 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         PinholeCamera::framing(scene.subject(), pose, 0.6, film.aspect(), 0.07)
     };
     let view = View::new(&camera, film);
-    let mut live =
-        LivePicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
-    let mut still =
-        LitPicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
+    let mut live = LivePicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
+    let mut still = LitPicture::new(&lit, &device, &queue, &buffers, &view, &settings, &targets).wait()?;
 
     let mut times = Vec::new();
     for frame in 0..FRAMES {

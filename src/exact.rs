@@ -31,9 +31,7 @@ pub fn elements<'de, A: SeqAccess<'de>, T: Deserialize<'de> + Copy + Default, co
 ///
 /// # Errors
 /// If it is another value.
-pub fn array<'de, D: Deserializer<'de>, const N: usize>(
-    deserializer: D,
-) -> Result<[f64; N], D::Error> {
+pub fn array<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Result<[f64; N], D::Error> {
     struct Numbers<const N: usize>;
 
     impl<'de, const N: usize> Visitor<'de> for Numbers<N> {

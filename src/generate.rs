@@ -43,8 +43,7 @@ pub const BYTES_PER_SPHERE: u64 = 16;
 
 impl Kind {
     /// All kinds.
-    pub const ALL: &'static [Self] =
-        &[Self::Random, Self::Lattice, Self::Clusters, Self::Sphereflake];
+    pub const ALL: &'static [Self] = &[Self::Random, Self::Lattice, Self::Clusters, Self::Sphereflake];
 
     /// The name on the command line.
     #[must_use]
@@ -99,16 +98,11 @@ pub fn check_count(count: u64) -> Result<(), GenerateError> {
     }
 }
 
-fn filled(
-    count: u64,
-    sphere: impl Fn(u64) -> [f64; 4] + Send + Sync,
-) -> Result<Vec<[f32; 4]>, GenerateError> {
+fn filled(count: u64, sphere: impl Fn(u64) -> [f64; 4] + Send + Sync) -> Result<Vec<[f32; 4]>, GenerateError> {
     let length = usize::try_from(count).unwrap_or(usize::MAX);
     parallel::try_map(length, |i| sphere(i as u64).map(|x| x as f32)).map_err(|_| {
         let bytes = count * BYTES_PER_SPHERE;
-        GenerateError(format!(
-            "there is not enough memory for {count} spheres, which need {bytes} bytes"
-        ))
+        GenerateError(format!("there is not enough memory for {count} spheres, which need {bytes} bytes"))
     })
 }
 
@@ -289,14 +283,11 @@ impl Sphereflake {
 /// The direction of a child from a parent whose axis is z. There are three groups of three, a third of a turn apart.
 fn direction(child: usize) -> DVec3 {
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    let corner =
-        [DVec3::new(half, half, 0.0), DVec3::new(half, 0.0, -half), DVec3::new(0.0, half, -half)]
-            [child % 3];
+    let corner = [DVec3::new(half, half, 0.0), DVec3::new(half, 0.0, -half), DVec3::new(0.0, half, -half)][child % 3];
     // Rotation about (1, −1, 0)/√2 by the angle whose sine is 2/√6, which makes the middle of the group horizontal.
     let about = DVec3::new(half, -half, 0.0);
     let (sine, cosine) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
-    let v =
-        corner * cosine + about.cross(corner) * sine + about * (about.dot(corner) * (1.0 - cosine));
+    let v = corner * cosine + about.cross(corner) * sine + about * (about.dot(corner) * (1.0 - cosine));
     // Rotation about z by 0, 1/3 or 2/3 of a turn.
     let root = 0.75_f64.sqrt();
     let (sine, cosine) = [(0.0, 1.0), (root, -0.5), (-root, -0.5)][child / 3];

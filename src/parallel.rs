@@ -32,26 +32,15 @@ pub fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
 ///
 /// # Errors
 /// Returns an error if there is not enough memory for `count` results.
-pub fn try_map<R: Send>(
-    count: usize,
-    f: impl Fn(usize) -> R + Sync,
-) -> Result<Vec<R>, TryReserveError> {
+pub fn try_map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Result<Vec<R>, TryReserveError> {
     let mut list = Vec::new();
     list.try_reserve_exact(count)?;
     Ok(extended(list, count, CHUNK / 8, f))
 }
 
 /// Fills an empty list with the results of `f` for `0..count`. A thread takes `chunk` of them at a time.
-#[expect(
-    unsafe_code,
-    reason = "the results are written where they stay, so that nothing is copied or written twice"
-)]
-fn extended<R: Send>(
-    mut list: Vec<R>,
-    count: usize,
-    chunk: usize,
-    f: impl Fn(usize) -> R + Sync,
-) -> Vec<R> {
+#[expect(unsafe_code, reason = "the results are written where they stay, so that nothing is copied or written twice")]
+fn extended<R: Send>(mut list: Vec<R>, count: usize, chunk: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
     let slots = list.spare_capacity_mut()[..count].chunks_mut(chunk);
     for_each(slots.enumerate().collect(), |(k, slots)| {
         for (i, slot) in slots.iter_mut().enumerate() {

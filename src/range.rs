@@ -29,10 +29,6 @@ impl RangeError {
         [low, high]: [f64; 2],
         range: &'static str,
     ) -> Result<f64, Self> {
-        if (low..=high).contains(&value) {
-            Ok(value)
-        } else {
-            Err(Self { parameter, value, range })
-        }
+        if (low..=high).contains(&value) { Ok(value) } else { Err(Self { parameter, value, range }) }
     }
 }

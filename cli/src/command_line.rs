@@ -18,10 +18,8 @@ use crate::proof::verify::args::VerifyArgs;
 /// Ray traces spheres with compute shaders, without a display, and checks its pictures.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
-#[command(
-    after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
-    4 a check could not decide; 5 the device was lost or did not answer; 130 stopped by a signal."
-)]
+#[command(after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
+    4 a check could not decide; 5 the device was lost or did not answer; 130 stopped by a signal.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -71,8 +69,8 @@ mod tests {
                 "certify",
                 "rays",
                 &[
-                    "path", "format", "radius", "color", "frame", "topology", "columns", "set",
-                    "id", "depth", "depth_is", "normal", "rays", "at_most", "json", "help",
+                    "path", "format", "radius", "color", "frame", "topology", "columns", "set", "id", "depth",
+                    "depth_is", "normal", "rays", "at_most", "json", "help",
                 ],
             ),
         ] {

@@ -3,10 +3,7 @@
 //!
 //! It is a library for the viewer, which turns flags into pictures by the same code: see [`viewing`].
 
-#![allow(
-    rustdoc::broken_intra_doc_links,
-    reason = "the comments of arguments are their help texts, not Markdown"
-)]
+#![allow(rustdoc::broken_intra_doc_links, reason = "the comments of arguments are their help texts, not Markdown")]
 
 use std::process::ExitCode;
 

@@ -49,9 +49,7 @@ impl Centers<'_> {
             (Self::Narrow(centers), Some(Radii::All(radius))) => {
                 SphereArray::F32(all(centers.as_array(), *radius as f32))
             }
-            (Self::Wide(centers), Some(Radii::All(radius))) => {
-                SphereArray::F64(all(centers.as_array(), *radius))
-            }
+            (Self::Wide(centers), Some(Radii::All(radius))) => SphereArray::F64(all(centers.as_array(), *radius)),
             (Self::Narrow(centers), None) => SphereArray::F32(all(centers.as_array(), 0.0)),
             (Self::Wide(centers), None) => SphereArray::F64(all(centers.as_array(), 0.0)),
             _ => return Err(Fault::Internal("radii have another type than positions".to_owned())),
@@ -62,9 +60,7 @@ impl Centers<'_> {
 /// Makes spheres of one radius. The GIL is held, so that no other thread changes the array meanwhile.
 fn all<T: Copy>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
     match centers.as_slice() {
-        Some(numbers) => {
-            numbers.as_chunks::<3>().0.iter().map(|[x, y, z]| [*x, *y, *z, radius]).collect()
-        }
+        Some(numbers) => numbers.as_chunks::<3>().0.iter().map(|[x, y, z]| [*x, *y, *z, radius]).collect(),
         None => centers.rows().into_iter().map(|c| [c[0], c[1], c[2], radius]).collect(),
     }
 }
@@ -79,9 +75,7 @@ impl ColorArray<'_> {
     /// Returns the colours as sRGB with alpha, if they are bytes.
     pub(crate) fn rgba8(&self) -> Option<Vec<[u8; 4]>> {
         let Self::Bytes(bytes) = self else { return None };
-        let rgba = |row: ArrayView1<'_, u8>| {
-            [row[0], row[1], row[2], row.get(3).copied().unwrap_or(u8::MAX)]
-        };
+        let rgba = |row: ArrayView1<'_, u8>| [row[0], row[1], row[2], row.get(3).copied().unwrap_or(u8::MAX)];
         Some(bytes.as_array().rows().into_iter().map(rgba).collect())
     }
 
@@ -109,8 +103,7 @@ impl ColorArray<'_> {
     pub(crate) fn opacities(&self) -> Option<Vec<f32>> {
         let Self::Bytes(bytes) = self else { return None };
         let bytes = bytes.as_array();
-        (bytes.ncols() == 4)
-            .then(|| bytes.column(3).iter().map(|alpha| f32::from(*alpha) / 255.0).collect())
+        (bytes.ncols() == 4).then(|| bytes.column(3).iter().map(|alpha| f32::from(*alpha) / 255.0).collect())
     }
 }
 

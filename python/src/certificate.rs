@@ -72,9 +72,7 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Certi
         plan.check(&headless.device().limits(), device::available())?;
         let watch = &mut |_: &UploadProgress| stop.decision();
         let buffers = headless.upload_planned(scene, &plan.structures(), watch).wait()?;
-        headless
-            .record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision())
-            .wait()
+        headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision()).wait()
     };
     let record = async |plan: &RenderPlan| Ok::<_, GpuError>(record(plan));
     let recording = with_retries(AccelChoice::Auto, plan, |_| {}, record).wait()??;

@@ -26,9 +26,7 @@ impl Backend {
             "auto" => Ok(Self::Auto),
             "gpu" => Ok(Self::Gpu),
             "cpu" => Ok(Self::Cpu),
-            other => Err(Fault::Input(format!(
-                "backend is {other:?}; it must be \"auto\", \"gpu\" or \"cpu\""
-            ))),
+            other => Err(Fault::Input(format!("backend is {other:?}; it must be \"auto\", \"gpu\" or \"cpu\""))),
         }
     }
 }
@@ -81,19 +79,17 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<OpenDevice>>> {
 
 fn open() -> Outcome<Option<OpenDevice>> {
     let adapter = WANTED.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let headless =
-        match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() }).wait() {
-            Ok(headless) => headless,
-            Err(GpuError::NoAdapter) => return Ok(None),
-            Err(error) => return Err(error.into()),
-        };
+    let headless = match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() }).wait() {
+        Ok(headless) => headless,
+        Err(GpuError::NoAdapter) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
     let name = headless.adapter_info().name.clone();
     let failed = match headless.self_test(SelfTestExtent::Quick).wait() {
         Ok(report) => report.first_failure().map(|first| format!("fails the self-test ({first})")),
         Err(error) => Some(format!("cannot run the self-test ({error})")),
     };
-    let warning =
-        failed.map(|failed| format!("{name} {failed}; its pictures may be wrong: verify them"));
+    let warning = failed.map(|failed| format!("{name} {failed}; its pictures may be wrong: verify them"));
     Ok(Some(OpenDevice { headless, warning }))
 }
 
@@ -111,8 +107,7 @@ pub(crate) fn use_adapter(py: Python<'_>, name: Option<String>) -> PyResult<()> 
     // A device of a parent process cannot be replaced, and `device` reports that.
     shared.take_if(|shared| shared.process == std::process::id());
     drop(shared);
-    let before =
-        std::mem::replace(&mut *WANTED.lock().unwrap_or_else(PoisonError::into_inner), name);
+    let before = std::mem::replace(&mut *WANTED.lock().unwrap_or_else(PoisonError::into_inner), name);
     let opened = worker::run(py, None, |_| device(Backend::Gpu).map(drop));
     if opened.is_err() {
         *WANTED.lock().unwrap_or_else(PoisonError::into_inner) = before;

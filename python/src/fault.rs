@@ -46,9 +46,7 @@ impl From<GpuError> for Fault {
             GpuError::Stopped => Self::Stopped,
             GpuError::DeviceLost { .. } => Self::Lost(message),
             GpuError::Settings(_) | GpuError::Scene(_) | GpuError::Image(_) => Self::Input(message),
-            GpuError::Limit { .. } => {
-                Self::Device(format!("{message}; use backend=\"cpu\", which has no such limit"))
-            }
+            GpuError::Limit { .. } => Self::Device(format!("{message}; use backend=\"cpu\", which has no such limit")),
             _ => Self::Device(message),
         }
     }

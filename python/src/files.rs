@@ -78,8 +78,7 @@ impl FileData {
                 *note = format!("{}: {note}", this.path);
             }
             let given = DataExtras { colors: None, radii: this.options.radius.is_some(), keys };
-            SphereData::of_loaded(loaded, &text, given, this.format.z_is_up)
-                .map_err(|fault| this.in_file(fault))
+            SphereData::of_loaded(loaded, &text, given, this.format.z_is_up).map_err(|fault| this.in_file(fault))
         })?)
     }
 }
@@ -106,13 +105,11 @@ impl FileData {
 fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
     let names = || load::FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ");
     match name {
-        Some(name) => Format::of_name(name).ok_or_else(|| {
-            Fault::Input(format!("format is {name:?}; the formats are {}", names()))
-        }),
+        Some(name) => Format::of_name(name)
+            .ok_or_else(|| Fault::Input(format!("format is {name:?}; the formats are {}", names()))),
         None => {
             let found = Format::of_path(path.as_ref());
-            let found =
-                found.map_err(|error| Fault::File(format!("{path}: cannot be read: {error}")))?;
+            let found = found.map_err(|error| Fault::File(format!("{path}: cannot be read: {error}")))?;
             found.ok_or_else(|| Fault::Input(format!("{path}: {}", Format::unknown())))
         }
     }

@@ -106,10 +106,7 @@ impl Picture {
 
 /// A PNG file of sRGB pixels: uint8 of shape (height, width, 3), or 4 channels with alpha.
 #[pyfunction]
-pub(crate) fn png_of<'py>(
-    py: Python<'py>,
-    pixels: PyReadonlyArray3<'py, u8>,
-) -> PyResult<Bound<'py, PyBytes>> {
+pub(crate) fn png_of<'py>(py: Python<'py>, pixels: PyReadonlyArray3<'py, u8>) -> PyResult<Bound<'py, PyBytes>> {
     let [height, width, channels] = *pixels.shape() else {
         return Err(Fault::Internal("pixels have three axes".to_owned()).into());
     };
@@ -118,11 +115,7 @@ pub(crate) fn png_of<'py>(
     // Samples are in the order of rows, whatever the strides are.
     let samples: Vec<u8> = pixels.as_array().iter().copied().collect();
     let bytes = worker::run(py, None, move |_| {
-        let encoded = if channels == 4 {
-            png::encode_rgba8(size, &samples)
-        } else {
-            png::encode_rgb8(size, &samples)
-        };
+        let encoded = if channels == 4 { png::encode_rgba8(size, &samples) } else { png::encode_rgb8(size, &samples) };
         encoded.map_err(Fault::input)
     })?;
     Ok(PyBytes::new(py, &bytes))
@@ -132,8 +125,7 @@ impl Picture {
     fn exr_bytes(&self) -> Outcome<Vec<u8>> {
         let mut sink = Cursor::new(Vec::new());
         let remarks = exr::Remarks { adapter: self.adapter.as_deref(), ..exr::Remarks::default() };
-        exr::write(&self.image, self.layers, &self.encoding, remarks, &mut sink)
-            .map_err(Fault::input)?;
+        exr::write(&self.image, self.layers, &self.encoding, remarks, &mut sink).map_err(Fault::input)?;
         Ok(sink.into_inner())
     }
 
@@ -141,11 +133,7 @@ impl Picture {
         self.shaped(py, layer.as_flattened().to_vec(), Some(3))
     }
 
-    fn numbers<'py, T: Element + Copy>(
-        &self,
-        py: Python<'py>,
-        layer: &[T],
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn numbers<'py, T: Element + Copy>(&self, py: Python<'py>, layer: &[T]) -> PyResult<Bound<'py, PyAny>> {
         self.shaped(py, layer.to_vec(), None)
     }
 

@@ -1,10 +1,7 @@
 //! The compiled half of the Python package `pinhole`: arrays, files, rendering and verification. The other half, in
 //! `python/pinhole/`, checks arguments and writes settings as the text of a scene file.
 
-#![allow(
-    clippy::needless_pass_by_value,
-    reason = "functions of Python own what PyO3 makes of their arguments"
-)]
+#![allow(clippy::needless_pass_by_value, reason = "functions of Python own what PyO3 makes of their arguments")]
 
 use pinhole_figure::settings::flags::{FLAGS, Flag, Group};
 use pyo3::prelude::*;

@@ -119,21 +119,15 @@ impl Look {
 
 /// Reads the image of the sky.
 fn environment_of(path: &str) -> Outcome<Environment> {
-    let bytes = std::fs::read(path)
-        .map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
+    let bytes = std::fs::read(path).map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
     environment::read(&bytes).map_err(|error| Fault::Input(format!("sky: {path}: {error}")))
 }
 
 /// The camera of a text with its position, as JSON. It frames the box between two corners, or else the scene.
-pub(crate) fn placed(
-    text: &SceneText,
-    scene: &Scene,
-    corners: Option<([f64; 3], [f64; 3])>,
-) -> Outcome<String> {
+pub(crate) fn placed(text: &SceneText, scene: &Scene, corners: Option<([f64; 3], [f64; 3])>) -> Outcome<String> {
     let file = text.parse()?;
-    let boxed = corners.map(|(low, high)| {
-        Bounds::of_sphere(low.into(), 0.0).union(Bounds::of_sphere(high.into(), 0.0))
-    });
+    let boxed =
+        corners.map(|(low, high)| Bounds::of_sphere(low.into(), 0.0).union(Bounds::of_sphere(high.into(), 0.0)));
     let subject = boxed.map_or_else(|| scene.subject(), Into::into);
     let placed = file.camera_parameters().placed(file.film.aspect(), &subject);
     let placed = placed.map_err(|error| text.fault(&file.at_camera(&error)))?;

@@ -10,9 +10,7 @@ use crate::look::Look;
 use crate::worker::Stop;
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
-use pinhole::gpu::{
-    GpuError, PictureRequest, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries,
-};
+use pinhole::gpu::{GpuError, PictureRequest, RenderPlan, SceneBuffers, UploadProgress, Wait, with_retries};
 use pinhole::render::{Integrator, Picture, Watch};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene, View};
@@ -135,8 +133,7 @@ impl OnDevice {
                 let copy_and_work = |plan: &RenderPlan| {
                     plan.check(&headless.device().limits(), device::available())?;
                     let watch = &mut |_: &UploadProgress| stop.decision();
-                    let buffers =
-                        headless.upload_planned(scene, &plan.structures(), watch).wait()?;
+                    let buffers = headless.upload_planned(scene, &plan.structures(), watch).wait()?;
                     let images = work(&buffers)?;
                     *copied.lock().unwrap_or_else(PoisonError::into_inner) = Some(buffers);
                     Ok(images)
@@ -182,9 +179,8 @@ fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<
     let plan = SearchPlan::new(scene);
     device::check_on_cpu(&plan, look, layers)?;
     let structure = plan.build().map_err(Fault::input)?;
-    let images = each(&look.views(), stop, |view, watch| {
-        cpu::render_watched(&structure, view, &look.settings, layers, watch)
-    });
+    let images =
+        each(&look.views(), stop, |view, watch| cpu::render_watched(&structure, view, &look.settings, layers, watch));
     let images = images.map_err(|error| match error {
         RenderError::Stopped => Fault::Stopped,
         error => Fault::input(error),

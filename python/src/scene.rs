@@ -18,11 +18,7 @@ pub(crate) struct DataExtras {
 }
 
 /// Makes a scene from data.
-pub(crate) fn scene_of(
-    mut loaded: Dataset,
-    text: &SceneText,
-    given: DataExtras,
-) -> Outcome<DataScene> {
+pub(crate) fn scene_of(mut loaded: Dataset, text: &SceneText, given: DataExtras) -> Outcome<DataScene> {
     let file = text.parse()?;
     let mut data = file.data().cloned().unwrap_or_else(|| Data::of_file(""));
     if data.color.is_some() && loaded.colors.is_some() {

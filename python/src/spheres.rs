@@ -54,12 +54,7 @@ enum Values<'py> {
 
 impl SphereData {
     /// Makes spheres from loaded data.
-    pub(crate) fn of_loaded(
-        loaded: Dataset,
-        text: &SceneText,
-        given: DataExtras,
-        z_is_up: bool,
-    ) -> Outcome<Self> {
+    pub(crate) fn of_loaded(loaded: Dataset, text: &SceneText, given: DataExtras, z_is_up: bool) -> Outcome<Self> {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
         let has_radii = given.radii;
@@ -129,11 +124,9 @@ impl SphereData {
         let columns: Vec<Column> = columns.into_iter().map(column).collect::<Result<_, _>>()?;
         let has_radius = radius.is_some();
         Ok(worker::run(py, None, move |_| {
-            let mut loaded =
-                if has_radius { Dataset::new(spheres) } else { Dataset::of_centers(spheres) };
+            let mut loaded = if has_radius { Dataset::new(spheres) } else { Dataset::of_centers(spheres) };
             (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
-            let given =
-                DataExtras { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
+            let given = DataExtras { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
             Self::of_loaded(loaded, &text, given, false)
         })?)
     }
@@ -148,8 +141,7 @@ impl SphereData {
         }
         let Some(loaded) = self.loaded.clone() else {
             return Err(Fault::Input(
-                "these spheres have no columns; make new Spheres(...) with other settings"
-                    .to_owned(),
+                "these spheres have no columns; make new Spheres(...) with other settings".to_owned(),
             )
             .into());
         };
@@ -221,16 +213,11 @@ impl SphereData {
     /// The direction of view of a camera that frames the spheres, and the direction that is up. The direction comes
     /// from `view`, or else from the program's default.
     #[pyo3(signature = (view, turn, up))]
-    fn view_axes(
-        &self,
-        view: Option<&str>,
-        turn: f64,
-        up: Option<[f64; 3]>,
-    ) -> PyResult<([f64; 3], [f64; 3])> {
+    fn view_axes(&self, view: Option<&str>, turn: f64, up: Option<[f64; 3]>) -> PyResult<([f64; 3], [f64; 3])> {
         let viewpoint = match view {
-            Some(name) => name
-                .parse::<Viewpoint>()
-                .map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))?,
+            Some(name) => {
+                name.parse::<Viewpoint>().map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))?
+            }
             None => {
                 let flat = self.lock().subject().flat_axis();
                 flat.map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
@@ -274,8 +261,7 @@ impl SphereData {
             let (scene, version) = this.versioned();
             let mut look = this.look(&scene, &text)?;
             let layers_of_look = look.layers(layers);
-            let rendered =
-                this.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
+            let rendered = this.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
             look.notes.extend(rendered.warning);
             Ok(Picture {
                 image: rendered.image,
@@ -339,9 +325,7 @@ impl SphereData {
 fn column((name, values): (String, Values<'_>)) -> Outcome<Column> {
     let values = match values {
         Values::Numbers(numbers) => ColumnValues::Numbers(numbers.as_array().to_vec()),
-        Values::Texts(names, indices) => {
-            ColumnValues::Labels(Labels { names, indices: indices.as_array().to_vec() })
-        }
+        Values::Texts(names, indices) => ColumnValues::Labels(Labels { names, indices: indices.as_array().to_vec() }),
     };
     Ok(Column { name, values })
 }

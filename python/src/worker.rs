@@ -69,8 +69,7 @@ pub(crate) fn run<T: Send + 'static>(
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&Stop) -> Outcome<T> + Send + 'static,
 ) -> Outcome<T> {
-    let shared =
-        Arc::new(State { stop: Stop::default(), done: Mutex::new(None), is_done: Condvar::new() });
+    let shared = Arc::new(State { stop: Stop::default(), done: Mutex::new(None), is_done: Condvar::new() });
     let of_thread = Arc::clone(&shared);
     let spawned = thread::Builder::new().name("pinhole".to_owned()).spawn(move || {
         let done = catch_unwind(AssertUnwindSafe(|| on_live_threads(|| work(&of_thread.stop))));
@@ -78,8 +77,7 @@ pub(crate) fn run<T: Send + 'static>(
         *of_thread.done.lock().unwrap_or_else(PoisonError::into_inner) = Some(done);
         of_thread.is_done.notify_all();
     });
-    let thread =
-        spawned.map_err(|error| Fault::Device(format!("no thread can be started: {error}")))?;
+    let thread = spawned.map_err(|error| Fault::Device(format!("no thread can be started: {error}")))?;
     loop {
         if let Some(done) = py.detach(|| shared.wait(SIGNALS_EVERY)) {
             return done;
@@ -153,8 +151,7 @@ fn on_live_threads<T: Send>(work: impl FnOnce() -> Outcome<T> + Send) -> Outcome
         Some((_, threads)) => Arc::clone(threads),
         None => {
             let made = rayon::ThreadPoolBuilder::new().build();
-            let made =
-                made.map_err(|error| Fault::Device(format!("threads cannot be started: {error}")))?;
+            let made = made.map_err(|error| Fault::Device(format!("threads cannot be started: {error}")))?;
             let made = Arc::new(made);
             // The threads of a parent process do not exist here, so the pool must not end them.
             std::mem::forget(pool.replace((process, Arc::clone(&made))));

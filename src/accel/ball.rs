@@ -115,17 +115,15 @@ impl PartInCell {
     /// Returns a mask with a bit for each of four balls, set if the segment meets the ball.
     #[inline]
     pub(super) fn meets_four(&self, balls: &[u32; BALLS_PER_VECTOR]) -> u32 {
-        let axis = |axis: u32, from: f32| {
-            balls.map(|ball| (ball >> (axis * COORDINATE_BITS) & 255) as i32 as f32 - from)
-        };
+        let axis =
+            |axis: u32, from: f32| balls.map(|ball| (ball >> (axis * COORDINATE_BITS) & 255) as i32 as f32 - from);
         let (x, y, z) = (axis(0, self.origin.x), axis(1, self.origin.y), axis(2, self.origin.z));
         let mut bits = 0;
         for i in 0..BALLS_PER_VECTOR {
             let v = Vec3::new(x[i], y[i], z[i]);
             let along = v.dot(self.direction);
             let beyond = (along - self.length).max(-along).max(0.0);
-            let squared_radius =
-                f32::from_bits((balls[i] >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
+            let squared_radius = f32::from_bits((balls[i] >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
             let is_met = (v.dot(v) - along * along) + beyond * beyond <= squared_radius;
             bits |= u32::from(is_met) << i;
         }
@@ -148,8 +146,7 @@ mod tests {
             let corner = Vec3::new(up_to(9.0), up_to(9.0), up_to(9.0)) * size;
             let radius = size * 2_f32.powf(up_to(16.0) - 12.0);
             let spread = 2.0 * (size + radius);
-            let center =
-                corner + Vec3::new(up_to(spread), up_to(spread), up_to(spread)) - 0.5 * spread;
+            let center = corner + Vec3::new(up_to(spread), up_to(spread), up_to(spread)) - 0.5 * spread;
             let margin = up_to(0.01 * size);
             let frame = BallFrame::new(corner, size, margin);
             let ball = frame.ball([center.x, center.y, center.z, radius]);

@@ -179,8 +179,7 @@ impl Bricks<'_> {
         match plan.structure {
             Structure::List => Brick { index: Index::List, spheres: own(), ids },
             Structure::Grid | Structure::NestedGrid => {
-                let BuiltGrid { grid, spheres, ids } =
-                    build_grid(spheres, &ids, margin, plan.budget);
+                let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
                 Brick { index: Index::Grid(grid), spheres, ids }
             }
             Structure::WideTree => {
@@ -297,11 +296,8 @@ mod tests {
     #[test]
     fn bricks_one_by_one_are_those_of_all() {
         let mut rng = fastrand::Rng::with_seed(3);
-        let spheres: Vec<[f32; 4]> =
-            (0..2000).map(|_| [rng.f32(), rng.f32(), rng.f32(), 0.01]).collect();
-        for (choice, bytes) in
-            [(AccelChoice::List, 4096), (AccelChoice::Tree, 4096), (AccelChoice::Grid, 1 << 17)]
-        {
+        let spheres: Vec<[f32; 4]> = (0..2000).map(|_| [rng.f32(), rng.f32(), rng.f32(), 0.01]).collect();
+        for (choice, bytes) in [(AccelChoice::List, 4096), (AccelChoice::Tree, 4096), (AccelChoice::Grid, 1 << 17)] {
             let plan = AccelPlan::new(&spheres, choice, bytes);
             let (all, one_by_one) = (plan.build(&spheres), plan.bricks(&spheres));
             let count = one_by_one.len();

@@ -29,11 +29,7 @@ impl Cells {
         let cells = (at - self.min) / self.size;
         let [width, height, depth] = self.counts;
         // A cast to u32 saturates, so negative values become 0.
-        [
-            (cells.x as u32).min(width - 1),
-            (cells.y as u32).min(height - 1),
-            (cells.z as u32).min(depth - 1),
-        ]
+        [(cells.x as u32).min(width - 1), (cells.y as u32).min(height - 1), (cells.z as u32).min(depth - 1)]
     }
 
     pub(super) fn index(&self, [x, y, z]: [u32; 3]) -> usize {
@@ -277,9 +273,7 @@ pub(super) struct Strides([usize; 8]);
 impl Strides {
     pub(super) fn of(cells: &Cells) -> Self {
         let [width, height, _] = cells.counts.map(|count| count as usize);
-        Self(std::array::from_fn(|number| {
-            ((number >> 2) * height + (number >> 1 & 1)) * width + (number & 1)
-        }))
+        Self(std::array::from_fn(|number| ((number >> 2) * height + (number >> 1 & 1)) * width + (number & 1)))
     }
 }
 

@@ -80,8 +80,7 @@ impl GridCheck<'_> {
                     let words = cells.get(first..first + inner.pow(3));
                     let words = words.ok_or_else(|| format!("cell {index} has no inner words"))?;
                     for (number, word) in words.iter().enumerate() {
-                        let place =
-                            [number % inner, number / inner % inner, number / inner / inner];
+                        let place = [number % inner, number / inner % inner, number / inner / inner];
                         let side = cell.side / inner as f64;
                         let corner = cell.corner + side * DVec3::from(place.map(|x| x as f64));
                         let kind = word & word::KIND;
@@ -132,10 +131,8 @@ impl GridCheck<'_> {
         };
         if let (Some(first), Some(last)) = (at.first(), at.last()) {
             let is_end = |words: &[u32], at: usize| words[at] & LAST != 0;
-            let is_ended =
-                is_end(references, *last) && at.iter().all(|at| is_end(balls, *at) == (at == last));
-            let is_whole =
-                first.is_multiple_of(BALLS_PER_VECTOR) && at.len().is_multiple_of(BALLS_PER_VECTOR);
+            let is_ended = is_end(references, *last) && at.iter().all(|at| is_end(balls, *at) == (at == last));
+            let is_whole = first.is_multiple_of(BALLS_PER_VECTOR) && at.len().is_multiple_of(BALLS_PER_VECTOR);
             ensure(is_ended && is_whole, || format!("the list at {first} does not end"))?;
         } else {
             let is_empty = cell.word & word::KIND == word::EMPTY;
@@ -183,8 +180,7 @@ impl Cell {
     /// Whether points of the cell near a sphere's surface are in its ball.
     fn meets(&self, ball: u32, sphere: [f32; 4], margin: f64) -> bool {
         let towards = [0.0, 0.5, 1.0].map(|share| self.corner + share * self.side);
-        let corners =
-            (0..27).map(|i| DVec3::new(towards[i % 3].x, towards[i / 3 % 3].y, towards[i / 9].z));
+        let corners = (0..27).map(|i| DVec3::new(towards[i % 3].x, towards[i / 3 % 3].y, towards[i / 9].z));
         corners.chain([centre(sphere)]).all(|towards| {
             let from = centre(sphere);
             let along = (towards - from).normalize_or(DVec3::X);
@@ -221,14 +217,10 @@ fn check_tree(tree: &WideTree, spheres: &[[f32; 4]], ids: &[u32]) -> Result<(), 
                     let own = first..first + count;
                     ensure(ids[own.clone()].is_sorted(), || format!("ids of node {index}"))?;
                     for place in own {
-                        let reach = f64::from(spheres[place][3])
-                            + f64::from(tree.margins.of(&spheres[place]));
+                        let reach = f64::from(spheres[place][3]) + f64::from(tree.margins.of(&spheres[place]));
                         let at = centre(spheres[place]);
-                        let is_inside =
-                            within[0].cmple(at - reach).all() && within[1].cmpge(at + reach).all();
-                        ensure(is_inside, || {
-                            format!("a box around sphere {} is small", ids[place])
-                        })?;
+                        let is_inside = within[0].cmple(at - reach).all() && within[1].cmpge(at + reach).all();
+                        ensure(is_inside, || format!("a box around sphere {} is small", ids[place]))?;
                         let twice = std::mem::replace(&mut is_there[place], true);
                         ensure(!twice, || format!("sphere {} is in two leaves", ids[place]))?;
                     }
@@ -328,9 +320,7 @@ fn damage_to_a_grid_is_found() {
         ("a reference to nothing", |grid, end| grid.references[end] |= LAST >> 1),
         ("small balls", |grid, _| grid.balls.iter_mut().for_each(|ball| *ball &= !(127 << 24))),
         ("a list that is not there", |grid, end| {
-            let is_it = |word: &&mut u32| {
-                **word & word::KIND == word::LIST && **word & !word::KIND <= end as u32
-            };
+            let is_it = |word: &&mut u32| **word & word::KIND == word::LIST && **word & !word::KIND <= end as u32;
             *grid.cells.iter_mut().rfind(is_it).unwrap() = word::EMPTY;
         }),
         ("a reach too far", |grid, _| {

@@ -39,8 +39,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     drop(keys);
     let is_left = |id: &u32| first_right.is_none_or(|first| key(id) < first);
     let chunks = map_chunks(&ids, |_, ids| ids.iter().partition::<Vec<u32>, _>(|id| is_left(id)));
-    let (mut left, mut right) =
-        (Vec::with_capacity(middle), Vec::with_capacity(ids.len() - middle));
+    let (mut left, mut right) = (Vec::with_capacity(middle), Vec::with_capacity(ids.len() - middle));
     drop(ids);
     // Chunks are moved one by one, so that not all of them exist twice.
     for (more_left, more_right) in chunks {
@@ -53,8 +52,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Division {
     if !on_the_cut.is_empty() {
         on_the_cut.extend(right.iter().copied().filter(is_on_cut));
     }
-    let (mut all, others) =
-        both(true, || cut(spheres, left, left_parts), || cut(spheres, right, parts - left_parts));
+    let (mut all, others) = both(true, || cut(spheres, left, left_parts), || cut(spheres, right, parts - left_parts));
     all.parts.extend(others.parts);
     all.may_split_duplicates |= others.may_split_duplicates || has_equals(spheres, &on_the_cut);
     all
@@ -138,8 +136,7 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
         return None;
     }
     let stride = spheres.len().div_ceil(SAMPLED);
-    let mut sample: Vec<[f32; 3]> =
-        spheres.iter().step_by(stride).map(|[x, y, z, _]| [*x, *y, *z]).collect();
+    let mut sample: Vec<[f32; 3]> = spheres.iter().step_by(stride).map(|[x, y, z, _]| [*x, *y, *z]).collect();
     let mut tree = Tree::default();
     tree.halve(&mut sample, (0, parts), 0);
     drop(sample);
@@ -147,15 +144,14 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
     // The part of each sphere, so that spheres need not be read again.
     let mut part_of = vec![0_u16; spheres.len()];
     let tasks = spheres.chunks(CHUNK).zip(part_of.chunks_mut(CHUNK)).collect();
-    let counts: Vec<Vec<usize>> =
-        map_parts(tasks, |(spheres, part_of): (&[[f32; 4]], &mut [u16])| {
-            let mut counts = vec![0; parts];
-            for (sphere, part) in spheres.iter().zip(part_of) {
-                *part = tree.part_of(sphere);
-                counts[usize::from(*part)] += 1;
-            }
-            counts
-        });
+    let counts: Vec<Vec<usize>> = map_parts(tasks, |(spheres, part_of): (&[[f32; 4]], &mut [u16])| {
+        let mut counts = vec![0; parts];
+        for (sphere, part) in spheres.iter().zip(part_of) {
+            *part = tree.part_of(sphere);
+            counts[usize::from(*part)] += 1;
+        }
+        counts
+    });
     let total = |part: usize| counts.iter().map(|of_chunk| of_chunk[part]).sum::<usize>();
     let totals: Vec<usize> = (0..parts).map(total).collect();
     if totals.iter().any(|total| *total > largest_part(spheres.len(), parts)) {
@@ -199,21 +195,14 @@ impl Tree {
 
     /// Cuts a sample across the longest side of its box until there are `parts` parts, numbered from `first`. Returns
     /// the index of the node.
-    fn halve(
-        &mut self,
-        sample: &mut [[f32; 3]],
-        (first, parts): (usize, usize),
-        depth: usize,
-    ) -> u32 {
+    fn halve(&mut self, sample: &mut [[f32; 3]], (first, parts): (usize, usize), depth: usize) -> u32 {
         let own = self.nodes.len() as u32;
         self.depth = self.depth.max(depth);
         self.nodes.push(Node { axis: 0, at: 0.0, next: [own; 2], part: first as u16 });
         if parts <= 1 || sample.is_empty() {
             return own;
         }
-        let extent = sample
-            .iter()
-            .fold(Extent::EMPTY, |all, center| all.with_point(Vec3A::from_array(*center)));
+        let extent = sample.iter().fold(Extent::EMPTY, |all, center| all.with_point(Vec3A::from_array(*center)));
         let axis = extent.longest_axis();
         let left_parts = parts / 2;
         let middle = sample.len() * left_parts / parts;
@@ -262,13 +251,9 @@ mod tests {
                 let mut all = bricks.concat();
                 all.sort_unstable();
                 assert!(all.into_iter().eq(0..count));
-                let is_in = |of: &[u32], center: &[f32]| {
-                    of.iter().any(|id| spheres[*id as usize][..3] == *center)
-                };
+                let is_in = |of: &[u32], center: &[f32]| of.iter().any(|id| spheres[*id as usize][..3] == *center);
                 let parts_equals = count <= 1000
-                    && spheres.iter().any(|sphere| {
-                        bricks.iter().filter(|ids| is_in(ids, &sphere[..3])).count() > 1
-                    });
+                    && spheres.iter().any(|sphere| bricks.iter().filter(|ids| is_in(ids, &sphere[..3])).count() > 1);
                 assert!(may_split_duplicates || !parts_equals, "{count} in {parts}");
                 times_parted += u32::from(parts_equals);
             }

@@ -29,12 +29,7 @@ pub(crate) struct BuiltGrid {
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
 #[must_use]
-pub(crate) fn build_grid(
-    spheres: &[[f32; 4]],
-    ids: &[u32],
-    margin: f32,
-    budget: GridBudget,
-) -> BuiltGrid {
+pub(crate) fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget: GridBudget) -> BuiltGrid {
     let (own, (min, max)) = gather(spheres, ids, margin);
     let mut cells = first_level(&own, (min, max), budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.
@@ -70,9 +65,8 @@ fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Ve
     if parts.is_empty() {
         return (own, (Vec3::ZERO, Vec3::ONE));
     }
-    let (min, max) = parts
-        .into_iter()
-        .fold((Vec3::MAX, Vec3::MIN), |(min, max), part| (min.min(part.0), max.max(part.1)));
+    let (min, max) =
+        parts.into_iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), part| (min.min(part.0), max.max(part.1)));
     (own, (min - margin, max + margin))
 }
 
@@ -133,21 +127,13 @@ struct BuiltCells {
     lists: BuiltLists,
 }
 
-fn assemble(
-    cells: &Cells,
-    margin: f32,
-    budget: GridBudget,
-    sorted: &[[f32; 4]],
-    lists: &Lists,
-) -> Grid {
-    let dense =
-        DenseCells::of(cells, sorted, margin, (&lists.shape_indices, &lists.starts), budget);
+fn assemble(cells: &Cells, margin: f32, budget: GridBudget, sorted: &[[f32; 4]], lists: &Lists) -> Grid {
+    let dense = DenseCells::of(cells, sorted, margin, (&lists.shape_indices, &lists.starts), budget);
     let is_long = |list: &[u32]| (list[1] - list[0]) as usize > LONG;
     if dense.is_none() && !lists.starts.windows(2).any(is_long) {
         return flat(cells, lists, sorted, margin);
     }
-    let frame =
-        |cells: &Cells, cell: usize| BallFrame::new(corner(cells, cell), cells.size, margin);
+    let frame = |cells: &Cells, cell: usize| BallFrame::new(corner(cells, cell), cells.size, margin);
     let parts = map_parts(ranges(cells.len(), CHUNK), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
         let mut part = BuiltCells {
@@ -161,9 +147,9 @@ fn assemble(
             let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
             list.extend_from_slice(&lists.shape_indices[start..end]);
             keep_one_of_the_same(&mut list, sorted);
-            let inner = dense.level(cell).and_then(|level| {
-                Some((level, inner_lists(cells, cell, &list, sorted, margin, level)?))
-            });
+            let inner = dense
+                .level(cell)
+                .and_then(|level| Some((level, inner_lists(cells, cell, &list, sorted, margin, level)?)));
             let word = match inner {
                 Some((level, inner)) => {
                     let start = word::units(part.inner.len());
@@ -273,13 +259,7 @@ impl BuiltLists {
 }
 
 /// Writes a list that is not empty, with its balls, and pads it with its last element.
-fn write_list(
-    list: &[u32],
-    spheres: &[[f32; 4]],
-    frame: BallFrame,
-    references: &mut [u32],
-    balls: &mut [u32],
-) {
+fn write_list(list: &[u32], spheres: &[[f32; 4]], frame: BallFrame, references: &mut [u32], balls: &mut [u32]) {
     references[..list.len()].copy_from_slice(list);
     for (ball, shape_index) in balls.iter_mut().zip(list) {
         *ball = frame.ball(spheres[*shape_index as usize]);
@@ -349,8 +329,7 @@ const WORTH_IT: f32 = 0.25;
 fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     let counts = counts.map(|count| count as usize);
     let len = counts.iter().product();
-    let is_empty: Vec<bool> =
-        words[..len].iter().map(|word| word & word::KIND == word::EMPTY).collect();
+    let is_empty: Vec<bool> = words[..len].iter().map(|word| word & word::KIND == word::EMPTY).collect();
     let empty = is_empty.iter().filter(|is_empty| **is_empty).count();
     if (empty as f32) < WORTH_IT * len as f32 {
         return;
@@ -358,9 +337,7 @@ fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     let octants = map(8, |octant| cubes_ahead(&is_empty, counts, octant));
     for (cell, word) in words[..len].iter_mut().enumerate() {
         if is_empty[cell] {
-            let bits = |octant: usize| {
-                u32::from(octants[octant][cell]) << (word::REACH_BITS as usize * octant)
-            };
+            let bits = |octant: usize| u32::from(octants[octant][cell]) << (word::REACH_BITS as usize * octant);
             *word = word::EMPTY | (0..8).map(bits).sum::<u32>();
         }
     }

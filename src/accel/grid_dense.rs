@@ -69,11 +69,9 @@ impl DenseCells {
         if saved < WORTH_IT * all {
             return Self { levels };
         }
-        candidates
-            .sort_unstable_by_key(|candidate| (std::cmp::Reverse(candidate.len), candidate.cell));
+        candidates.sort_unstable_by_key(|candidate| (std::cmp::Reverse(candidate.len), candidate.cell));
         let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
-        let listed: usize =
-            starts.windows(2).map(|ends| elements((ends[1] - ends[0]) as usize)).sum();
+        let listed: usize = starts.windows(2).map(|ends| elements((ends[1] - ends[0]) as usize)).sum();
         let mut listed_left = budget.listed.saturating_sub(listed);
         for Candidate { cell, len, level, listed, .. } in candidates {
             let inner = 1_usize << (3 * level);

@@ -28,11 +28,7 @@ type Item = ([f32; 4], u32, u32);
 
 /// Sorts spheres with ascending ids by the cells of their centres, block by block, so that spheres that are close in
 /// space are close in memory. Spheres of one cell are sorted by id. Returns the spheres and their ids.
-pub(super) fn sort_by_cell(
-    spheres: Vec<[f32; 4]>,
-    ids: &[u32],
-    cells: &Cells,
-) -> (Vec<[f32; 4]>, Vec<u32>) {
+pub(super) fn sort_by_cell(spheres: Vec<[f32; 4]>, ids: &[u32], cells: &Cells) -> (Vec<[f32; 4]>, Vec<u32>) {
     let buckets = spheres.len().div_ceil(IN_BUCKET).clamp(1, MOST_BUCKETS);
     // The number of cells per bucket is a power of two.
     let cells = CellVectors::of(cells);
@@ -102,13 +98,7 @@ fn into_buckets(
 }
 
 /// Sorts the spheres of a bucket of consecutive cells by cell, with a counting sort.
-fn sort_bucket(
-    items: &[Item],
-    first: usize,
-    cells: usize,
-    spheres: &mut [[f32; 4]],
-    ids: &mut [u32],
-) {
+fn sort_bucket(items: &[Item], first: usize, cells: usize, spheres: &mut [[f32; 4]], ids: &mut [u32]) {
     let mut starts = vec![0_u32; cells];
     for (_, _, cell) in items {
         starts[*cell as usize - first] += 1;
@@ -190,9 +180,7 @@ impl<'a> Overlaps<'a> {
         let cell_ends = self.slabs.iter().map(|slab| slab.end(&self.cells));
         let mut tasks = Vec::with_capacity(self.slabs.len());
         let mut start = 0;
-        for ((slab, lists), starts) in
-            self.slabs.iter().zip(lists).zip(split_mut(&mut starts, cell_ends))
-        {
+        for ((slab, lists), starts) in self.slabs.iter().zip(lists).zip(split_mut(&mut starts, cell_ends)) {
             let first = start;
             start += lists.len();
             tasks.push((slab, first as u32, lists, starts));
@@ -318,8 +306,7 @@ fn assign(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> (Vec<Octet>, Vec<
         of_slabs
     });
     let slab = |(slab, rows): (usize, Range<usize>)| {
-        let spheres =
-            assigned.iter().flat_map(|of_slabs: &Vec<Vec<Range<u32>>>| of_slabs[slab].clone());
+        let spheres = assigned.iter().flat_map(|of_slabs: &Vec<Vec<Range<u32>>>| of_slabs[slab].clone());
         Slab { rows, spheres: spheres.collect() }
     };
     let slabs = rows.into_iter().enumerate().map(slab).collect();

@@ -87,8 +87,7 @@ impl Grid {
         while t <= limit {
             let outer = self.cells[cell.dot(strides) as usize];
             let kind = outer & word::KIND;
-            let reach =
-                if kind == word::EMPTY { f64::from(outer >> octant & word::REACH) } else { 0.0 };
+            let reach = if kind == word::EMPTY { f64::from(outer >> octant & word::REACH) } else { 0.0 };
             let planes = base + (cell + step * reach + ahead) * delta;
             let t_leave = planes.min_element().max(t);
             if kind == word::LIST {
@@ -96,14 +95,7 @@ impl Grid {
                 let part = self.part(ray, from, t_leave - t, 1.0);
                 limit = self.offer_list(&part, outer & !word::KIND, limit, &mut offer);
             } else if kind == word::GRID {
-                limit = self.visit_inner(
-                    ray,
-                    [cell, ahead, step],
-                    outer,
-                    [t, t_leave],
-                    limit,
-                    &mut offer,
-                );
+                limit = self.visit_inner(ray, [cell, ahead, step], outer, [t, t_leave], limit, &mut offer);
             }
             if t_leave >= t_end || limit < 0.0 {
                 return;
@@ -166,13 +158,7 @@ impl Grid {
 
     /// Offers the spheres of a list whose balls the ray meets.
     #[inline]
-    fn offer_list(
-        &self,
-        part: &PartInCell,
-        start: u32,
-        mut limit: f64,
-        offer: &mut impl FnMut(usize) -> f64,
-    ) -> f64 {
+    fn offer_list(&self, part: &PartInCell, start: u32, mut limit: f64, offer: &mut impl FnMut(usize) -> f64) -> f64 {
         let start = start as usize;
         let vectors = self.balls[start..].as_chunks::<BALLS_PER_VECTOR>().0;
         let references = self.references[start..].as_chunks::<BALLS_PER_VECTOR>().0;

@@ -103,8 +103,7 @@ impl AccelPlan {
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
         let (buffers, box_margin) = (Vec::new(), 1.0);
-        let mut plan =
-            Self { statistics, crowd, structure, reason, brick_count, budget, box_margin, buffers };
+        let mut plan = Self { statistics, crowd, structure, reason, brick_count, budget, box_margin, buffers };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -179,9 +178,7 @@ impl AccelPlan {
             // some memory unused.
             Structure::WideTree => per_brick * 72,
             // Sorted spheres with their ids, lists of indices twice, and lists of balls.
-            Structure::Grid | Structure::NestedGrid => {
-                per_brick * 24 + 12 * self.budget.listed as u64
-            }
+            Structure::Grid | Structure::NestedGrid => per_brick * 24 + 12 * self.budget.listed as u64,
         }
     }
 
@@ -209,21 +206,13 @@ impl AccelPlan {
         }
         buffers
             .into_iter()
-            .map(|(name, bytes)| PlannedBuffer {
-                name,
-                bytes: bytes * bricks,
-                bytes_per_binding: bytes,
-            })
+            .map(|(name, bytes)| PlannedBuffer { name, bytes: bytes * bricks, bytes_per_binding: bytes })
             .collect()
     }
 }
 
 /// Decides which structure to build, and says why.
-fn decide(
-    statistics: &SceneStatistics,
-    crowd: Option<&Crowd>,
-    choice: AccelChoice,
-) -> (Structure, String) {
+fn decide(statistics: &SceneStatistics, crowd: Option<&Crowd>, choice: AccelChoice) -> (Structure, String) {
     let SceneStatistics { count, densest, .. } = *statistics;
     let asked = |structure| (structure, "asked for".to_owned());
     match choice {

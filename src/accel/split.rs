@@ -15,8 +15,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub(super) const EMPTY: Self =
-        Self { low: Vec3A::splat(f32::MAX), high: Vec3A::splat(f32::MIN) };
+    pub(super) const EMPTY: Self = Self { low: Vec3A::splat(f32::MAX), high: Vec3A::splat(f32::MIN) };
 
     #[inline]
     pub(super) fn with_point(self, point: Vec3A) -> Self {
@@ -101,9 +100,7 @@ impl Item {
     /// ordered by id, so that the result depends only on the spheres.
     pub(super) fn select(items: &mut [Self], at: usize, axis: usize) {
         if at < items.len() {
-            items.select_nth_unstable_by(at, |a, b| {
-                a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id))
-            });
+            items.select_nth_unstable_by(at, |a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)));
         }
     }
 }

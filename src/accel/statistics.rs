@@ -39,11 +39,8 @@ impl SceneStatistics {
             let center = Vec3::new(x, y, z);
             (center - r, center + r, r, r, f64::from(r))
         };
-        let joined = |a: Part, b: Part| -> Part {
-            (a.0.min(b.0), a.1.max(b.1), a.2.min(b.2), a.3.max(b.3), a.4 + b.4)
-        };
-        let parts =
-            map_chunks(spheres, |_, spheres| spheres.iter().map(of_sphere).fold(nothing, joined));
+        let joined = |a: Part, b: Part| -> Part { (a.0.min(b.0), a.1.max(b.1), a.2.min(b.2), a.3.max(b.3), a.4 + b.4) };
+        let parts = map_chunks(spheres, |_, spheres| spheres.iter().map(of_sphere).fold(nothing, joined));
         let all = parts.into_iter().fold(nothing, joined);
         let (min, max, radius_min, radius_max, sum) = all;
         if spheres.is_empty() {
@@ -201,11 +198,7 @@ fn widened_middle(spheres: &[[f32; 4]]) -> (Vec3, Vec3) {
     let mut ranked = |rank: usize, of: &dyn Fn(&(Vec3, Vec3)) -> f32| {
         values.clear();
         values.extend(sample.iter().map(of));
-        if rank < values.len() {
-            *values.select_nth_unstable_by(rank, f32::total_cmp).1
-        } else {
-            0.0
-        }
+        if rank < values.len() { *values.select_nth_unstable_by(rank, f32::total_cmp).1 } else { 0.0 }
     };
     for axis in 0..3 {
         low[axis] = ranked(left_out, &|(min, _)| min[axis]);

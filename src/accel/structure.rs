@@ -136,12 +136,7 @@ pub struct BrickKind {
 
 impl BrickKind {
     /// All combinations of the given structures and primitives.
-    pub fn of<'a>(
-        structures: &'a [Structure],
-        primitives: &'a [Primitive],
-    ) -> impl Iterator<Item = Self> + 'a {
-        primitives.iter().flat_map(|&primitive| {
-            structures.iter().map(move |&structure| Self { structure, primitive })
-        })
+    pub fn of<'a>(structures: &'a [Structure], primitives: &'a [Primitive]) -> impl Iterator<Item = Self> + 'a {
+        primitives.iter().flat_map(|&primitive| structures.iter().map(move |&structure| Self { structure, primitive }))
     }
 }

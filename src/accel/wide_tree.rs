@@ -100,16 +100,8 @@ impl WideNode {
                 let Some(child) = child else { continue };
                 let cells = |x: f64| (x - f64::from(origin)) / cell;
                 // Conversions to u8 saturate.
-                node.set_byte(
-                    8 + 2 * axis,
-                    slot,
-                    cells(f64::from(child.low[axis]) - wider).floor() as u8,
-                );
-                node.set_byte(
-                    14 + 2 * axis,
-                    slot,
-                    cells(f64::from(child.high[axis]) + wider).ceil() as u8,
-                );
+                node.set_byte(8 + 2 * axis, slot, cells(f64::from(child.low[axis]) - wider).floor() as u8);
+                node.set_byte(14 + 2 * axis, slot, cells(f64::from(child.high[axis]) + wider).ceil() as u8);
             }
         }
         node

@@ -5,9 +5,7 @@
 
 use super::split::{Cluster, Extent, Item};
 use super::statistics::Margins;
-use super::wide_tree::{
-    WIDE_BYTES_PER_SPHERE, WIDE_LEAF, WIDE_LEVELS, WideNode, WideTree, octant_slots,
-};
+use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WIDE_LEAF, WIDE_LEVELS, WideNode, WideTree, octant_slots};
 use crate::parallel::{both, map_parts};
 
 /// Up to this number of spheres, a node has only leaves.
@@ -69,11 +67,7 @@ fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
 }
 
 /// Builds a tree level by level. Stops early if there are more than `most` nodes.
-fn nodes_by_level(
-    items: &mut [Item],
-    in_halves: bool,
-    most: usize,
-) -> (Vec<WideNode>, Vec<u32>, u32) {
+fn nodes_by_level(items: &mut [Item], in_halves: bool, most: usize) -> (Vec<WideNode>, Vec<u32>, u32) {
     let mut ids = Vec::with_capacity(items.len());
     if items.is_empty() {
         return (vec![WideNode::empty()], ids, 1);
@@ -142,12 +136,8 @@ fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
         in_slots[slot] = Some(part);
     }
     let boxes = in_slots.each_ref().map(|part| part.as_ref().map(|p| p.extent));
-    let mut draft = Draft {
-        node: WideNode::with_boxes(&boxes),
-        ids: [0; LEAVES_ONLY],
-        leaf_spheres: 0,
-        inner: Vec::new(),
-    };
+    let mut draft =
+        Draft { node: WideNode::with_boxes(&boxes), ids: [0; LEAVES_ONLY], leaf_spheres: 0, inner: Vec::new() };
     for (slot, part) in in_slots.into_iter().enumerate() {
         let Some(part) = part else { continue };
         if part.len() > WIDE_LEAF {
@@ -173,8 +163,7 @@ fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<
         parts.push(cluster);
         return;
     }
-    let (first, second) =
-        if in_halves { cluster.split_at(count.div_ceil(2)) } else { cluster.split_by_cost() };
+    let (first, second) = if in_halves { cluster.split_at(count.div_ceil(2)) } else { cluster.split_by_cost() };
     let share = (slots * first.len() + count / 2) / count;
     let share = if in_halves { slots / 2 } else { share.clamp(1, slots - 1) };
     if count < PARALLEL {

@@ -93,25 +93,16 @@ impl WideTree {
     /// Two opposite corners of a box around all boxes of the tree. `None` if there are no spheres.
     pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
         let root = &self.nodes[0];
-        let boxes =
-            (0..8).filter(|slot| root.inner_mask() >> slot & 1 == 1 || root.byte(6, *slot) > 0);
-        boxes
-            .map(|slot| root.slot_box(slot).map(DVec3::from))
-            .reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])
+        let boxes = (0..8).filter(|slot| root.inner_mask() >> slot & 1 == 1 || root.byte(6, *slot) > 0);
+        boxes.map(|slot| root.slot_box(slot).map(DVec3::from)).reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])
     }
 
     /// Calls `offer` with ranges of spheres, in the order of [`WideTree::ids`], that together contain every sphere for
     /// which `intersect` in f64 finds a distance of at most `limit`. `offer` returns the new limit, or a negative
     /// number to end the walk. Near spheres tend to come first.
     #[inline]
-    pub(crate) fn visit(
-        &self,
-        ray: &BoxRay,
-        mut limit: f64,
-        mut offer: impl FnMut(Range<usize>) -> f64,
-    ) {
-        let octant =
-            (0..3).fold(0, |bits, axis| bits | usize::from(ray.inverse[axis] < 0.0) << axis);
+    pub(crate) fn visit(&self, ray: &BoxRay, mut limit: f64, mut offer: impl FnMut(Range<usize>) -> f64) {
+        let octant = (0..3).fold(0, |bits, axis| bits | usize::from(ray.inverse[axis] < 0.0) << axis);
         let mut waiting = [NodeVisit::default(); MOST_WAITING];
         let mut count = 0;
         let mut at = NodeVisit::default();

@@ -82,8 +82,7 @@ impl Film {
     pub fn part(&self, origin: [u32; 2], size: [u32; 2]) -> Result<Self, FilmError> {
         has_pixels(size)?;
         let ([width, height], film) = (size, [self.width, self.height]);
-        let fits =
-            |axis: usize| origin[axis].checked_add(size[axis]).is_some_and(|end| end <= film[axis]);
+        let fits = |axis: usize| origin[axis].checked_add(size[axis]).is_some_and(|end| end <= film[axis]);
         if !(fits(0) && fits(1)) {
             return Err(FilmError(format!(
                 "the rectangle of {width}x{height} pixels at column {} and row {} is not inside a film of {}x{} pixels",
@@ -159,8 +158,7 @@ impl Film {
     /// this film and `row` pixels from its top edge. The centre of pixel (i, j) is (i + ½, j + ½).
     #[must_use]
     pub fn relative_location(&self, column: f64, row: f64) -> DVec2 {
-        let ([left, top], [width, height]) =
-            (self.origin.map(f64::from), self.whole.map(f64::from));
+        let ([left, top], [width, height]) = (self.origin.map(f64::from), self.whole.map(f64::from));
         let x = (left + column) / width * 2.0 - 1.0;
         let y_down = (top + row) / height * 2.0 - 1.0;
         match self.y_axis {
@@ -174,7 +172,5 @@ fn has_pixels([width, height]: [u32; 2]) -> Result<(), FilmError> {
     if width > 0 && height > 0 {
         return Ok(());
     }
-    Err(FilmError(format!(
-        "the size {width}x{height} has no pixel; width and height must be at least 1"
-    )))
+    Err(FilmError(format!("the size {width}x{height} has no pixel; width and height must be at least 1")))
 }

@@ -142,9 +142,8 @@ mod tests {
             PixelFilter::BlackmanHarris => {
                 let angle = PI * x / radius;
                 // Cosines of odd multiples have the opposite sign, because angles are measured from the centre here.
-                let sines = 0.48829 * angle.sin()
-                    + 0.14128 / 2.0 * (2.0 * angle).sin()
-                    + 0.01168 / 3.0 * (3.0 * angle).sin();
+                let sines =
+                    0.48829 * angle.sin() + 0.14128 / 2.0 * (2.0 * angle).sin() + 0.01168 / 3.0 * (3.0 * angle).sin();
                 0.35875 * x + sines * radius / PI
             }
         };
@@ -175,8 +174,7 @@ mod tests {
         for &filter in PixelFilter::ALL {
             for (k, &x) in filter.offset_table().iter().enumerate() {
                 let found = cumulative(filter, f64::from(x));
-                let bound =
-                    density(filter, f64::from(x)) * f64::from(x).abs() * 2_f64.powi(-24) + 1e-13;
+                let bound = density(filter, f64::from(x)) * f64::from(x).abs() * 2_f64.powi(-24) + 1e-13;
                 let wanted = k as f64 / STEPS as f64;
                 assert!((found - wanted).abs() <= bound, "{filter:?}, {k}: {found}");
             }
@@ -194,10 +192,7 @@ mod tests {
         let table = PixelFilter::Box.offset_table();
         for u in [0, 1 << 8, 0x1234_5678, 1 << 31, u32::MAX] {
             let found = offset(&table, u);
-            assert!(
-                found.to_bits() == (crate::camera::sampling::unit(u) - 0.5).to_bits(),
-                "{u}: {found}"
-            );
+            assert!(found.to_bits() == (crate::camera::sampling::unit(u) - 0.5).to_bits(), "{u}: {found}");
         }
     }
 

@@ -28,12 +28,7 @@ fn window(subject: &Subject<'_>, margin: f64) -> [DVec2; 2] {
 /// A sphere appears inside the margin if it lies inside the four planes through the eye and the margin's sides. If n is
 /// the normal of such a plane, that means n·c + |n|·r ≤ n·e. So the largest n·c + |n|·r of all spheres gives the exact
 /// distance of the eye e.
-pub(super) fn perspective_eye(
-    subject: &Subject<'_>,
-    basis: &OrthonormalBasis,
-    tangents: DVec2,
-    margin: f64,
-) -> DVec3 {
+pub(super) fn perspective_eye(subject: &Subject<'_>, basis: &OrthonormalBasis, tangents: DVec2, margin: f64) -> DVec3 {
     let [middle, half] = window(subject, margin).map(|location| location * tangents);
     let across = Wedge::new(subject, basis.u(), basis.w(), middle.x, half.x);
     let along = Wedge::new(subject, basis.v(), basis.w(), middle.y, half.y);

@@ -74,9 +74,8 @@ impl HostCamera {
         }
         let to_view = DMat3::from_mat4(view) * (1.0 / last.w);
         let offset = view.w_axis.truncate() / last.w;
-        let singular = |matrix: &str| {
-            HostCameraError(format!("the {matrix} matrix has no inverse, so pixels have no rays"))
-        };
+        let singular =
+            |matrix: &str| HostCameraError(format!("the {matrix} matrix has no inverse, so pixels have no rays"));
         let to_world = inverse(to_view).ok_or_else(|| singular("view"))?;
         let rows = [0, 1, 2, 3].map(|row| projection.row(row));
         let [x, y, depth, w] = rows;
@@ -107,9 +106,7 @@ impl HostCamera {
             )));
         }
         let slope = slope / scale;
-        if !DEPTH_NUMBERS.contains(&slope.abs())
-            || !(0.0..=1e18).contains(&film.abs().max_element())
-        {
+        if !DEPTH_NUMBERS.contains(&slope.abs()) || !(0.0..=1e18).contains(&film.abs().max_element()) {
             return Err(HostCameraError(format!(
                 "the third row of the projection matrix is {:?}, which gives no depth that f32 can represent",
                 depth.to_array()

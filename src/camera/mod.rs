@@ -33,10 +33,7 @@ pub use host::{DepthOrder, HostCamera, HostCameraError, HostMatrix};
 pub use orthographic::OrthographicCamera;
 pub use panorama::PanoramaCamera;
 pub use parameters::CameraParameters;
-pub use path::{
-    CameraKey, CameraMotion, CameraOnPath, CameraPath, CameraPathError, KeyPlace, PathClock,
-    PlaceOnPath,
-};
+pub use path::{CameraKey, CameraMotion, CameraOnPath, CameraPath, CameraPathError, KeyPlace, PathClock, PlaceOnPath};
 pub use pinhole::PinholeCamera;
 use pose::checked_range;
 pub use pose::{CameraError, CameraVectors, Pose};
@@ -167,11 +164,7 @@ impl CameraKind {
 
 /// Returns an error for a length whose square is not a normal f32.
 fn checked_length(parameter: &'static str, value: f64) -> Result<f64, CameraError> {
-    if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
-        Ok(value)
-    } else {
-        Err(CameraError::Length { parameter, value })
-    }
+    if (MIN_LENGTH..=MAX_LENGTH).contains(&value) { Ok(value) } else { Err(CameraError::Length { parameter, value }) }
 }
 
 fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraError> {
@@ -187,9 +180,7 @@ fn checked_fov(radians: f64) -> Result<(), CameraError> {
         return Ok(());
     }
     let degrees = radians.to_degrees();
-    Err(CameraError::Invalid(format!(
-        "the vertical field of view is {degrees} degrees; it must lie between 0 and 180"
-    )))
+    Err(CameraError::Invalid(format!("the vertical field of view is {degrees} degrees; it must lie between 0 and 180")))
 }
 
 /// Returns an error for a margin that leaves too little of the picture.

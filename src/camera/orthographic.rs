@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
-    checked_margin, framing,
+    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent, checked_margin, framing,
 };
 use crate::geometry::ray::Ray;
 use crate::geometry::subject::Subject;
@@ -44,8 +43,7 @@ impl OrthographicCamera {
     ) -> Result<Self, CameraError> {
         let (subject, aspect) = (subject.into(), checked_aspect(aspect)?);
         let margin = checked_margin(margin)?;
-        let (middle, half_extent) =
-            framing::parallel_extent(&subject, &pose.basis(), aspect, margin);
+        let (middle, half_extent) = framing::parallel_extent(&subject, &pose.basis(), aspect, margin);
         Self::new(pose.framing(&subject.bounds(), middle)?, half_extent)
     }
 }

@@ -5,9 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::placement::{Placement, PoseParameters, refused};
 use super::{
-    Camera, CameraError, CameraKind, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera,
-    PanoramaCamera, PinholeCamera, Pose, ThinLensCamera, Viewpoint, camera_table, checked_length,
-    framing,
+    Camera, CameraError, CameraKind, DEFAULT_MARGIN, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera,
+    Pose, ThinLensCamera, Viewpoint, camera_table, checked_length, framing,
 };
 use crate::exact::{List, Table};
 use crate::geometry::subject::Subject;
@@ -130,11 +129,7 @@ impl CameraParameters {
     ///
     /// # Errors
     /// Returns the same errors as [`CameraParameters::camera`].
-    pub fn stereo_pair(
-        &self,
-        aspect: f64,
-        subject: &Subject<'_>,
-    ) -> Result<Option<[Box<dyn Camera>; 2]>, CameraError> {
+    pub fn stereo_pair(&self, aspect: f64, subject: &Subject<'_>) -> Result<Option<[Box<dyn Camera>; 2]>, CameraError> {
         fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
             pair.map(|camera| Box::new(camera) as Box<dyn Camera>)
         }
@@ -192,9 +187,7 @@ impl<'a> Site<'a> {
 /// The margin of a framed picture. A camera with an eye has no margin.
 fn margin_of(margin: Option<f64>, is_framed: bool) -> Result<f64, CameraError> {
     if margin.is_some() && !is_framed {
-        return refused(
-            "`margin` applies only to a camera that frames the scene; remove `margin` or `eye`",
-        );
+        return refused("`margin` applies only to a camera that frames the scene; remove `margin` or `eye`");
     }
     Ok(margin.unwrap_or(DEFAULT_MARGIN))
 }
@@ -239,18 +232,14 @@ impl PinholeParameters {
                 return refused("`distance` needs a `half_extent`; a field of view needs neither");
             }
             (Some(_), _) if is_framed => {
-                return refused(
-                    "`half_extent` needs an `eye`; to frame the whole scene give `vertical_fov`",
-                );
+                return refused("`half_extent` needs an `eye`; to frame the whole scene give `vertical_fov`");
             }
             _ => {}
         }
         let margin = margin_of(self.margin, is_framed)?;
         let wide = match self.half_extent {
             _ if is_framed => PinholeCamera::framing(subject, pose, fov, aspect, margin),
-            Some(List(half_extent)) => {
-                PinholeCamera::new(pose, self.distance.unwrap_or(1.0), half_extent)
-            }
+            Some(List(half_extent)) => PinholeCamera::new(pose, self.distance.unwrap_or(1.0), half_extent),
             None => PinholeCamera::with_vertical_fov(pose, fov, aspect),
         };
         wide?.zoomed(self.zoom)
@@ -282,9 +271,7 @@ impl OrthographicParameters {
         let Site { pose, is_framed, aspect, subject } = *site;
         let margin = margin_of(self.margin, is_framed)?;
         match self.half_extent {
-            Some(_) if is_framed => {
-                refused("`half_extent` needs an `eye`; to frame the whole scene leave both out")
-            }
+            Some(_) if is_framed => refused("`half_extent` needs an `eye`; to frame the whole scene leave both out"),
             None if !is_framed => refused("an `eye` needs a `half_extent`"),
             Some(List(half_extent)) => Ok((pose, half_extent.into())),
             None => {
@@ -346,14 +333,10 @@ impl ThinLensParameters {
                 return refused("`aperture_radius` excludes `f_stop` and `focal_length`; keep one");
             }
             (None, None, None) => {
-                return refused(
-                    "a lens needs an `aperture_radius`, or an `f_stop` with a `focal_length`",
-                );
+                return refused("a lens needs an `aperture_radius`, or an `f_stop` with a `focal_length`");
             }
             (None, Some(_), None) | (None, None, Some(_)) => {
-                return refused(
-                    "`f_stop` and `focal_length` need each other: together they give the aperture radius",
-                );
+                return refused("`f_stop` and `focal_length` need each other: together they give the aperture radius");
             }
         };
         let point = match (self.focus_distance, self.focus_on.or(self.look_at), self.eye) {

@@ -86,11 +86,7 @@ impl CameraPath {
     /// # Errors
     /// Returns an error if there are fewer than two keys, their times do not ascend, a number is not finite or out of
     /// range, a key's eye is at its target or its `up` parallel to its view, or some keys have an eye and others a view.
-    pub fn new(
-        keys: Vec<CameraKey>,
-        clock: PathClock,
-        eases: bool,
-    ) -> Result<Self, CameraPathError> {
+    pub fn new(keys: Vec<CameraKey>, clock: PathClock, eases: bool) -> Result<Self, CameraPathError> {
         if keys.len() < 2 {
             let few = if keys.is_empty() { "is none" } else { "is only one" };
             let message = format!("a camera path needs at least two keys, but there {few}");
@@ -110,8 +106,7 @@ impl CameraPath {
                     return Err(CameraPathError { key: Some(key), message });
                 }
                 if is_view(&before) != is_view(now) {
-                    let mixed =
-                        "some keys have an eye and others a view; give all keys of a path the same";
+                    let mixed = "some keys have an eye and others a view; give all keys of a path the same";
                     return Err(CameraPathError::of(key, mixed));
                 }
             }
@@ -159,13 +154,10 @@ impl CameraPath {
         let places = if self.keys.iter().any(is_view) {
             let angles = self.keys.iter().map(|key| (key.time, angles(key, up)));
             let angles: Vec<(f64, [f64; 2])> = angles.collect();
-            let track = |i: usize| {
-                Track::new(angles.iter().map(|(time, angles)| (*time, angles[i])), self.eases)
-            };
+            let track = |i: usize| Track::new(angles.iter().map(|(time, angles)| (*time, angles[i])), self.eases);
             Places::Views { azimuth: track(0), elevation: track(1), up }
         } else {
-            let points: Vec<(f64, [DVec3; 3])> =
-                self.keys.iter().map(|key| (key.time, points(key, up))).collect();
+            let points: Vec<(f64, [DVec3; 3])> = self.keys.iter().map(|key| (key.time, points(key, up))).collect();
             for (key, pair) in points.windows(2).enumerate() {
                 if pair[0].1[2].dot(pair[1].1[2]) < -0.999_999 {
                     let message = format!(
@@ -322,10 +314,7 @@ impl CameraMotion {
                 let (sine, cosine) = azimuth.at(time).sin_cos();
                 let front = from_y * DVec3::new(sine, 0.0, cosine);
                 let (sine, cosine) = elevation.at(time).sin_cos();
-                PlaceOnPath::View {
-                    direction: -(cosine * front + sine * *up),
-                    up: cosine * *up - sine * front,
-                }
+                PlaceOnPath::View { direction: -(cosine * front + sine * *up), up: cosine * *up - sine * front }
             }
         };
         let value = |track: &Option<Track>| track.as_ref().map(|track| track.at(time).exp());

@@ -117,8 +117,7 @@ impl Curve {
         for &(time, point) in all {
             if points.last() != Some(&point) {
                 let before = points.last().zip(knots.last());
-                let next =
-                    before.map_or(0.0, |(before, knot)| knot + before.distance(point).sqrt());
+                let next = before.map_or(0.0, |(before, knot)| knot + before.distance(point).sqrt());
                 points.push(point);
                 knots.push(next);
             }
@@ -174,10 +173,7 @@ mod tests {
         for &time in times {
             let left = (at(time) - at(time - step)) / step;
             let right = (at(time + step) - at(time)) / step;
-            assert!(
-                (left - right).length() < 1e-3 * (1.0 + left.length()),
-                "{time} {left} {right}"
-            );
+            assert!((left - right).length() < 1e-3 * (1.0 + left.length()), "{time} {left} {right}");
         }
     }
 
@@ -221,8 +217,7 @@ mod tests {
     #[test]
     fn a_circle_stays_a_circle() {
         let on_circle = |time: f64| DVec3::new(time.cos(), time.sin(), 0.0);
-        let keys: Vec<_> =
-            (0..=12).map(|i| f64::from(i) * 0.5).map(|t| (t, on_circle(t))).collect();
+        let keys: Vec<_> = (0..=12).map(|i| f64::from(i) * 0.5).map(|t| (t, on_circle(t))).collect();
         let curve = Curve::new(&keys, false);
         for step in 0..600 {
             let time = f64::from(step) * 0.01;

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_fov,
-    checked_half_extent, checked_length, checked_margin, checked_range, framing, stereo_lengths,
+    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_fov, checked_half_extent,
+    checked_length, checked_margin, checked_range, framing, stereo_lengths,
 };
 use crate::geometry::math::MAX_LENGTH;
 use crate::geometry::ray::Ray;
@@ -31,11 +31,7 @@ impl PinholeCamera {
     ///
     /// # Errors
     /// Returns an error if the distance or a half extent is not a length greater than zero.
-    pub fn new(
-        pose: Pose,
-        distance: f64,
-        half_extent: impl Into<DVec2>,
-    ) -> Result<Self, CameraError> {
+    pub fn new(pose: Pose, distance: f64, half_extent: impl Into<DVec2>) -> Result<Self, CameraError> {
         Ok(Self {
             pose,
             distance: checked_length("view-plane distance", distance)?,
@@ -49,11 +45,7 @@ impl PinholeCamera {
     ///
     /// # Errors
     /// Returns an error if the angle is not between 0 and π, or the aspect ratio is not greater than zero.
-    pub fn with_vertical_fov(
-        pose: Pose,
-        fov_radians: f64,
-        aspect: f64,
-    ) -> Result<Self, CameraError> {
+    pub fn with_vertical_fov(pose: Pose, fov_radians: f64, aspect: f64) -> Result<Self, CameraError> {
         Self::new(pose, 1.0, tangents(fov_radians, aspect)?)
     }
 
@@ -62,10 +54,7 @@ impl PinholeCamera {
     ///
     /// # Errors
     /// Returns an error if the aspect ratio is not greater than zero, or the eye would have to stand too far away.
-    pub fn framing_from_the_front<'a>(
-        subject: impl Into<Subject<'a>>,
-        aspect: f64,
-    ) -> Result<Self, CameraError> {
+    pub fn framing_from_the_front<'a>(subject: impl Into<Subject<'a>>, aspect: f64) -> Result<Self, CameraError> {
         let pose = Pose::looking_along(DVec3::ZERO, Pose::DEFAULT_DIRECTION, DVec3::Y)?;
         let margin = framing::DEFAULT_MARGIN;
         Self::framing(subject, pose, Self::DEFAULT_FOV_RADIANS, aspect, margin)

@@ -34,19 +34,13 @@ pub(super) struct Placement {
 impl PoseParameters {
     /// Turns `view` and `turn` into a direction. A camera that has neither an eye nor a direction stands at the
     /// `automatic` viewpoint. A view has `default_up` up if `up` is not given.
-    pub(super) fn standing(
-        mut self,
-        automatic: Option<Viewpoint>,
-        default_up: DVec3,
-    ) -> Result<Self, CameraError> {
+    pub(super) fn standing(mut self, automatic: Option<Viewpoint>, default_up: DVec3) -> Result<Self, CameraError> {
         let is_placed = self.eye.is_some() || self.look_at.is_some() || self.direction.is_some();
         if self.view.is_some() && is_placed {
             return refused("`view` excludes `eye`, `look_at` and `direction`; keep one");
         }
         if self.turn.is_some() && self.eye.is_some() {
-            return refused(
-                "`turn` applies only to a camera that frames the scene; remove `turn` or `eye`",
-            );
+            return refused("`turn` applies only to a camera that frames the scene; remove `turn` or `eye`");
         }
         let turn = self.turn.take().unwrap_or(0.0);
         if !turn.is_finite() {
@@ -83,13 +77,9 @@ impl PoseParameters {
                 return refused("`look_at` and `direction` exclude each other; keep one");
             }
             (None, Some(_), None) => {
-                return refused(
-                    "`look_at` needs an `eye`; to frame the whole scene give a `direction`",
-                );
+                return refused("`look_at` needs an `eye`; to frame the whole scene give a `direction`");
             }
-            (None, None, direction) => {
-                (None, direction.map_or(Pose::DEFAULT_DIRECTION, |direction| direction.0))
-            }
+            (None, None, direction) => (None, direction.map_or(Pose::DEFAULT_DIRECTION, |direction| direction.0)),
         };
         let along = |up: [f64; 3]| Pose::looking_along(eye.unwrap_or_default(), toward, up);
         self.upright(toward.into(), along, Some(List(toward)), eye.is_none())

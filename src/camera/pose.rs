@@ -76,8 +76,7 @@ impl Pose {
             let message = "the eye and the look-at point are both at";
             return Err(CameraError::Invalid(format!("{message} {eye:?}; move one of them")));
         }
-        let basis = OrthonormalBasis::from_vectors(backwards, up)
-            .ok_or(CameraError::UpParallelToView { up })?;
+        let basis = OrthonormalBasis::from_vectors(backwards, up).ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -95,8 +94,7 @@ impl Pose {
         checked_direction("the direction", direction)?;
         checked_direction("up", up)?;
         // Finite vectors that are not zero have no basis only if they are parallel.
-        let basis = OrthonormalBasis::from_vectors(-direction, up)
-            .ok_or(CameraError::UpParallelToView { up })?;
+        let basis = OrthonormalBasis::from_vectors(-direction, up).ok_or(CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -194,9 +192,7 @@ impl CameraVectors {
     pub(crate) fn checked(rows: [DVec3; 5]) -> Result<Self, CameraError> {
         let [origin, right, up, forward, numbers] = rows;
         checked_point("the origin", origin)?;
-        for (parameter, value) in
-            [("length of right", right), ("length of up", up), ("length of forward", forward)]
-        {
+        for (parameter, value) in [("length of right", right), ("length of up", up), ("length of forward", forward)] {
             // Each is a length in range times a vector of unit length, up to rounding.
             let length = value.length();
             if !(0.5 * MIN_LENGTH..=2.0 * MAX_LENGTH).contains(&length) {
@@ -214,14 +210,6 @@ impl CameraVectors {
 }
 
 /// Returns an error for a number that is NaN or not in a range.
-pub(super) fn checked_range(
-    parameter: &'static str,
-    value: f64,
-    [low, high]: [f64; 2],
-) -> Result<f64, CameraError> {
-    if (low..=high).contains(&value) {
-        Ok(value)
-    } else {
-        Err(CameraError::Range { parameter, value, low, high })
-    }
+pub(super) fn checked_range(parameter: &'static str, value: f64, [low, high]: [f64; 2]) -> Result<f64, CameraError> {
+    if (low..=high).contains(&value) { Ok(value) } else { Err(CameraError::Range { parameter, value, low, high }) }
 }

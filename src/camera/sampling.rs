@@ -29,8 +29,7 @@ pub fn pair(pixel_seed: u32, sample: u32, pair: u32) -> [u32; 2] {
     // The index is scrambled as if it were a fraction, so that aligned blocks of 2ᵐ samples remain aligned blocks.
     let index = scramble_reversed(sample.reverse_bits(), order).reverse_bits();
     // Sobol's first dimension is the index with its bits reversed, and `scramble_reversed` takes reversed bits.
-    [scramble_reversed(index, across), scramble_reversed(second_dimension(index), down)]
-        .map(u32::reverse_bits)
+    [scramble_reversed(index, across), scramble_reversed(second_dimension(index), down)].map(u32::reverse_bits)
 }
 
 /// The number in [0, 1) given by the upper 24 bits. f32 represents it exactly.

@@ -3,9 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::pose::checked_point;
-use super::{
-    Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length, checked_range,
-};
+use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length, checked_range};
 use crate::geometry::math::MIN_LENGTH;
 use crate::geometry::math::concentric_disk;
 use crate::geometry::ray::Ray;
@@ -33,11 +31,7 @@ impl ThinLensCamera {
     /// # Errors
     /// Returns an error if the distance is not a length greater than zero, or the radius is not a length up to the
     /// distance.
-    pub fn new(
-        pinhole: PinholeCamera,
-        aperture_radius: f64,
-        focus_distance: f64,
-    ) -> Result<Self, CameraError> {
+    pub fn new(pinhole: PinholeCamera, aperture_radius: f64, focus_distance: f64) -> Result<Self, CameraError> {
         let high = checked_length("`focus_distance`", focus_distance)?;
         checked_range("`aperture_radius`", aperture_radius, [MIN_LENGTH, high])?;
         Ok(Self { pinhole: pinhole.with_distance(focus_distance)?, aperture_radius })
@@ -67,8 +61,7 @@ impl ThinLensCamera {
     /// # Errors
     /// Returns an error if the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
     pub fn aperture_radius(focal_length: f64, f_stop: f64) -> Result<f64, CameraError> {
-        Ok(0.5 * checked_length("`focal_length`", focal_length)?
-            / checked_length("`f_stop`", f_stop)?)
+        Ok(0.5 * checked_length("`focal_length`", focal_length)? / checked_length("`f_stop`", f_stop)?)
     }
 }
 

@@ -150,20 +150,12 @@ mod tests {
 
     #[test]
     fn names_and_angles_are_the_same_places() {
-        for (name, angles) in [
-            ("z", "0,0"),
-            ("x", "90,0"),
-            ("-z", "180,0"),
-            ("-x", "-90,0"),
-            ("y", "0,90"),
-            ("-y", "0,-90"),
-        ] {
+        for (name, angles) in
+            [("z", "0,0"), ("x", "90,0"), ("-z", "180,0"), ("-x", "-90,0"), ("y", "0,90"), ("-y", "0,-90")]
+        {
             for turn in [0.0, 35.0] {
                 let [a, b] = [axes(name, DVec3::Y, turn), axes(angles, DVec3::Y, turn)];
-                assert!(
-                    a.iter().zip(b).all(|(a, b)| (*a - b).length() < 1e-12),
-                    "{name} {a:?} {b:?}"
-                );
+                assert!(a.iter().zip(b).all(|(a, b)| (*a - b).length() < 1e-12), "{name} {a:?} {b:?}");
             }
         }
     }
@@ -178,8 +170,6 @@ mod tests {
         }
         // From above, with z up, x is to the right and y up in the picture, as on a map.
         let [direction, upward] = axes("z", DVec3::Z, 0.0);
-        assert!(
-            (direction - DVec3::NEG_Z).length() < 1e-12 && (upward - DVec3::Y).length() < 1e-12
-        );
+        assert!((direction - DVec3::NEG_Z).length() < 1e-12 && (upward - DVec3::Y).length() < 1e-12);
     }
 }

@@ -27,13 +27,7 @@ pub fn denoise(image: &Image) -> Result<Image, MissingGuide> {
     Ok(quiet)
 }
 
-fn filtered(
-    guides: &Guides,
-    lights: &[[f64; 4]],
-    [width, height]: [i64; 2],
-    [i, j]: [i64; 2],
-    step: i64,
-) -> [f64; 4] {
+fn filtered(guides: &Guides, lights: &[[f64; 4]], [width, height]: [i64; 2], [i, j]: [i64; 2], step: i64) -> [f64; 4] {
     let middle = (j * width + i) as usize;
     let light = lights[middle];
     let is_miss = guides.shapes[middle][..3].iter().all(|c| *c == 0.0);
@@ -72,10 +66,8 @@ fn likeness(guides: &Guides, a: usize, b: usize, distance: f64) -> f64 {
     let [shape, other] = [a, b].map(|index| guides.shapes[index].map(f64::from));
     let dot = |a: [f64; 4], b: [f64; 4]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let are_misses = dot(shape, shape) == 0.0 && dot(other, other) == 0.0;
-    let depth =
-        (shape[3] - other[3]).abs() / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
-    let alike =
-        if are_misses { 1.0 } else { dot(shape, other).max(0.0).powi(32) / (1.0 + depth * depth) };
+    let depth = (shape[3] - other[3]).abs() / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
+    let alike = if are_misses { 1.0 } else { dot(shape, other).max(0.0).powi(32) / (1.0 + depth * depth) };
     let tints = [a, b].map(|index| guides.albedos[index].map(f64::from));
     let tint: f64 = (0..3).map(|c| (tints[0][c] - tints[1][c]).powi(2)).sum();
     alike / (1.0 + 400.0 * tint)

@@ -68,8 +68,7 @@ impl Pace {
     fn adapt(&mut self, strips: usize, elapsed: Duration) {
         let fitting = strips as f64 * AIM.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
         // Conversions saturate. The next band may be harder than this one.
-        self.strips =
-            (fitting as usize).clamp(self.least, MOST.max(self.least)).min(4 * self.strips);
+        self.strips = (fitting as usize).clamp(self.least, MOST.max(self.least)).min(4 * self.strips);
     }
 }
 

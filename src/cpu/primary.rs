@@ -47,12 +47,7 @@ pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> 
 }
 
 /// The pixel that the ray through its centre gives.
-pub(super) fn primary_pixel(
-    search: Search<'_>,
-    view: &View<'_>,
-    primary: &PrimarySettings,
-    pixel: [u32; 2],
-) -> Pixel {
+pub(super) fn primary_pixel(search: Search<'_>, view: &View<'_>, primary: &PrimarySettings, pixel: [u32; 2]) -> Pixel {
     let ray = view.ray_through_center(pixel);
     let hit = ray.as_ref().and_then(|ray| trace(search, ray));
     match (&ray, &hit) {
@@ -62,11 +57,7 @@ pub(super) fn primary_pixel(
 }
 
 /// Calls `work` with each pixel (column and row) of some rows, its index in its row, and the row, on all cores.
-pub(super) fn for_rows(
-    image: &mut Image,
-    rows: Range<usize>,
-    work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
-) {
+pub(super) fn for_rows(image: &mut Image, rows: Range<usize>, work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync) {
     let (width, start) = (image.width(), rows.start);
     for_each(image.rows_mut(rows).into_iter().enumerate().collect(), |(j, mut row)| {
         for i in 0..width {

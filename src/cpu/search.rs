@@ -182,11 +182,7 @@ impl<'a> Search<'a> {
     /// The nearest hit of a ray in the scene's frame. At equal distances, the smallest id wins. `distance` takes a
     /// sphere, and returns the distance of a hit, which is not NaN.
     #[inline]
-    pub(super) fn nearest(
-        &self,
-        ray: &Ray,
-        distance: impl Fn([f32; 4]) -> Option<f64>,
-    ) -> Option<NearestHit> {
+    pub(super) fn nearest(&self, ray: &Ray, distance: impl Fn([f32; 4]) -> Option<f64>) -> Option<NearestHit> {
         let mut nearest: Option<NearestHit> = None;
         match self {
             Self::EverySphere(scene) => {
@@ -215,9 +211,7 @@ impl<'a> Search<'a> {
     #[inline]
     pub(super) fn any(&self, ray: &Ray, t_max: f64, test: impl Fn(u32, [f32; 4]) -> bool) -> bool {
         match self {
-            Self::EverySphere(scene) => {
-                (0..).zip(scene.spheres()).any(|(id, sphere)| test(id, *sphere))
-            }
+            Self::EverySphere(scene) => (0..).zip(scene.spheres()).any(|(id, sphere)| test(id, *sphere)),
             Self::Structure(structure) => {
                 let mut is_any = false;
                 structure.visit(ray, t_max, |id, sphere| {
@@ -244,20 +238,15 @@ impl TreeIndex {
     pub(super) fn new(scene: &Scene) -> Result<Self, SceneError> {
         let all = scene.spheres();
         let tree = WideTree::build(all, 0.0);
-        let spheres = try_map(all.len(), |i| all[tree.ids[i] as usize])
-            .map_err(|_| SceneError::Memory { count: all.len() })?;
+        let spheres =
+            try_map(all.len(), |i| all[tree.ids[i] as usize]).map_err(|_| SceneError::Memory { count: all.len() })?;
         let corners = tree.corners();
         Ok(Self { tree, corners, spheres })
     }
 
     /// Calls `offer` as [`SearchStructure::visit`] does. Returns false if it cannot search for this ray.
     #[inline]
-    pub(super) fn visit(
-        &self,
-        ray: &Ray,
-        limit: f64,
-        offer: &mut impl FnMut(u32, [f32; 4]) -> f64,
-    ) -> bool {
+    pub(super) fn visit(&self, ray: &Ray, limit: f64, offer: &mut impl FnMut(u32, [f32; 4]) -> f64) -> bool {
         let boxes = self.corners.and_then(|c| BoxRay::new(ray.origin, ray.direction, c));
         let Some(boxes) = boxes else { return false };
         let mut left = limit;
@@ -293,12 +282,7 @@ impl GridIndex {
 
     /// Calls `offer` as [`SearchStructure::visit`] does. Returns false if it cannot search for this ray.
     #[inline]
-    pub(super) fn visit(
-        &self,
-        ray: &Ray,
-        limit: f64,
-        offer: &mut impl FnMut(u32, [f32; 4]) -> f64,
-    ) -> bool {
+    pub(super) fn visit(&self, ray: &Ray, limit: f64, offer: &mut impl FnMut(u32, [f32; 4]) -> f64) -> bool {
         let Some(along) = self.grid.ray(ray.origin, ray.direction) else { return false };
         self.grid.visit(&along, limit, |at| offer(self.ids[at], self.spheres[at]));
         true

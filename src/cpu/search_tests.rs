@@ -60,8 +60,7 @@ fn ray(random: &mut Rng, spheres: &[[f32; 4]]) -> Ray {
     let (center, radius) = (wide([x, y, z]), f64::from(radius));
     let outward = direction(random);
     let toward = direction(random);
-    let along =
-        (toward - outward * toward.dot(outward)).normalize_or(outward.any_orthonormal_vector());
+    let along = (toward - outward * toward.dot(outward)).normalize_or(outward.any_orthonormal_vector());
     let away = radius * 10_f64.powf(18.0 * random.f64() - 2.0);
     match random.u32(0..8) {
         0 => Ray { origin: center + radius * outward, direction: toward },

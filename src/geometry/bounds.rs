@@ -80,8 +80,6 @@ impl Bounds {
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let ends = [self.min, self.max];
-        std::array::from_fn(|i| {
-            DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z)
-        })
+        std::array::from_fn(|i| DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z))
     }
 }

@@ -98,9 +98,8 @@ mod tests {
     fn areas_keep_their_proportions() {
         let side = 1000;
         let at = |i: i32| (f64::from(i) + 0.5) / f64::from(side);
-        let points: Vec<DVec2> = (0..side * side)
-            .map(|k| concentric_disk(DVec2::new(at(k % side), at(k / side))))
-            .collect();
+        let points: Vec<DVec2> =
+            (0..side * side).map(|k| concentric_disk(DVec2::new(at(k % side), at(k / side)))).collect();
         let mean = |f: fn(&DVec2) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
         assert!(points.iter().all(|p| p.length() < 1.0));
         assert!((mean(|p| p.length_squared()) - 0.5).abs() < 1e-5);

@@ -70,8 +70,7 @@ impl<'a> Subject<'a> {
     /// are round do not support free parts.
     #[must_use]
     pub fn with_free_sides(self, free_sides: [f64; 4]) -> Self {
-        let free_sides =
-            free_sides.map(|side| if side > 0.0 { side.min(Self::MOST_FREE) } else { 0.0 });
+        let free_sides = free_sides.map(|side| if side > 0.0 { side.min(Self::MOST_FREE) } else { 0.0 });
         Self { free_sides, ..self }
     }
 
@@ -106,10 +105,7 @@ impl<'a> Subject<'a> {
         let nothing = [f64::NEG_INFINITY; N];
         if self.spheres.is_empty() {
             let corners = self.bounds.corners().map(|corner| corner - center);
-            return corners
-                .map(|corner| directions.map(|n| n.dot(corner)))
-                .into_iter()
-                .fold(nothing, most);
+            return corners.map(|corner| directions.map(|n| n.dot(corner))).into_iter().fold(nothing, most);
         }
         let shift = self.origin - center;
         let of_chunk = |_, chunk: &[[f32; 4]]| {
@@ -129,10 +125,8 @@ impl<'a> Subject<'a> {
             let lower = std::array::from_fn(|i| low[i].min(l[i]));
             [lower, std::array::from_fn(|i| high[i].max(h[i]))]
         };
-        let of_chunk =
-            |_, chunk: &[[f32; 4]]| chunk.iter().map(|&[x, y, z, _]| [[x, y, z]; 2]).reduce(joined);
-        let extents =
-            || parallel::map_chunks(self.of_data(), of_chunk).into_iter().flatten().reduce(joined);
+        let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|&[x, y, z, _]| [[x, y, z]; 2]).reduce(joined);
+        let extents = || parallel::map_chunks(self.of_data(), of_chunk).into_iter().flatten().reduce(joined);
         let [low, high] = self.whole.map(|whole| whole.centers).or_else(extents)?;
         let sizes: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
         let widest = sizes.into_iter().fold(0.0, f32::max);

@@ -18,15 +18,11 @@ pub enum GpuError {
     /// No driver offers an adapter.
     #[cfg_attr(
         not(target_arch = "wasm32"),
-        error(
-            "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
-        )
+        error("no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)")
     )]
     #[cfg_attr(
         target_arch = "wasm32",
-        error(
-            "this browser offers no WebGPU adapter; allow WebGPU in it, or choose another browser"
-        )
+        error("this browser offers no WebGPU adapter; allow WebGPU in it, or choose another browser")
     )]
     NoAdapter,
     /// The environment variable `WGPU_BACKEND` names backends that have no adapter.
@@ -64,9 +60,7 @@ pub enum GpuError {
         limit: u64,
     },
     /// The host does not have enough free memory.
-    #[error(
-        "{what} needs {needed} bytes of host memory, but {available} are free; choose {instead}"
-    )]
+    #[error("{what} needs {needed} bytes of host memory, but {available} are free; choose {instead}")]
     HostMemory {
         /// Description of the data or the step that needs the memory.
         what: &'static str,
@@ -138,9 +132,7 @@ pub enum GpuError {
         integrator: &'static str,
     },
     /// A lit picture, or a recording of one, was requested for the integrator `primary`, which samples no light.
-    #[error(
-        "lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`"
-    )]
+    #[error("lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`")]
     NotLit,
     /// Something that shows or records a whole picture was given a part of a film.
     #[error(
@@ -163,9 +155,7 @@ pub enum GpuError {
         needs: &'static str,
     },
     /// A host allowed fewer rays than the smallest part of a lit picture needs.
-    #[error(
-        "a recording may trace {given} rays, too few for any part of the picture; allow {needed} or more"
-    )]
+    #[error("a recording may trace {given} rays, too few for any part of the picture; allow {needed} or more")]
     Budget {
         /// Number of rays of the smallest part that is next.
         needed: u64,
@@ -174,9 +164,7 @@ pub enum GpuError {
     },
     /// The renderer's pipelines are still being built: `Renderer::begin` was called, and `Renderer::build_next` has more
     /// to do.
-    #[error(
-        "{remaining} pipelines of the renderer are not built yet; call Renderer::build_next until none remains"
-    )]
+    #[error("{remaining} pipelines of the renderer are not built yet; call Renderer::build_next until none remains")]
     NotReady {
         /// Number of pipelines that are not ready.
         remaining: usize,
@@ -185,14 +173,10 @@ pub enum GpuError {
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
     /// `Composite::draw` was called before `CompositePicture::set_camera`, in a pass with depth.
-    #[error(
-        "the picture has no camera yet; call CompositePicture::set_camera before Composite::draw"
-    )]
+    #[error("the picture has no camera yet; call CompositePicture::set_camera before Composite::draw")]
     NoCamera,
     /// The frame was made for a renderer with other targets.
-    #[error(
-        "the frame was made for a renderer with other targets; create a frame for this renderer"
-    )]
+    #[error("the frame was made for a renderer with other targets; create a frame for this renderer")]
     OtherRenderer,
     /// The view of the frame belongs to another scene, or was set before the spheres of this scene moved.
     #[error(
@@ -201,9 +185,7 @@ pub enum GpuError {
     )]
     OtherScene,
     /// An update of a scene changes more than colours, so the existing buffers cannot be updated.
-    #[error(
-        "this update cannot be made in place; build a new structure, upload it and call SceneBuffers::replace"
-    )]
+    #[error("this update cannot be made in place; build a new structure, upload it and call SceneBuffers::replace")]
     NotInPlace,
     /// The device ran out of memory.
     #[error("the device is out of memory; choose a smaller size or fewer spheres")]
@@ -269,11 +251,7 @@ pub(super) fn check_whole(film: &Film) -> Result<(), GpuError> {
 }
 
 /// Returns an error if the device could not create or bind a buffer of this size.
-pub(super) fn check_storage_size(
-    device: &wgpu::Device,
-    what: &'static str,
-    needed: u64,
-) -> Result<(), GpuError> {
+pub(super) fn check_storage_size(device: &wgpu::Device, what: &'static str, needed: u64) -> Result<(), GpuError> {
     let limits = device.limits();
     for (limit_name, limit) in [
         ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),

@@ -35,14 +35,10 @@ pub use headless::Headless;
 pub use headless::lit_recording::{EachSample, LitPart, SampleRequest};
 pub use headless::measure::TraceTime;
 pub use headless::plan::{PictureRequest, RenderPlan, StructurePlans};
-pub use headless::progress::{
-    Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
-};
+pub use headless::progress::{Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch};
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::waiting::{Wait, catches_panics};
-pub use host::composite::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, Coverage, TargetEncoding,
-};
+pub use host::composite::{Composite, CompositeDepth, CompositeOptions, CompositePicture, Coverage, TargetEncoding};
 pub use host::depth_test::{DepthTest, HostDepth};
 pub use host::lit_picture::{LitPicture, LitProgress, LitState, LitSums};
 pub use host::lit_renderer::LitRenderer;

@@ -3,8 +3,8 @@
 use std::num::NonZeroU64;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages, Device, Queue, Texture,
-    TextureFormat, TextureUsages,
+    BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat,
+    TextureUsages,
 };
 
 /// Creates buffers on a device, and queues their contents.
@@ -27,12 +27,7 @@ impl Make<'_> {
 }
 
 /// A buffer that can be written.
-pub(crate) fn buffer(
-    device: &Device,
-    label: &'static str,
-    bytes: u64,
-    usage: BufferUsages,
-) -> Buffer {
+pub(crate) fn buffer(device: &Device, label: &'static str, bytes: u64, usage: BufferUsages) -> Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: bytes,
@@ -69,15 +64,9 @@ pub(crate) fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
 pub(crate) type Entry<'a> = (u32, BindingResource<'a>);
 
 /// A bind group of some resources.
-pub(crate) fn bind_group(
-    device: &Device,
-    label: &str,
-    layout: &BindGroupLayout,
-    entries: &[Entry<'_>],
-) -> BindGroup {
+pub(crate) fn bind_group(device: &Device, label: &str, layout: &BindGroupLayout, entries: &[Entry<'_>]) -> BindGroup {
     let entries = entries.iter().cloned();
-    let entries: Vec<_> =
-        entries.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let entries: Vec<_> = entries.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     let descriptor = wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
     device.create_bind_group(&descriptor)
 }
@@ -99,9 +88,5 @@ pub(crate) fn whole(binding: u32, buffer: &Buffer) -> Entry<'_> {
 
 /// A binding of a part of a buffer. `offset` and `size` are in bytes.
 pub(crate) fn part(buffer: &Buffer, offset: usize, size: usize) -> BindingResource<'_> {
-    BindingResource::Buffer(wgpu::BufferBinding {
-        buffer,
-        offset: offset as u64,
-        size: NonZeroU64::new(size as u64),
-    })
+    BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: offset as u64, size: NonZeroU64::new(size as u64) })
 }

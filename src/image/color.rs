@@ -40,8 +40,7 @@ impl<'de> serde::Deserialize<'de> for LinearRgb {
             fn visit_str<E: Error>(self, text: &str) -> Result<LinearRgb, E> {
                 let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
                 let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-                let number =
-                    number.ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))?;
+                let number = number.ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))?;
                 let [_, rgb @ ..] = number.to_be_bytes();
                 Ok(LinearRgb::from_srgb8(rgb))
             }
@@ -69,9 +68,7 @@ impl LinearRgb {
         if rgb.iter().all(|c| c.is_finite() && *c >= 0.0) {
             Ok(Self(rgb))
         } else {
-            Err(ColorError(format!(
-                "the color {rgb:?} has a component that is negative or not finite"
-            )))
+            Err(ColorError(format!("the color {rgb:?} has a component that is negative or not finite")))
         }
     }
 

@@ -12,20 +12,15 @@ pub const REACH: u32 = 2 * ((1 << PASSES) - 1);
 
 /// An error for a picture that lacks a layer that denoising needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "denoising needs the layers normal, depth, albedo and variance; the picture has no layer `{missing}`"
-)]
+#[error("denoising needs the layers normal, depth, albedo and variance; the picture has no layer `{missing}`")]
 pub struct MissingGuide {
     /// The missing layer.
     pub missing: Layer,
 }
 
 /// The layers that guide the denoiser, and the colour that it filters.
-pub const GUIDES: LayerSet = LayerSet::COLOR
-    .with(Layer::Normal)
-    .with(Layer::Depth)
-    .with(Layer::Albedo)
-    .with(Layer::Variance);
+pub const GUIDES: LayerSet =
+    LayerSet::COLOR.with(Layer::Normal).with(Layer::Depth).with(Layer::Albedo).with(Layer::Variance);
 
 /// The smallest albedo by which light is divided.
 const LEAST_ALBEDO: f32 = 0.01;
@@ -80,9 +75,7 @@ impl Guides {
                 })
                 .collect(),
             shapes: shapes
-                .map(|([x, y, z], depth)| {
-                    [*x, *y, *z, if depth.is_finite() { *depth } else { 0.0 }]
-                })
+                .map(|([x, y, z], depth)| [*x, *y, *z, if depth.is_finite() { *depth } else { 0.0 }])
                 .collect(),
             albedos,
         })
@@ -90,9 +83,6 @@ impl Guides {
 
     /// The colours of the picture, which are filtered light multiplied by albedo.
     pub(crate) fn colors(&self, lights: impl Iterator<Item = [f32; 4]>) -> Vec<[f32; 3]> {
-        lights
-            .zip(&self.albedos)
-            .map(|([r, g, b, _], [x, y, z, _])| [r * x, g * y, b * z])
-            .collect()
+        lights.zip(&self.albedos).map(|([r, g, b, _], [x, y, z, _])| [r * x, g * y, b * z]).collect()
     }
 }

@@ -128,9 +128,9 @@ impl Encoding {
     /// Returns an error if the number does not lie between 1 and 100,000.
     pub fn with_dots_per_inch(self, dots_per_inch: Option<f32>) -> Result<Self, EncodingError> {
         match dots_per_inch {
-            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => Err(EncodingError(
-                format!("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch"),
-            )),
+            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => {
+                Err(EncodingError(format!("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch")))
+            }
             dots_per_inch => Ok(Self { dots_per_inch, ..self }),
         }
     }
@@ -181,10 +181,7 @@ mod tests {
     fn what_is_out_of_range_is_named() {
         for stops in [32.5, -1e9, f32::NAN, f32::INFINITY] {
             let error = Encoding::default().with_exposure(stops).unwrap_err().to_string();
-            assert_eq!(
-                error,
-                format!("`exposure` is {stops} stops; it must lie between -32 and 32")
-            );
+            assert_eq!(error, format!("`exposure` is {stops} stops; it must lie between -32 and 32"));
         }
         let error = Bits::new(12).unwrap_err().to_string();
         assert_eq!(error, "`bits` is 12; it must be 8 or 16");

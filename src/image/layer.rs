@@ -199,10 +199,7 @@ mod tests {
         assert_eq!(set.to_string(), "color, alpha and id");
         assert_eq!((set.bytes_per_pixel(), LayerSet::COLOR.bytes_per_pixel()), (20, 12));
         assert_eq!(LayerSet::default(), LayerSet::COLOR);
-        assert_eq!(
-            [Layer::Depth, Layer::Id, Layer::Normal].into_iter().collect::<LayerSet>(),
-            LayerSet::DATA
-        );
+        assert_eq!([Layer::Depth, Layer::Id, Layer::Normal].into_iter().collect::<LayerSet>(), LayerSet::DATA);
         assert_eq!((LayerSet::DATA.bytes_per_pixel(), LayerSet::ALL.bytes_per_pixel()), (32, 68));
     }
 

@@ -32,12 +32,7 @@ impl Outline {
     /// Thin dark lines at jumps in depth, and no lines between surfaces that meet.
     #[must_use]
     pub fn thin() -> Self {
-        Self {
-            width: 1.2,
-            color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]),
-            depth: 0.01,
-            angle: PI,
-        }
+        Self { width: 1.2, color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]), depth: 0.01, angle: PI }
     }
 }
 
@@ -50,8 +45,7 @@ impl Outline {
         let within = RangeError::unless_within;
         within("width", self.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
         within("depth", self.depth.into(), [0.0, 1e6], "0 or more")?;
-        within("angle", self.angle.into(), [0.0, f64::from(PI) + 1e-6], "from 0 to 180 degrees")
-            .map(drop)
+        within("angle", self.angle.into(), [0.0, f64::from(PI) + 1e-6], "from 0 to 180 degrees").map(drop)
     }
 }
 
@@ -207,22 +201,17 @@ impl Edges {
         let count = self.width * self.rows.len();
         let at = j * self.width + i;
         let around = [at, at + self.width, count + at, count + at + 1];
-        let mut others = around
-            .into_iter()
-            .filter(|other| *other != index && self.points[*other].strength > 0.0);
+        let mut others = around.into_iter().filter(|other| *other != index && self.points[*other].strength > 0.0);
         match (others.next(), others.next()) {
             (None, _) => Next::Nothing,
             (Some(other), None) => Next::Edge(other),
-            (Some(_), Some(_)) => {
-                Next::Corner(Vec2::new(i as f32 + 0.5, (self.rows.start + j) as f32 + 0.5))
-            }
+            (Some(_), Some(_)) => Next::Corner(Vec2::new(i as f32 + 0.5, (self.rows.start + j) as f32 + 0.5)),
         }
     }
 
     /// Returns the same edges as smooth curves.
     fn smoothed(mut self) -> Self {
-        let drawn: Vec<usize> =
-            (0..self.points.len()).filter(|index| self.points[*index].strength > 0.0).collect();
+        let drawn: Vec<usize> = (0..self.points.len()).filter(|index| self.points[*index].strength > 0.0).collect();
         let neighbors = |index: usize| {
             let both = self.corners(index).map(|corner| match self.next(index, corner?) {
                 Next::Edge(other) => Some(other),
@@ -233,8 +222,7 @@ impl Edges {
         let inner: Vec<(usize, [usize; 2])> =
             drawn.iter().filter_map(|index| Some((*index, neighbors(*index)?))).collect();
         for _ in 0..PASSES {
-            let moved: Vec<Point> =
-                inner.iter().map(|(index, both)| self.mean(*index, *both)).collect();
+            let moved: Vec<Point> = inner.iter().map(|(index, both)| self.mean(*index, *both)).collect();
             for ((index, _), point) in inner.iter().zip(moved) {
                 self.points[*index] = point;
             }
@@ -297,11 +285,7 @@ impl Edges {
 fn distance(point: Vec2, a: Vec2, b: Vec2) -> f32 {
     let along = b - a;
     let length_squared = along.length_squared();
-    let t = if length_squared > 0.0 {
-        ((point - a).dot(along) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if length_squared > 0.0 { ((point - a).dot(along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
     point.distance(a + t * along)
 }
 
@@ -310,11 +294,7 @@ mod tests {
     use super::*;
 
     /// A white picture of two spheres at the given depths. `is_second` tells which pixels, by index, show the second.
-    fn two(
-        [width, height]: [usize; 2],
-        depths: [f32; 2],
-        is_second: impl Fn(usize) -> bool,
-    ) -> Image {
+    fn two([width, height]: [usize; 2], depths: [f32; 2], is_second: impl Fn(usize) -> bool) -> Image {
         let ids: Vec<u32> = (0..width * height).map(|at| u32::from(is_second(at))).collect();
         let depths = ids.iter().map(|id| depths[*id as usize]).collect();
         let [colors, normals] = [[1.0; 3], [0.0, 0.0, 1.0]].map(|v| vec![v; width * height]);
@@ -323,10 +303,9 @@ mod tests {
 
     #[test]
     fn a_line_is_as_wide_as_asked_and_lies_on_the_edge() {
-        for (width, wanted) in [
-            (2.0, [1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
-            (3.0, [1.0, 1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 1.0]),
-        ] {
+        for (width, wanted) in
+            [(2.0, [1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0]), (3.0, [1.0, 1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 1.0])]
+        {
             let mut image = two([8, 1], [1.0, 2.0], |i| i >= 4);
             draw(&mut image, &Outline { width, ..Outline::default() });
             let found: Vec<f32> = image.color().iter().map(|c| c[0]).collect();
@@ -370,18 +349,12 @@ mod tests {
     #[test]
     fn bands_do_not_show() {
         let (width, height) = (40, 3 * BAND + 7);
-        let image = two([width, height], [1.0, 2.0], |index| {
-            (index % width) as f32 > 10.0 + 0.05 * (index / width) as f32
-        });
+        let image =
+            two([width, height], [1.0, 2.0], |index| (index % width) as f32 > 10.0 + 0.05 * (index / width) as f32);
         let outline = Outline::default();
-        let layers = Layers {
-            ids: image.id().unwrap(),
-            depths: image.depth().unwrap(),
-            normals: image.normal().unwrap(),
-        };
-        let at_once = Edges::find(width, 0..height, |a, b| {
-            strength(layers.spot(a), layers.spot(b), &outline)
-        });
+        let layers =
+            Layers { ids: image.id().unwrap(), depths: image.depth().unwrap(), normals: image.normal().unwrap() };
+        let at_once = Edges::find(width, 0..height, |a, b| strength(layers.spot(a), layers.spot(b), &outline));
         let at_once = at_once.smoothed().covered(0..height, outline.width);
         assert_eq!(coverage(&image, &outline).unwrap(), at_once);
     }

@@ -25,9 +25,7 @@ impl Image {
     /// Returns an error if the part reaches beyond this picture, which then does not change.
     pub fn put(&mut self, part: &Self, origin: [u32; 2]) -> Result<(), DoesNotFit> {
         let ([width, height], whole) = ([part.width, part.height], [self.width, self.height]);
-        let fits = |axis: usize, side: u32| {
-            origin[axis].checked_add(side).is_some_and(|end| end <= whole[axis])
-        };
+        let fits = |axis: usize, side: u32| origin[axis].checked_add(side).is_some_and(|end| end <= whole[axis]);
         if !(fits(0, width) && fits(1, height)) {
             return Err(DoesNotFit { part: [width, height], origin, whole });
         }
@@ -44,12 +42,7 @@ impl Image {
     }
 
     /// Copies runs of `count` pixels, in the layers that both pictures have. `starts` has the start of each in both.
-    fn copy(
-        &mut self,
-        from: &Self,
-        starts: &(impl Iterator<Item = (usize, usize)> + Clone),
-        count: usize,
-    ) {
+    fn copy(&mut self, from: &Self, starts: &(impl Iterator<Item = (usize, usize)> + Clone), count: usize) {
         let planes = self.planes.iter_mut().zip(&from.planes);
         for (layer, (to, from)) in Layer::ALL.iter().zip(planes) {
             let (Some(to), Some(from)) = (to, from) else { continue };
@@ -100,11 +93,7 @@ impl Image {
     /// Makes a picture from the bytes that [`Image::to_le_bytes`] returned for these layers. `None` if the number of
     /// bytes differs, or the memory cannot be reserved.
     #[must_use]
-    pub fn from_le_bytes(
-        [width, height]: [u32; 2],
-        layers: LayerSet,
-        bytes: &[u8],
-    ) -> Option<Self> {
+    pub fn from_le_bytes([width, height]: [u32; 2], layers: LayerSet, bytes: &[u8]) -> Option<Self> {
         let pixels = u64::from(width) * u64::from(height);
         if pixels.checked_mul(layers.bytes_per_pixel())? != bytes.len() as u64 {
             return None;
@@ -124,8 +113,7 @@ mod tests {
     /// A picture in which all numbers differ, including bits that are not numbers.
     fn numbered(width: u32, height: u32, layers: LayerSet) -> Image {
         let words = u64::from(width * height) * layers.bytes_per_pixel() / 4;
-        let bytes: Vec<u8> =
-            (0..words as u32).flat_map(|word| (0x7f80_0000 + 3 * word).to_le_bytes()).collect();
+        let bytes: Vec<u8> = (0..words as u32).flat_map(|word| (0x7f80_0000 + 3 * word).to_le_bytes()).collect();
         let image = Image::from_le_bytes([width, height], layers, &bytes).unwrap();
         assert_eq!(image.to_le_bytes(), bytes);
         image

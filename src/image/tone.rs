@@ -1,9 +1,7 @@
 //! Tone curves, which map light of any strength into the range of a display.
 
 /// A tone curve, which maps linear light that may exceed 1 to light that a display can show.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ToneCurve {
@@ -165,20 +163,14 @@ mod tests {
         for curve in ToneCurve::ALL {
             for step in 0..20_000_u32 {
                 let at = |salt: u32| (step.wrapping_mul(salt) >> 8) as f32 / (1 << 24) as f32;
-                let low = [2_654_435_761, 2_246_822_519, 3_266_489_917]
-                    .map(|salt| (14.0 * at(salt) - 10.0).exp2());
+                let low = [2_654_435_761, 2_246_822_519, 3_266_489_917].map(|salt| (14.0 * at(salt) - 10.0).exp2());
                 let width = (-20.0 * at(668_265_263)).exp2();
                 let high = low.map(|x| x * (1.0 + width));
                 let between = [374_761_393, 2_869_860_233, 1_181_783_497].map(at);
-                let color = std::array::from_fn(|i| {
-                    (low[i] + between[i] * (high[i] - low[i])).clamp(low[i], high[i])
-                });
+                let color = std::array::from_fn(|i| (low[i] + between[i] * (high[i] - low[i])).clamp(low[i], high[i]));
                 let [least, most] = curve.range([low, high]);
                 for ((found, least), most) in curve.apply(color).into_iter().zip(least).zip(most) {
-                    assert!(
-                        least <= found && found <= most,
-                        "{curve:?} {color:?} {low:?} {high:?}"
-                    );
+                    assert!(least <= found && found <= most, "{curve:?} {color:?} {low:?} {high:?}");
                     assert!(width > 1e-4 || most - least < 2e-3, "{curve:?}: {least} {most}");
                 }
             }

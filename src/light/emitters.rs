@@ -20,7 +20,8 @@ impl Emitters {
     /// it is left out.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let shines = |surface: &SurfaceProperties| matches!(surface.material, Material::Emissive { strength } if strength > 0.0);
+        let shines =
+            |surface: &SurfaceProperties| matches!(surface.material, Material::Emissive { strength } if strength > 0.0);
         if !scene.appearance().surfaces().iter().any(shines) {
             return Self::default();
         }
@@ -91,9 +92,7 @@ impl Emitters {
 
 fn brightness(color: [f64; 3], surface: &SurfaceProperties) -> f64 {
     match surface.material {
-        Material::Emissive { strength } => {
-            luminance(color) * f64::from(strength) * f64::from(surface.opacity)
-        }
+        Material::Emissive { strength } => luminance(color) * f64::from(strength) * f64::from(surface.opacity),
         _ => 0.0,
     }
 }
@@ -105,23 +104,20 @@ mod tests {
     use crate::scene::sphere::Sphere;
 
     fn lamp(radius: f64, strength: f32) -> Sphere {
-        Sphere::new([0.0; 3], radius, LinearRgb::WHITE)
-            .with_material(Material::Emissive { strength })
+        Sphere::new([0.0; 3], radius, LinearRgb::WHITE).with_material(Material::Emissive { strength })
     }
 
     #[test]
     fn probabilities_follow_power() {
         let matt = Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
         let dark = lamp(1.0, 1.0).with_opacity(0.0);
-        let mut spheres =
-            [matt, lamp(1.0, 3.0), lamp(1.0, 0.0), lamp(2.0, 1.0), dark, lamp(1.0, 1.0)];
+        let mut spheres = [matt, lamp(1.0, 3.0), lamp(1.0, 0.0), lamp(2.0, 1.0), dark, lamp(1.0, 1.0)];
         for (x, sphere) in spheres.iter_mut().enumerate() {
             sphere.center[0] = x as f64;
         }
         let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
         assert_eq!(emitters.ids(), [1, 3, 5]);
-        for (id, eighths) in [(0, 0.0), (1, 3.0), (2, 0.0), (3, 4.0), (4, 0.0), (5, 1.0), (9, 0.0)]
-        {
+        for (id, eighths) in [(0, 0.0), (1, 3.0), (2, 0.0), (3, 4.0), (4, 0.0), (5, 1.0), (9, 0.0)] {
             let found = emitters.probability(id);
             assert!((found - eighths / 8.0).abs() < 1e-9, "{id}: {found}");
         }

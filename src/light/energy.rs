@@ -48,9 +48,9 @@ impl Lobe {
                 vec![Self::Reflection { roughness }]
             }
             Material::Conductor { roughness } => vec![Self::Reflection { roughness }],
-            Material::Dielectric { ior, roughness, .. } if roughness > 0.0 => [false, true]
-                .map(|is_leaving| Self::Refraction { ior, roughness, is_leaving })
-                .into(),
+            Material::Dielectric { ior, roughness, .. } if roughness > 0.0 => {
+                [false, true].map(|is_leaving| Self::Refraction { ior, roughness, is_leaving }).into()
+            }
             _ => Vec::new(),
         }
     }
@@ -166,9 +166,7 @@ fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
         let m = view.dot(half);
         let up = 2.0 * m * half.z - view.z;
         match lobe {
-            Lobe::Reflection { .. } if up > 0.0 => {
-                (1.0 + of_view) / (1.0 + of_view + smith(up, alpha))
-            }
+            Lobe::Reflection { .. } if up > 0.0 => (1.0 + of_view) / (1.0 + of_view + smith(up, alpha)),
             Lobe::Reflection { .. } => 0.0,
             Lobe::Refraction { ior, is_leaving, .. } => {
                 let eta = if is_leaving { 1.0 / f64::from(ior) } else { f64::from(ior) };
@@ -196,8 +194,7 @@ fn visible_normal(view: DVec3, alpha: f64, [x, y]: [f64; 2]) -> DVec3 {
     let s = 0.5 * (1.0 + stretched.z);
     let y = (1.0 - s) * (1.0 - x * x).max(0.0).sqrt() + s * y;
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-    let normal =
-        DVec3::new(z * stretched.x - y * stretched.z, x, z * stretched.z + y * stretched.x);
+    let normal = DVec3::new(z * stretched.x - y * stretched.z, x, z * stretched.z + y * stretched.x);
     DVec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(1e-6)).normalize_or(DVec3::Z)
 }
 
@@ -220,11 +217,7 @@ mod tests {
     fn lobes(roughness: f32) -> Vec<Lobe> {
         let mut lobes = vec![Lobe::Reflection { roughness }];
         for ior in [1.1, 1.5, 4.0] {
-            lobes.extend([false, true].map(|is_leaving| Lobe::Refraction {
-                ior,
-                roughness,
-                is_leaving,
-            }));
+            lobes.extend([false, true].map(|is_leaving| Lobe::Refraction { ior, roughness, is_leaving }));
         }
         lobes
     }

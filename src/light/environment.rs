@@ -146,8 +146,7 @@ impl Environment {
         // cancel.
         let height = self.height as usize;
         let is_upper = 2 * row < height;
-        let (from_pole, along, sign) =
-            if is_upper { (row, down, 1.0) } else { (height - 1 - row, 1.0 - down, -1.0) };
+        let (from_pole, along, sign) = if is_upper { (row, down, 1.0) } else { (height - 1 - row, 1.0 - down, -1.0) };
         let edge = |row: usize| (0.5 * PI * row as f64 / f64::from(self.height)).sin().powi(2);
         let (low, high) = (edge(from_pole), edge(from_pole + 1));
         let square = low + along * (high - low);
@@ -265,12 +264,8 @@ fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32>, Vec<f32>
     let (columns, rows) = (width as usize, height as usize);
     let mut sums = vec![0.0; rows];
     let mut tables = vec![0.0; rows * (columns + 1)];
-    let parts: Vec<_> = sums
-        .iter_mut()
-        .zip(tables.chunks_mut(columns + 1))
-        .zip(texels.chunks(columns))
-        .enumerate()
-        .collect();
+    let parts: Vec<_> =
+        sums.iter_mut().zip(tables.chunks_mut(columns + 1)).zip(texels.chunks(columns)).enumerate().collect();
     for_each(parts, |(row, ((sum, table), texels))| {
         let weights = texels.iter().map(|texel| luminance(texel.map(f64::from)));
         *sum = fill(table, weights) * solid_angle([width, height], row);
@@ -312,9 +307,7 @@ mod tests {
         for (many, few) in [(4, 2), (5, 3), (8193, 2731), (9001, 3001)] {
             let covers = covers(many, few);
             let pieces: Vec<_> = covers.concat();
-            assert!(pieces.iter().all(|(k, from, to)| {
-                from < to && *from >= *k as f64 && *to <= *k as f64 + 1.0
-            }));
+            assert!(pieces.iter().all(|(k, from, to)| { from < to && *from >= *k as f64 && *to <= *k as f64 + 1.0 }));
             let total: f64 = pieces.iter().map(|(_, from, to)| to - from).sum();
             assert!((total / f64::from(many) - 1.0).abs() < 1e-12, "{many}, {few}: {total}");
             assert_eq!(covers.len(), few as usize);

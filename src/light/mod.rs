@@ -90,11 +90,7 @@ impl Light {
     #[must_use]
     pub fn key_and_fill() -> [Self; 2] {
         let at_camera = |toward, strength: f32| Self {
-            kind: LightKind::Directional {
-                toward,
-                strength: LinearRgb::gray(strength),
-                angular_radius: 0.0,
-            },
+            kind: LightKind::Directional { toward, strength: LinearRgb::gray(strength), angular_radius: 0.0 },
             frame: LightFrame::Camera,
         };
         [at_camera(DVec3::new(-0.6, 1.0, 0.9), 0.65), at_camera(DVec3::new(1.0, 0.2, 0.8), 0.15)]
@@ -118,9 +114,7 @@ impl Light {
                 let toward = unit(turned(toward))?;
                 LightKind::Directional { toward, strength, angular_radius }
             }
-            LightKind::Point { position, intensity } => {
-                LightKind::Point { position: in_world(position), intensity }
-            }
+            LightKind::Point { position, intensity } => LightKind::Point { position: in_world(position), intensity },
             LightKind::Sphere { center, radius, radiance } => {
                 LightKind::Sphere { center: in_world(center), radius, radiance }
             }

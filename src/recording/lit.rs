@@ -125,26 +125,23 @@ impl LitRecording {
             };
             lights.len() == batches && lights.iter().all(is_whole)
         };
-        let are_whole =
-            self.samples.iter().all(|RecordedSample { start, surfaces, film, .. }| {
-                let pixels = start.len();
-                let is_whole = |surface: &RecordedSurface| {
-                    let RecordedSurface { hits, states, open, lights, ambient } = surface;
-                    let has_light = match self.given.is_studio() {
-                        true => {
-                            let [of_lights, of_ambient] = self.given.batches();
-                            open.is_empty()
-                                && are_all(lights, of_lights, pixels)
-                                && are_all(ambient, of_ambient, pixels)
-                        }
-                        false => open.len() == pixels && lights.is_empty() && ambient.is_empty(),
-                    };
-                    [hits.len(), states.len()] == [pixels; 2] && has_light
+        let are_whole = self.samples.iter().all(|RecordedSample { start, surfaces, film, .. }| {
+            let pixels = start.len();
+            let is_whole = |surface: &RecordedSurface| {
+                let RecordedSurface { hits, states, open, lights, ambient } = surface;
+                let has_light = match self.given.is_studio() {
+                    true => {
+                        let [of_lights, of_ambient] = self.given.batches();
+                        open.is_empty() && are_all(lights, of_lights, pixels) && are_all(ambient, of_ambient, pixels)
+                    }
+                    false => open.len() == pixels && lights.is_empty() && ambient.is_empty(),
                 };
-                pixels as u64 == count
-                    && [film.before.len(), film.after.len()] == [pixels; 2]
-                    && surfaces.iter().all(is_whole)
-            });
+                [hits.len(), states.len()] == [pixels; 2] && has_light
+            };
+            pixels as u64 == count
+                && [film.before.len(), film.after.len()] == [pixels; 2]
+                && surfaces.iter().all(is_whole)
+        });
         if are_whole {
             return Ok(());
         }
@@ -265,9 +262,7 @@ pub(crate) mod slot {
 
 /// Flags of the state of a path, and flags of the lighting.
 pub(crate) mod flag {
-    pub(crate) use crate::light::codes::lighting::{
-        CATCHER, GROUND, SHADOWS, SKY_SEEN, TRANSPARENT,
-    };
+    pub(crate) use crate::light::codes::lighting::{CATCHER, GROUND, SHADOWS, SKY_SEEN, TRANSPARENT};
     pub(crate) use crate::light::codes::path::{ALIVE, BACK, FULL, INSIDE, ON_GROUND, SCATTERED};
 }
 

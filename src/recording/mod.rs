@@ -44,8 +44,7 @@ impl Recording {
     /// Compares with a picture of the same view from kernels that do not record rays, and keeps it if it differs.
     pub fn compare(&mut self, rendered: Image) {
         let is_same = rendered == self.image;
-        self.rendered =
-            if is_same { PlainRender::Same } else { PlainRender::Other(Box::new(rendered)) };
+        self.rendered = if is_same { PlainRender::Same } else { PlainRender::Other(Box::new(rendered)) };
     }
 }
 

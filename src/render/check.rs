@@ -36,14 +36,10 @@ pub enum SettingsError {
         rgb: [f32; 3],
     },
     /// The ground's normal is zero or not finite, or its point is out of range.
-    #[error(
-        "the ground's normal must be finite and not zero, and its point finite and at most {MAX_LENGTH:e} in size"
-    )]
+    #[error("the ground's normal must be finite and not zero, and its point finite and at most {MAX_LENGTH:e} in size")]
     Ground,
     /// The path integrator does not support shadow catchers.
-    #[error(
-        "a shadow catcher needs the integrator `studio`; the integrator `path` does not support it"
-    )]
+    #[error("a shadow catcher needs the integrator `studio`; the integrator `path` does not support it")]
     Catcher,
     /// A light is not valid, or the integrator does not use a setting.
     #[error("{0}")]
@@ -159,17 +155,9 @@ impl RenderSettings {
 /// The largest radiance. Its square, and the sum of many squares, stay below 2¹²⁸.
 pub const BRIGHTEST: f32 = 1e18;
 
-fn check_brightness(
-    rgb: [f32; 3],
-    by: f32,
-    what: impl Fn() -> String,
-) -> Result<(), SettingsError> {
+fn check_brightness(rgb: [f32; 3], by: f32, what: impl Fn() -> String) -> Result<(), SettingsError> {
     let rgb = rgb.map(|c| c * by);
-    if rgb.iter().all(|c| *c <= BRIGHTEST) {
-        Ok(())
-    } else {
-        Err(SettingsError::TooBright { what: what(), rgb })
-    }
+    if rgb.iter().all(|c| *c <= BRIGHTEST) { Ok(()) } else { Err(SettingsError::TooBright { what: what(), rgb }) }
 }
 
 fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
@@ -222,9 +210,5 @@ fn check_materials(appearance: &SceneAppearance) -> Result<(), SettingsError> {
 
 fn check_albedo(color: LinearRgb, what: impl Fn() -> String) -> Result<(), SettingsError> {
     let rgb = color.to_array();
-    if rgb.iter().all(|c| *c <= 1.0) {
-        Ok(())
-    } else {
-        Err(SettingsError::Albedo { what: what(), rgb })
-    }
+    if rgb.iter().all(|c| *c <= 1.0) { Ok(()) } else { Err(SettingsError::Albedo { what: what(), rgb }) }
 }

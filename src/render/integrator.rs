@@ -212,8 +212,7 @@ impl Occlusion {
         let within = RangeError::unless_within;
         within("samples", self.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
         let range = "a length greater than 0, from 2^-56 to 2^56";
-        self.radius
-            .map_or(Ok(()), |r| within("radius", r, [MIN_LENGTH, MAX_LENGTH], range).map(drop))
+        self.radius.map_or(Ok(()), |r| within("radius", r, [MIN_LENGTH, MAX_LENGTH], range).map(drop))
     }
 }
 

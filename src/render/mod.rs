@@ -27,9 +27,7 @@ mod progress;
 pub use crate::image::outline::Outline;
 pub use check::BRIGHTEST;
 pub use check::SettingsError;
-pub use integrator::{
-    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, PrimarySettings, Shading, Studio,
-};
+pub use integrator::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, PrimarySettings, Shading, Studio};
 pub use nearest::{NearestPicture, NotOfOneScene};
 pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
@@ -157,12 +155,7 @@ impl RenderSettings {
     pub fn by_primary_rays(&self) -> Self {
         let Self { background, is_transparent, .. } = *self;
         let shading = self.primary().map(|primary| primary.shading).unwrap_or_default();
-        Self {
-            integrator: Integrator::Primary(shading),
-            background,
-            is_transparent,
-            ..Self::default()
-        }
+        Self { integrator: Integrator::Primary(shading), background, is_transparent, ..Self::default() }
     }
 
     /// Settings that turn primary rays into colours. `None` for other integrators.
@@ -170,8 +163,7 @@ impl RenderSettings {
     pub fn primary(&self) -> Option<PrimarySettings> {
         match self.integrator {
             Integrator::Primary(shading) => {
-                let background =
-                    if self.is_transparent { LinearRgb::BLACK } else { self.background };
+                let background = if self.is_transparent { LinearRgb::BLACK } else { self.background };
                 Some(PrimarySettings { shading, background, is_transparent: self.is_transparent })
             }
             Integrator::Studio(_) | Integrator::Path(_) => None,

@@ -77,13 +77,10 @@ impl NearestPicture {
             return Err(NotOfOneScene);
         }
         let key = |of: &Self, at: usize| (of.t[at], of.id[at]);
-        let nearer: Vec<usize> =
-            (0..self.t.len()).filter(|at| key(other, *at) < key(self, *at)).collect();
+        let nearer: Vec<usize> = (0..self.t.len()).filter(|at| key(other, *at) < key(self, *at)).collect();
         for at in &nearer {
             (self.t[*at], self.id[*at]) = (other.t[*at], other.id[*at]);
-            if let (Some(distance), Some(new)) =
-                (self.distance.get_mut(*at), other.distance.get(*at))
-            {
+            if let (Some(distance), Some(new)) = (self.distance.get_mut(*at), other.distance.get(*at)) {
                 *distance = *new;
             }
         }
@@ -134,10 +131,7 @@ impl NearestPicture {
 
     /// A picture in which every ray misses.
     #[cfg(feature = "gpu")]
-    pub(crate) fn misses(
-        [width, height]: [u32; 2],
-        layers: LayerSet,
-    ) -> Result<Self, ImageTooLarge> {
+    pub(crate) fn misses([width, height]: [u32; 2], layers: LayerSet) -> Result<Self, ImageTooLarge> {
         let image = Image::new(width, height, layers)?;
         let pixels = image.color().len();
         let distance = vec![f32::INFINITY; pixels];

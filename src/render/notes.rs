@@ -12,15 +12,10 @@ impl RenderSettings {
     /// Notes for the user about possibly unintended results of rendering a scene with these settings, and what to do.
     #[must_use]
     pub fn notes(&self, scene: &Scene) -> Vec<String> {
-        let any = |is_special: fn(&SurfaceProperties) -> bool| {
-            scene.appearance().surfaces().iter().any(is_special)
-        };
+        let any = |is_special: fn(&SurfaceProperties) -> bool| scene.appearance().surfaces().iter().any(is_special);
         let is_translucent = || !scene.checked_appearance().is_opaque();
-        let needs_paths = || {
-            any(|surface| {
-                matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. })
-            })
-        };
+        let needs_paths =
+            || any(|surface| matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. }));
         let notes = [
             (
                 self.is_dark(scene),
@@ -71,10 +66,8 @@ impl RenderSettings {
             _ => false,
         };
         let is_emitter = |id: u32| shines(&scene.surface(id)) && !is_black(&scene.color(id));
-        let has_emitter = || {
-            scene.appearance().surfaces().iter().any(shines)
-                && (0..scene.len() as u32).any(is_emitter)
-        };
+        let has_emitter =
+            || scene.appearance().surfaces().iter().any(shines) && (0..scene.len() as u32).any(is_emitter);
         !is_lit && !has_ambient && !has_emitter()
     }
 }

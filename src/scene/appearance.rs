@@ -91,11 +91,7 @@ impl Appearance {
         self.with(surfaces, Some(indices))
     }
 
-    pub(super) fn with(
-        self,
-        surfaces: Vec<SurfaceProperties>,
-        surface_indices: Option<Vec<u32>>,
-    ) -> Self {
+    pub(super) fn with(self, surfaces: Vec<SurfaceProperties>, surface_indices: Option<Vec<u32>>) -> Self {
         Self { surfaces, surface_indices, ..self }
     }
 
@@ -173,9 +169,7 @@ impl Appearance {
         let index = id as usize;
         match &self.colors {
             Colors::One(color) => Some(*color),
-            Colors::Palette { palette, indices } => {
-                palette.get(*indices.get(index)? as usize).copied()
-            }
+            Colors::Palette { palette, indices } => palette.get(*indices.get(index)? as usize).copied(),
             Colors::Rgba8(colors) => {
                 let [r, g, b, _] = *colors.get(index)?;
                 Some(LinearRgb::from_srgb8([r, g, b]))
@@ -187,9 +181,7 @@ impl Appearance {
     /// The alpha of a sphere's colour, from 0 to 1. It is 1 if colours have no alpha.
     pub(crate) fn alpha(&self, id: u32) -> f32 {
         match &self.colors {
-            Colors::Rgba8(colors) => {
-                colors.get(id as usize).map_or(1.0, |[_, _, _, alpha]| alpha_of(*alpha))
-            }
+            Colors::Rgba8(colors) => colors.get(id as usize).map_or(1.0, |[_, _, _, alpha]| alpha_of(*alpha)),
             Colors::One(_) | Colors::Palette { .. } | Colors::Scalars { .. } => 1.0,
         }
     }
@@ -255,8 +247,7 @@ impl SceneAppearance {
 
     /// The surface properties of a sphere of this scene, with the alpha of its colour.
     pub(crate) fn surface_of(&self, id: u32) -> SurfaceProperties {
-        let SurfaceProperties { material, opacity } =
-            self.surfaces()[self.surface_index(id) as usize];
+        let SurfaceProperties { material, opacity } = self.surfaces()[self.surface_index(id) as usize];
         SurfaceProperties { material, opacity: opacity * self.alpha(id) }
     }
 
@@ -313,10 +304,8 @@ impl MaterialTable {
     /// that occurs with it.
     fn of(appearance: &SceneAppearance) -> Self {
         let surfaces = appearance.surfaces();
-        let mut rows: Vec<MaterialRow> = surfaces
-            .iter()
-            .map(|surface| MaterialRow { surface: *surface, color: LinearRgb::WHITE })
-            .collect();
+        let mut rows: Vec<MaterialRow> =
+            surfaces.iter().map(|surface| MaterialRow { surface: *surface, color: LinearRgb::WHITE }).collect();
         if !surfaces.iter().any(absorbs) {
             return Self { rows, indices: None };
         }

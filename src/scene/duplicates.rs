@@ -126,8 +126,7 @@ mod tests {
             let wanted: Vec<u32> = spheres
                 .iter()
                 .map(|sphere| {
-                    let is_equal =
-                        |other: &[f32; 4]| other.map(f32::to_bits) == sphere.map(f32::to_bits);
+                    let is_equal = |other: &[f32; 4]| other.map(f32::to_bits) == sphere.map(f32::to_bits);
                     spheres.iter().position(is_equal).unwrap() as u32
                 })
                 .collect();

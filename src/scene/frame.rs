@@ -30,8 +30,7 @@ pub(super) fn bounds_of_checked<T: Sync>(
         let mut bounds: Option<Bounds> = None;
         for (offset, item) in chunk.iter().enumerate() {
             let sphere @ [x, y, z, radius] = parts(item);
-            sphere::check(sphere)
-                .map_err(|error| SceneError::Sphere { index: first + offset, error })?;
+            sphere::check(sphere).map_err(|error| SceneError::Sphere { index: first + offset, error })?;
             let of_sphere = Bounds::of_sphere(DVec3::new(x, y, z), radius);
             bounds = Some(bounds.map_or(of_sphere, |bounds| bounds.union(of_sphere)));
         }
@@ -177,9 +176,7 @@ mod tests {
 
     fn spheres() -> Vec<[f64; 4]> {
         let mut rng = fastrand::Rng::with_seed(5);
-        (0..1000)
-            .map(|_| [1e6 + rng.f64(), rng.f64() - 0.5, 70.0 * rng.f64(), 0.01 + rng.f64()])
-            .collect()
+        (0..1000).map(|_| [1e6 + rng.f64(), rng.f64() - 0.5, 70.0 * rng.f64(), 0.01 + rng.f64()]).collect()
     }
 
     fn whole_of(spheres: &[[f64; 4]]) -> SceneExtent {
@@ -214,8 +211,7 @@ mod tests {
     /// A camera frames a part like the whole, if the part has the spheres that reach farthest.
     #[test]
     fn parts_know_the_box_the_plane_and_the_mean_radius_of_the_whole() {
-        let flat: Vec<[f64; 4]> =
-            (0..50).map(|i| [f64::from(i), f64::from(i * i), 2.0, 0.5]).collect();
+        let flat: Vec<[f64; 4]> = (0..50).map(|i| [f64::from(i), f64::from(i * i), 2.0, 0.5]).collect();
         let whole = whole_of(&flat);
         let all = Scene::from_f64(&flat, LinearRgb::WHITE).unwrap();
         let some = vec![whole.in_frame(flat[0]), whole.in_frame(flat[49])];

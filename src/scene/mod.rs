@@ -118,11 +118,7 @@ impl Scene {
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside the whole scene.
-    pub fn part(
-        whole: SceneExtent,
-        spheres: Vec<[f32; 4]>,
-        appearance: Appearance,
-    ) -> Result<Self, SceneError> {
+    pub fn part(whole: SceneExtent, spheres: Vec<[f32; 4]>, appearance: Appearance) -> Result<Self, SceneError> {
         let origin = whole.origin();
         check_origin(origin)?;
         bounds_of_checked(&spheres, frame::slackened)?;
@@ -143,12 +139,7 @@ impl Scene {
     }
 
     /// A scene from an origin, spheres, appearance and bounds that have been checked.
-    fn in_frame(
-        origin: DVec3,
-        spheres: Vec<[f32; 4]>,
-        appearance: Appearance,
-        bounds: Option<Bounds>,
-    ) -> Self {
+    fn in_frame(origin: DVec3, spheres: Vec<[f32; 4]>, appearance: Appearance, bounds: Option<Bounds>) -> Self {
         let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
         Self { origin, spheres, appearance, bounds, added: 0, whole: None }
     }
@@ -186,8 +177,7 @@ impl Scene {
         if self.appearance.is_opaque() {
             return None;
         }
-        let spheres: Vec<[f32; 4]> =
-            self.opaque_ids().map(|id| self.spheres[id as usize]).collect();
+        let spheres: Vec<[f32; 4]> = self.opaque_ids().map(|id| self.spheres[id as usize]).collect();
         let bounds = frame::bounds_in_frame(self.origin, &spheres);
         Some(Self::in_frame(self.origin, spheres, LinearRgb::WHITE.into(), bounds))
     }
@@ -320,8 +310,7 @@ impl SphereArray {
 /// their indices for each sphere.
 fn appearance_of(spheres: &[Sphere]) -> Appearance {
     let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
-    let (surfaces, surface_indices) =
-        distinct(spheres, |sphere| (sphere.surface, sphere.surface.bits()));
+    let (surfaces, surface_indices) = distinct(spheres, |sphere| (sphere.surface, sphere.surface.bits()));
     let surfaces = if surfaces.is_empty() { vec![SurfaceProperties::default()] } else { surfaces };
     Appearance::new(colors).with(surfaces, surface_indices)
 }
@@ -348,10 +337,7 @@ fn keyed(color: LinearRgb) -> (LinearRgb, [u32; 3]) {
 
 /// The distinct properties of the spheres, in the order of first use, and for each sphere an index into them. The
 /// indices are `None` if there is at most one property.
-fn distinct<S, T, K: Eq + std::hash::Hash>(
-    spheres: &[S],
-    of: impl Fn(&S) -> (T, K),
-) -> (Vec<T>, Option<Vec<u32>>) {
+fn distinct<S, T, K: Eq + std::hash::Hash>(spheres: &[S], of: impl Fn(&S) -> (T, K)) -> (Vec<T>, Option<Vec<u32>>) {
     let mut all = Vec::new();
     let mut indices = HashMap::new();
     let indices: Vec<u32> = spheres

@@ -70,9 +70,7 @@ pub fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
     }
     if !(MIN_LENGTH..=MAX_LENGTH).contains(&radius) {
         let range = format!("greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}");
-        return Err(SphereError(format!(
-            "its radius is {radius:?}; a radius must be finite, {range}"
-        )));
+        return Err(SphereError(format!("its radius is {radius:?}; a radius must be finite, {range}")));
     }
     Ok(())
 }

@@ -201,8 +201,7 @@ impl SceneUpdate<'_> {
             (NewColors::Palette(indices), Colors::Palette { palette, .. }) => {
                 let colors = palette.len();
                 let outside = at(indices.iter().position(|index| *index as usize >= colors));
-                return outside
-                    .map_or(Ok(()), |index| Err(SceneError::color(index, colors).into()));
+                return outside.map_or(Ok(()), |index| Err(SceneError::color(index, colors).into()));
             }
             (NewColors::Scalars(values), Colors::Scalars { .. }) => {
                 let nan = at(values.iter().position(|value| value.is_nan()));
@@ -215,8 +214,7 @@ impl SceneUpdate<'_> {
             (_, Colors::Scalars { .. }) => SCALARS,
         };
         let found = new.name();
-        let message =
-            format!("sphere {first} cannot be given {found}: the scene's spheres have {wanted}");
+        let message = format!("sphere {first} cannot be given {found}: the scene's spheres have {wanted}");
         Err(UpdateError(message))
     }
 }

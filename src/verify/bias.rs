@@ -107,13 +107,7 @@ impl Deviations {
     }
 
     /// Adds the result for a quantity, unless its bounds are too wide or too narrow to measure a deviation.
-    pub(super) fn measure(
-        &mut self,
-        stage: &'static str,
-        what: &'static str,
-        found: f64,
-        legal: Interval,
-    ) {
+    pub(super) fn measure(&mut self, stage: &'static str, what: &'static str, found: f64, legal: Interval) {
         if let Some(deviation) = deviation(found, legal) {
             self.add(stage, what, deviation);
         }

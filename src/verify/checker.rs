@@ -16,9 +16,7 @@ use crate::verify::certificate::{
 };
 use crate::verify::hit::{Candidates, LegalHits};
 use crate::verify::rounding::{Interval, PAD, U, unit_error};
-use crate::verify::sphere::{
-    LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth,
-};
+use crate::verify::sphere::{LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth};
 use crate::verify::uploaded::check_recording;
 
 /// Judges recordings of a scene.
@@ -66,11 +64,7 @@ impl<'a> Checker<'a> {
         if certificate.upload.is_some() {
             return certificate;
         }
-        let check = PixelCheck {
-            checker: self,
-            model: CameraModel::new(camera.kind, uploaded, film),
-            recording,
-        };
+        let check = PixelCheck { checker: self, model: CameraModel::new(camera.kind, uploaded, film), recording };
         let is_compared = recording.rendered != PlainRender::None;
         certificate.rendered_otherwise = is_compared.then_some(0);
         let pixels = ranges(recording.pixels.len(), CHUNK);
@@ -255,13 +249,7 @@ impl PixelCheck<'_> {
     }
 
     /// Judges the layers of a hit. Returns the deviation of the normal from the exact normal, relative to its bound.
-    fn check_hit(
-        &self,
-        layers: &Layers,
-        depths: Interval,
-        id: u32,
-        shading: &ShadingRay,
-    ) -> Result<f64, Mismatch> {
+    fn check_hit(&self, layers: &Layers, depths: Interval, id: u32, shading: &ShadingRay) -> Result<f64, Mismatch> {
         if layers.id != id {
             return Err(wrong_id(layers.id, id));
         }
@@ -319,9 +307,7 @@ fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
 }
 
 fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
-    (0..3).try_for_each(|channel| {
-        legal_is("color", channel_name(channel), found[channel], legal[channel])
-    })
+    (0..3).try_for_each(|channel| legal_is("color", channel_name(channel), found[channel], legal[channel]))
 }
 
 fn wrong_id(found: u32, traced: u32) -> Mismatch {
@@ -331,9 +317,8 @@ fn wrong_id(found: u32, traced: u32) -> Mismatch {
 
 fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Mismatch {
     let DVec3 { x, y, z } = exact;
-    let message = format!(
-        "{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length"
-    );
+    let message =
+        format!("{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length");
     Mismatch::new("normal", message)
 }
 
@@ -354,17 +339,10 @@ impl PixelCheck<'_> {
             return None;
         }
         let judged = self.judge_any(&layers, pixel, legal);
-        Some(judged.map_err(|illegal| {
-            Mismatch::new("render", format!("{}: {}", illegal.stage, illegal.message))
-        }))
+        Some(judged.map_err(|illegal| Mismatch::new("render", format!("{}: {}", illegal.stage, illegal.message))))
     }
 
-    fn judge_any(
-        &self,
-        layers: &Layers,
-        pixel: [u32; 2],
-        legal: &mut LegalHits,
-    ) -> Result<(), Mismatch> {
+    fn judge_any(&self, layers: &Layers, pixel: [u32; 2], legal: &mut LegalHits) -> Result<(), Mismatch> {
         let ray = self.model.ray(pixel).any(&self.model);
         legal.clear();
         if ray.may_hit_box {

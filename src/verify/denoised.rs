@@ -105,11 +105,9 @@ impl std::fmt::Display for DenoiseViolation {
 /// # Errors
 /// Returns an error if the noisy picture lacks one of [the layers](crate::image::denoise::GUIDES) that denoising needs.
 pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, MissingGuide> {
-    let filter =
-        Filter { guides: Guides::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
+    let filter = Filter { guides: Guides::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
     let exact = |x: &f32| Interval { low: f64::from(*x), high: f64::from(*x) };
-    let mut lights: Vec<Light> =
-        filter.guides.lights.iter().map(|light| light.each_ref().map(exact)).collect();
+    let mut lights: Vec<Light> = filter.guides.lights.iter().map(|light| light.each_ref().map(exact)).collect();
     for pass in 0..PASSES {
         let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
             range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
@@ -123,9 +121,8 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
         let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
         certificate.pixels += 1;
         // A bound that is NaN does not decide the pixel.
-        let is_vague = |Interval { low, high }: &Interval| {
-            low.is_nan() || high.is_nan() || high - low > WIDEST * high.max(0.01)
-        };
+        let is_vague =
+            |Interval { low, high }: &Interval| low.is_nan() || high.is_nan() || high - low > WIDEST * high.max(0.01);
         let is_excluded = |channel: &usize| {
             let (Interval { low, high }, found) = (legal[*channel], f64::from(found[*channel]));
             found.is_nan() || found < low || found > high
@@ -212,8 +209,7 @@ impl Filter {
                 };
                 let weight = Interval { low: weight.low.max(0.0), ..weight };
                 for channel in 0..3 {
-                    let (low, high) =
-                        (other[channel].low - base[channel], other[channel].high - base[channel]);
+                    let (low, high) = (other[channel].low - base[channel], other[channel].high - base[channel]);
                     sums[channel].low += low * if low < 0.0 { weight.high } else { weight.low };
                     sums[channel].high += high * if high > 0.0 { weight.high } else { weight.low };
                     let size = other[channel].low.abs().max(other[channel].high.abs());
@@ -256,15 +252,12 @@ impl Filter {
             true => ONE,
             false => {
                 // One difference, a product of constants and of a root, and a quotient.
-                let depth = (shape[3] - other[3]).abs()
-                    / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
+                let depth = (shape[3] - other[3]).abs() / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
                 let off = PAD * (gamma(6) + SQRT + DIVIDE);
                 let fall = |depth: f64| 1.0 / (1.0 + depth * depth);
                 let off_fall = PAD * (gamma(3) + DIVIDE);
                 Interval {
-                    low: power(cosine - error, -relative)
-                        * fall(depth * (1.0 + off) + FLUSH)
-                        * (1.0 - off_fall)
+                    low: power(cosine - error, -relative) * fall(depth * (1.0 + off) + FLUSH) * (1.0 - off_fall)
                         - FLUSH,
                     high: power(cosine + error, relative)
                         * fall((depth * (1.0 - off) - FLUSH).max(0.0))
@@ -309,8 +302,7 @@ fn alike(light: &Light, other: &Light) -> Interval {
     let least = least * least / noise(light[3].high, other[3].high) * (1.0 - off) - FLUSH;
     let most = most * most / noise(light[3].low, other[3].low) * (1.0 + off) + FLUSH;
     // WGSL: an exponential is within 3 + 2 |x| ULP.
-    let exp =
-        |x: f64, sign: f64| (-x).exp() * (1.0 + sign * PAD * U * (3.0 + 2.0 * x)) + sign * FLUSH;
+    let exp = |x: f64, sign: f64| (-x).exp() * (1.0 + sign * PAD * U * (3.0 + 2.0 * x)) + sign * FLUSH;
     Interval { low: exp(most, -1.0).max(0.0), high: exp(least.max(0.0), 1.0) }
 }
 

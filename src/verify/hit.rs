@@ -76,13 +76,7 @@ impl Candidates {
 
     /// Calls `offer` for every sphere that a ray, displaced by up to `moved`, may hit before `nearest`. The return
     /// value of `offer` is the new `nearest`.
-    pub(super) fn visit(
-        &self,
-        line: &Line,
-        moved: f64,
-        nearest: f64,
-        offer: impl FnMut(&Candidate) -> f64,
-    ) {
+    pub(super) fn visit(&self, line: &Line, moved: f64, nearest: f64, offer: impl FnMut(&Candidate) -> f64) {
         let longest = self.longest_from(line.origin) + moved;
         self.visit_beside(line, (BESIDE + 2.0 * line.bend) * longest + moved, nearest, offer);
     }
@@ -103,13 +97,7 @@ impl Candidates {
     }
 
     /// Visits a node. Calls are nested at most 32 deep, because a tree has no more levels than an id has bits.
-    fn visit_node(
-        &self,
-        slab: &Slab<'_>,
-        visit: Visit,
-        nearest: &mut f64,
-        offer: &mut impl FnMut(&Candidate) -> f64,
-    ) {
+    fn visit_node(&self, slab: &Slab<'_>, visit: Visit, nearest: &mut f64, offer: &mut impl FnMut(&Candidate) -> f64) {
         let Visit { level, start, end, entry, .. } = visit;
         if entry > *nearest || start == end {
             // Nothing nearer can be found there.
@@ -125,11 +113,7 @@ impl Candidates {
     }
 
     /// Both children, the nearer one first.
-    fn children(
-        &self,
-        slab: &Slab<'_>,
-        Visit { node, level, start, end, .. }: Visit,
-    ) -> [Visit; 2] {
+    fn children(&self, slab: &Slab<'_>, Visit { node, level, start, end, .. }: Visit) -> [Visit; 2] {
         let (middle, level) = (start + (end - start) / 2, level - 1);
         let (left, right) = (node + 1, node + (2 << level));
         let left_entry = slab.entry(&self.nodes[left]);
@@ -159,11 +143,7 @@ fn build(items: &mut [Candidate], nodes: &mut [Node], level: u32) {
     let (left_items, right_items) = items.split_at_mut(middle);
     let (root, below) = nodes.split_at_mut(1);
     let (left, right) = below.split_at_mut((2 << (level - 1)) - 1);
-    both(
-        level > SMALL,
-        || build(left_items, left, level - 1),
-        || build(right_items, right, level - 1),
-    );
+    both(level > SMALL, || build(left_items, left, level - 1), || build(right_items, right, level - 1));
     root[0] = Node { low: left[0].low.min(right[0].low), high: left[0].high.max(right[0].high) };
 }
 
@@ -323,15 +303,10 @@ impl LegalHits {
     }
 }
 
-pub(super) fn legal_hit(
-    Candidate { sphere, id }: &Candidate,
-    line: &Line,
-    slack: Slack,
-) -> Option<(LegalHit, bool)> {
+pub(super) fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line, slack: Slack) -> Option<(LegalHit, bool)> {
     let test = SphereTest::new(line, *sphere, slack)?;
     let roots = test.roots();
-    let hit =
-        LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
+    let hit = LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
     roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
 }
 
@@ -347,9 +322,7 @@ mod tests {
         let mut legal = LegalHits::default();
         legal.clear();
         for (sphere, id) in spheres.iter().zip(0..) {
-            if let Some((hit, may_miss)) =
-                legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default())
-            {
+            if let Some((hit, may_miss)) = legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default()) {
                 legal.spheres.push(hit);
                 if !may_miss {
                     legal.miss = false;

@@ -1,8 +1,7 @@
 //! The check of all stages of all samples of a recording, along paths or in a studio.
 
 use crate::recording::lit::{
-    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting,
-    flag, slot,
+    BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting, flag, slot,
 };
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
@@ -28,9 +27,7 @@ impl Checker<'_> {
     #[must_use]
     pub fn certify_lit(&self, recording: &LitRecording) -> LitCertificate {
         let given = &recording.given;
-        let upload = upload::check(self.scene, &self.candidates, given)
-            .and_then(|()| recording.check_size())
-            .err();
+        let upload = upload::check(self.scene, &self.candidates, given).and_then(|()| recording.check_size()).err();
         let mut certificate = LitCertificate {
             upload,
             film_pixels: given.film.pixel_count(),
@@ -65,13 +62,7 @@ impl Checker<'_> {
 
 impl LitCheck<'_> {
     /// Judges a sample of the pixel with this index.
-    fn judge_sample(
-        &self,
-        recorded: &RecordedSample,
-        index: usize,
-        part: &mut LitCertificate,
-        legal: &mut LegalHits,
-    ) {
+    fn judge_sample(&self, recorded: &RecordedSample, index: usize, part: &mut LitCertificate, legal: &mut LegalHits) {
         let (stage, ray, ended) = match self.is_studio {
             true => (LitStage::Surface, "ray", "a ray that has ended"),
             false => (LitStage::Scatter, "path", "a path that has ended"),
@@ -93,9 +84,7 @@ impl LitCheck<'_> {
                 let (result, seen) = self.shade(address, &state, hit, &after);
                 part.note(stage, address, result);
                 (met, last) = (seen, Some(hit));
-            } else if let Err(mismatch) =
-                Judge::default().unchanged((stage, ended), [&state, &after])
-            {
+            } else if let Err(mismatch) = Judge::default().unchanged((stage, ended), [&state, &after]) {
                 part.note(stage, address, Err(mismatch));
             }
             state = match self.is_studio {
@@ -139,13 +128,7 @@ impl LitCheck<'_> {
     }
 
     /// Judges whether the sampled light of a path is occluded, and returns the state with the answer.
-    fn judge_open(
-        &self,
-        address: Address,
-        after: PathState,
-        bits: u32,
-        part: &mut LitCertificate,
-    ) -> PathState {
+    fn judge_open(&self, address: Address, after: PathState, bits: u32, part: &mut LitCertificate) -> PathState {
         let open = f32::from_bits(bits);
         let is_searched = address.surface < self.inputs.max_surfaces
             && self.inputs.lighting.source_count > 0
@@ -171,10 +154,9 @@ impl LitCheck<'_> {
         part: &mut LitCertificate,
     ) -> PathState {
         let UploadedLighting { light_count, occlusion_samples, .. } = self.inputs.lighting;
-        for (kind, count, lights) in [
-            (&LIGHTS, light_count, &surface.lights),
-            (&AMBIENT, occlusion_samples, &surface.ambient),
-        ] {
+        for (kind, count, lights) in
+            [(&LIGHTS, light_count, &surface.lights), (&AMBIENT, occlusion_samples, &surface.ambient)]
+        {
             for (batch, light) in (0..).zip(lights) {
                 let found = Light { kind, count, first: batch * BITS, light, index };
                 self.judge_light(address, met, &after, found, part);
@@ -225,8 +207,7 @@ impl LitCheck<'_> {
         let index = found.first + offset;
         let candidates = &self.checker.candidates;
         let is_searched = index < found.count
-            && (found.kind.is_ambient
-                || self.kernel(address, state, &mut Choices::default()).casts_shadow(index));
+            && (found.kind.is_ambient || self.kernel(address, state, &mut Choices::default()).casts_shadow(index));
         let legal = if is_searched {
             self.outcomes(address, state, Obstacle::or, |kernel| match found.kind.is_ambient {
                 false => kernel.is_light_hidden(candidates, index),
@@ -266,12 +247,7 @@ impl LitCheck<'_> {
     }
 
     /// Judges the light that is added to a surface.
-    fn added(
-        &self,
-        address: Address,
-        state: &PathState,
-        found: Light<'_>,
-    ) -> Result<StageResult, Mismatch> {
+    fn added(&self, address: Address, state: &PathState, found: Light<'_>) -> Result<StageResult, Mismatch> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
@@ -290,20 +266,12 @@ impl LitCheck<'_> {
 
     /// The sum of all light of a batch, given which lights are hidden. If decisions of a light are open, its part is
     /// everything between the outcomes.
-    fn sum(
-        &self,
-        address: Address,
-        state: &PathState,
-        found: Light<'_>,
-        total: Number,
-    ) -> Option<Change> {
+    fn sum(&self, address: Address, state: &PathState, found: Light<'_>, total: Number) -> Option<Change> {
         let count = found.count.saturating_sub(found.first).min(BITS);
         let bits = found.bits();
         if found.kind.is_ambient {
             let hidden = bits.count_ones();
-            return self.outcomes(address, state, Change::union, |kernel| {
-                kernel.ambient_added(count, hidden, total)
-            });
+            return self.outcomes(address, state, Change::union, |kernel| kernel.ambient_added(count, hidden, total));
         }
         (0..count).try_fold(Change::NONE, |sum, offset| {
             let is_hidden = bits & (1 << offset) != 0;
@@ -374,8 +342,6 @@ impl Light<'_> {
         }
         judge.bits(KEPT, left, bits)?;
         let radiance = self.light.radiance[self.index].into_iter();
-        radiance
-            .zip(state.slots[slot::RADIANCE])
-            .try_for_each(|(found, legal)| judge.bits(KEPT, found, legal))
+        radiance.zip(state.slots[slot::RADIANCE]).try_for_each(|(found, legal)| judge.bits(KEPT, found, legal))
     }
 }

@@ -121,9 +121,8 @@ impl Estimates<'_> {
         let classes = f64::from(2 * self.reach + 1).powi(2);
         let tests = (3 * sums.len()) as f64 * classes;
         let factor = (2.0 * (2.0 * tests / ERROR_PROBABILITY).ln()).sqrt();
-        let overall = sums.last().map_or(0.0, |whole| {
-            whole.expected.iter().sum::<f64>() / (3.0 * whole.pixels).max(1.0)
-        });
+        let overall =
+            sums.last().map_or(0.0, |whole| whole.expected.iter().sum::<f64>() / (3.0 * whole.pixels).max(1.0));
         let brightest = self.expected.iter().flatten().copied().fold(1.0, f64::max);
         let rounding = (f64::from(self.samples) + OF_SHADING) * brightest / f64::from(1_u32 << 24);
         let mut means = Vec::with_capacity(3 * sums.len());
@@ -131,8 +130,7 @@ impl Estimates<'_> {
             let row = index / regions[0];
             let region = (row < regions[1]).then_some([index % regions[0], row]);
             for channel in 0..3 {
-                let [found, expected] =
-                    [sums.found, sums.expected].map(|sum| sum[channel] / sums.pixels.max(1.0));
+                let [found, expected] = [sums.found, sums.expected].map(|sum| sum[channel] / sums.pixels.max(1.0));
                 let bound = factor * sums.deviation(channel) / sums.pixels.max(1.0) + rounding;
                 let is_vague = sums.ties > MOST_TIES * sums.pixels || bound > WIDEST * overall;
                 // NaN is not within a bound.
@@ -155,8 +153,7 @@ impl Estimates<'_> {
         let width = self.size[0].max(1) as usize;
         for (index, (found, expected)) in self.found.iter().zip(self.expected).enumerate() {
             let at = [index % width, index / width];
-            let [column, row] = [0, 1]
-                .map(|axis| at[axis] * regions[axis] as usize / self.size[axis].max(1) as usize);
+            let [column, row] = [0, 1].map(|axis| at[axis] * regions[axis] as usize / self.size[axis].max(1) as usize);
             let Some(sums) = all.get_mut(row * regions[0] as usize + column) else { continue };
             let class = &mut sums.squares[at[1] % apart * apart + at[0] % apart];
             sums.pixels += 1.0;
@@ -243,9 +240,7 @@ mod tests {
             let firefly = if random.u32(0..500) == 0 { 5.0 } else { 0.0 };
             scale * (sky * 2.0 * random.f64() + firefly)
         };
-        (0..SIZE[0] as usize * SIZE[1] as usize)
-            .map(|i| [channel(i), channel(i), channel(i)])
-            .collect()
+        (0..SIZE[0] as usize * SIZE[1] as usize).map(|i| [channel(i), channel(i), channel(i)]).collect()
     }
 
     fn compare(found: &[[f64; 3]], expected: &[[f64; 3]]) -> Means {
@@ -275,8 +270,7 @@ mod tests {
             .map(|index| {
                 let (mut sum, mut count) = ([0.0; 3], 0.0);
                 for y in (index / width - reach).max(0)..=(index / width + reach).min(height - 1) {
-                    for x in (index % width - reach).max(0)..=(index % width + reach).min(width - 1)
-                    {
+                    for x in (index % width - reach).max(0)..=(index % width + reach).min(width - 1) {
                         let other = picture[(y * width + x) as usize];
                         sum = std::array::from_fn(|i| sum[i] + other[i]);
                         count += 1.0;
@@ -291,8 +285,7 @@ mod tests {
     fn mixed_pixels_are_not_taken_for_independent_ones() {
         let mut accused = 0;
         for seed in 0..40 {
-            let [found, expected] =
-                [2 * seed, 2 * seed + 1].map(|seed| mixed(&picture(seed, 1.0), 3));
+            let [found, expected] = [2 * seed, 2 * seed + 1].map(|seed| mixed(&picture(seed, 1.0), 3));
             let means = compare_mixed(&found, &expected, 3);
             assert_eq!(means.count(Outcome::Violated), 0, "{:?}", means.worst());
             assert_eq!(means.means.len(), 6);

@@ -61,17 +61,14 @@ pub mod written;
 
 pub use crate::recording::lit::{LitInputs, LitRecording, RecordedSample};
 pub use crate::recording::{
-    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadError,
-    UploadedView,
+    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadError, UploadedView,
 };
 pub use bias::{Deviation, Deviations, LARGEST_MEAN};
 pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, MOST_UNDECIDED, Outcome, Verdict, Violation};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
-pub use lit::certificate::{
-    LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts,
-};
+pub use lit::certificate::{LitCertificate, LitOpen, LitShare, LitStage, LitViolation, StageCounts};
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
 pub(crate) use rounding::{DIVIDE_UNITS, SQRT_ULP, gamma};

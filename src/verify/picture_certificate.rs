@@ -151,18 +151,15 @@ impl PictureCertificate {
             _ => return Err(missing(FIRST)),
         }
         let before = text.rfind(&format!("\n{DIGEST} ")).ok_or(missing(DIGEST))? + 1;
-        let digest =
-            format!("{DIGEST} {}\n", hex(Sha256::new_with_prefix(&text.as_bytes()[..before])));
+        let digest = format!("{DIGEST} {}\n", hex(Sha256::new_with_prefix(&text.as_bytes()[..before])));
         if text[before..] != digest {
             let message = "the picture's certificate was edited: its SHA-256 digest does not match; render the picture \
                            again with --certify";
             return Err(CertificateError(message.to_owned()));
         }
-        let lines: Vec<(&str, String)> =
-            lines.map(|(key, value)| (key, unescaped(value))).collect();
-        let all = |key: &'static str| {
-            lines.iter().filter(move |(found, _)| *found == key).map(|(_, value)| value.clone())
-        };
+        let lines: Vec<(&str, String)> = lines.map(|(key, value)| (key, unescaped(value))).collect();
+        let all =
+            |key: &'static str| lines.iter().filter(move |(found, _)| *found == key).map(|(_, value)| value.clone());
         let one = |key| all(key).next().ok_or(missing(key));
         let number = |key| one(key)?.parse::<u64>().map_err(|_| missing(key));
         let judged_by = one("judged-by")?;
@@ -173,8 +170,7 @@ impl PictureCertificate {
             arguments: all("argument").collect(),
             scene: one("scene-sha256")?,
             samples: one("samples-sha256")?,
-            samples_per_pixel: u32::try_from(number("samples-per-pixel")?)
-                .map_err(|_| missing("samples-per-pixel"))?,
+            samples_per_pixel: u32::try_from(number("samples-per-pixel")?).map_err(|_| missing("samples-per-pixel"))?,
             judged_by: [JudgedBy::Intervals, JudgedBy::Means]
                 .into_iter()
                 .find(|by| by.name() == judged_by)
@@ -195,9 +191,8 @@ fn unescaped(text: &str) -> String {
     while let Some((before, after)) = rest.split_once('\\') {
         result.push_str(before);
         let code = after.strip_prefix("u{").and_then(|after| after.split_once('}'));
-        let escape = code.and_then(|(digits, after)| {
-            Some((char::from_u32(u32::from_str_radix(digits, 16).ok()?)?, after))
-        });
+        let escape =
+            code.and_then(|(digits, after)| Some((char::from_u32(u32::from_str_radix(digits, 16).ok()?)?, after)));
         let (c, after) = match escape {
             Some(escape) => escape,
             None => ('\\', after.strip_prefix('\\').unwrap_or(after)),
@@ -256,12 +251,7 @@ mod tests {
         PictureCertificate {
             version: "0.1.0".into(),
             adapter: "a device".into(),
-            arguments: vec![
-                "--eye".into(),
-                "1,2,3".into(),
-                "grün \\u{41} \\.npy".into(),
-                String::new(),
-            ],
+            arguments: vec!["--eye".into(), "1,2,3".into(), "grün \\u{41} \\.npy".into(), String::new()],
             scene: "aa".into(),
             samples: "bb".into(),
             samples_per_pixel: 64,
@@ -290,10 +280,7 @@ mod tests {
         }
         let refused = |text: &str| PictureCertificate::from_text(text).unwrap_err().to_string();
         let other = refused(&text.replace("certificate 1", "certificate 2"));
-        assert!(
-            other.starts_with("the picture's certificate has the version 2, and this"),
-            "{other}"
-        );
+        assert!(other.starts_with("the picture's certificate has the version 2, and this"), "{other}");
         assert_eq!(refused(""), missing(FIRST).to_string());
     }
 

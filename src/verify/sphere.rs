@@ -142,8 +142,7 @@ impl SphereTest {
             b,
             b_error: PAD * (b_error + moved + slack.direction * l.length()),
             foot,
-            foot_error: PAD * (foot_errors.length() + slack.across)
-                + 2.0 * slack.direction * l.length(),
+            foot_error: PAD * (foot_errors.length() + slack.across) + 2.0 * slack.direction * l.length(),
             discriminant,
             error,
             half,
@@ -176,8 +175,7 @@ impl SphereTest {
 
     /// The legal results of the last lines of the test.
     pub(super) fn roots(&self) -> Roots {
-        let mut roots =
-            Roots { near: None, far: None, may_miss: self.discriminant - self.error < 0.0 };
+        let mut roots = Roots { near: None, far: None, may_miss: self.discriminant - self.error < 0.0 };
         if self.may_start_outside() {
             roots.near = self.root(self.near(), &mut roots.may_miss);
         }
@@ -209,17 +207,15 @@ impl SphereTest {
     /// The far distance: b + h, or c/(b − h) if the two would cancel.
     fn far(&self) -> Option<Interval> {
         let (b, h) = (Interval::around(self.b, self.b_error), self.half);
-        let sum = (b.high >= 0.0).then(|| Interval {
-            low: (b.low.max(0.0) + h.low) * (1.0 - U),
-            high: (b.high + h.high) * (1.0 + U),
-        });
+        let sum = (b.high >= 0.0)
+            .then(|| Interval { low: (b.low.max(0.0) + h.low) * (1.0 - U), high: (b.high + h.high) * (1.0 + U) });
         let quotient = (b.low < 0.0).then(|| Interval {
             low: (-self.c - self.c_error).max(0.0) / (h.high - b.low) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c_error - self.c) / (h.low + (-b.high).max(0.0)) * (1.0 + DIVIDE + 2.0 * U),
         });
         // The product b h can be flushed to zero only if one or both of them are tiny.
-        let flushed = (b.high < 0.0 && h.low * -b.high <= FLUSH)
-            .then(|| Interval { low: 0.0, high: h.high.min(FLUSH.sqrt()) });
+        let flushed =
+            (b.high < 0.0 && h.low * -b.high <= FLUSH).then(|| Interval { low: 0.0, high: h.high.min(FLUSH.sqrt()) });
         [sum, quotient, flushed].into_iter().flatten().reduce(Interval::union)
     }
 
@@ -258,18 +254,12 @@ impl LegalNormals {
             let chord = Chord { half: test.half, exact: test.exact_half(), is_behind };
             normal_at(&test, line, chord, sphere[3], slack)
         };
-        Self {
-            sides: [
-                test.may_start_outside().then(|| side(false)),
-                test.may_start_inside().then(|| side(true)),
-            ],
-        }
+        Self { sides: [test.may_start_outside().then(|| side(false)), test.may_start_inside().then(|| side(true))] }
     }
 
     /// The distance of a normal from the nearest exact normal, relative to its bound. Above 1 it is not legal.
     pub(super) fn fraction(&self, normal: DVec3) -> f64 {
-        let fractions =
-            self.sides.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
+        let fractions = self.sides.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
         // `f64::min` would ignore NaN.
         fractions.reduce(|a, b| if a < b { a } else { b }).unwrap_or(f64::INFINITY)
     }
@@ -295,24 +285,15 @@ pub(super) struct Chord {
 }
 
 /// The exact normal at one end of a chord, and the bound of a device's error.
-pub(super) fn normal_at(
-    test: &SphereTest,
-    line: &Line,
-    chord: Chord,
-    radius: f32,
-    slack: Slack,
-) -> (DVec3, f64) {
+pub(super) fn normal_at(test: &SphereTest, line: &Line, chord: Chord, radius: f32, slack: Slack) -> (DVec3, f64) {
     // The normal is the hypotenuse of a triangle, approximately as long as the radius.
     let Chord { half, exact, is_behind } = chord;
     let from_foot = if is_behind { exact } else { -exact };
     let half_error = (half.high - exact).max(exact - half.low);
     let outward = from_foot * line.direction - test.foot;
     let length = outward.length();
-    let error = half_error
-        + test.foot_error
-        + half.high * slack.direction
-        + gamma(2) * (half.high + length)
-        + 4.0 * FLUSH;
+    let error =
+        half_error + test.foot_error + half.high * slack.direction + gamma(2) * (half.high + length) + 4.0 * FLUSH;
     // Dunkl and Williams, "A simple norm inequality" (1964): 2 |x − y| / (|x| + |y|), with |y| no less
     // than |x| − |x − y|.
     let turned = 2.0 * error / (2.0 * length - error).max(error);

@@ -15,11 +15,7 @@ const BOX_MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
 /// The inputs of a device for a camera, if the spheres lie between two corners. If the camera has a plane, rays
 /// start at the depth of the nearest corner of the scene's box.
-pub(super) fn expected_view(
-    camera: &RequestedCamera,
-    scene_origin: DVec3,
-    (min, max): (Vec3, Vec3),
-) -> UploadedView {
+pub(super) fn expected_view(camera: &RequestedCamera, scene_origin: DVec3, (min, max): (Vec3, Vec3)) -> UploadedView {
     let narrow = |v: DVec3| v.as_vec3().to_array();
     let margin = Vec3::splat(BOX_MARGIN * (max - min).length());
     let (min, max) = (min - margin, max + margin);
@@ -78,9 +74,7 @@ pub(super) fn check_recording(
 }
 
 fn wrong_vector(name: &str, found: [f32; 3], expected: [f32; 3]) -> UploadError {
-    UploadError(format!(
-        "the camera's vector {name} is {found:?} on the device; it should be {expected:?}"
-    ))
+    UploadError(format!("the camera's vector {name} is {found:?} on the device; it should be {expected:?}"))
 }
 
 /// Compares the camera and the scene's box with the camera and the box on the device.
@@ -120,9 +114,8 @@ pub(super) fn check_view(
     let across = vectors.right.cross(vectors.up);
     let nearest = nearest(camera, origin, [low, high]);
     // The rounding to f32, and rounding errors of f64 if the box is far from the camera.
-    let far =
-        f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()
-            / vectors.forward.dot(across).abs();
+    let far = f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()
+        / vectors.forward.dot(across).abs();
     if !Interval::around(nearest, U * nearest + far).contains(advance) {
         return Err(UploadError(format!(
             "rays start {advance} times the forward vector ahead of the camera; they should start at the scene's box, \
@@ -133,8 +126,8 @@ pub(super) fn check_view(
     if !scene.is_empty() {
         let (spheres_low, spheres_high) = candidates.bounds();
         let margin = LEAST_MARGIN * (high - low).length();
-        let holds = (low + margin).cmple(spheres_low.as_dvec3()).all()
-            && (high - margin).cmpge(spheres_high.as_dvec3()).all();
+        let holds =
+            (low + margin).cmple(spheres_low.as_dvec3()).all() && (high - margin).cmpge(spheres_high.as_dvec3()).all();
         if !holds {
             let found = [view.scene_min, view.scene_max];
             let spheres = [spheres_low.to_array(), spheres_high.to_array()];

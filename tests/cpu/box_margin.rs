@@ -70,11 +70,7 @@ fn ray_and_sphere(random: &mut Rng) -> (TracedRay, [f32; 4]) {
     let moved = DVec3::from([0; 3].map(|_| -random.f64()));
     let narrow = |v: DVec3| (DIAGONAL * v).as_vec3().to_array();
     let [x, y, z] = narrow(center + moved);
-    let ray = TracedRay {
-        origin: narrow(origin + moved),
-        direction: direction.as_vec3().to_array(),
-        distance: 0.0,
-    };
+    let ray = TracedRay { origin: narrow(origin + moved), direction: direction.as_vec3().to_array(), distance: 0.0 };
     (ray, [x, y, z, (DIAGONAL * radius) as f32])
 }
 
@@ -143,9 +139,7 @@ impl Case {
 
 #[test]
 fn no_hit_of_a_device_that_rounds_as_it_likes_is_outside_of_its_box() {
-    let margin = f64::from(
-        SceneStatistics::of(&[[0.0, 0.0, 0.0, 0.5 * DIAGONAL as f32 / 3_f32.sqrt()]]).margin(),
-    );
+    let margin = f64::from(SceneStatistics::of(&[[0.0, 0.0, 0.0, 0.5 * DIAGONAL as f32 / 3_f32.sqrt()]]).margin());
     assert!((margin / UNIT - 128.0).abs() < 0.01, "{}", margin / UNIT);
     let mut random = Rng::with_seed(11);
     // The number of hits, and the largest needed margin, in units.

@@ -42,8 +42,7 @@ fn vectors_and_rays_agree() {
     let mut random = fastrand::Rng::with_seed(3);
     for _ in 0..1000 {
         let eye = random_point(&mut random, 100.0);
-        let pose =
-            Pose::looking_at(eye, random_point(&mut random, 10.0), random_point(&mut random, 1.0));
+        let pose = Pose::looking_at(eye, random_point(&mut random, 10.0), random_point(&mut random, 1.0));
         let pose = pose.unwrap();
         let half_extent = DVec2::new(random.f64() + 0.01, random.f64() + 0.01);
         let distance = random.f64() * 5.0 + 0.01;
@@ -58,11 +57,7 @@ fn vectors_and_rays_agree() {
 
         let camera = OrthographicCamera::new(pose, half_extent).unwrap();
         let (ray, v) = (camera.ray_in_world(location), camera.vectors());
-        assert_near(
-            ray.origin,
-            v.origin + location.x * v.right + location.y * v.up,
-            "orthographic",
-        );
+        assert_near(ray.origin, v.origin + location.x * v.right + location.y * v.up, "orthographic");
         assert_near(ray.direction, v.forward, "orthographic");
     }
 }
@@ -76,8 +71,7 @@ fn roll_turns_the_picture_about_its_middle() {
     };
     for degrees in [0.0, 30.0, 90.0, 180.0, 271.0_f64] {
         let roll = degrees.to_radians();
-        let upright =
-            camera(0.0).ray_in_world(DVec2::from_angle(roll).rotate(DVec2::new(0.3, 0.2)));
+        let upright = camera(0.0).ray_in_world(DVec2::from_angle(roll).rotate(DVec2::new(0.3, 0.2)));
         let rolled = camera(roll).ray_in_world(DVec2::new(0.3, 0.2));
         assert_near(rolled.direction, upright.direction, "roll");
     }
@@ -103,8 +97,7 @@ fn a_framed_box_is_seen_whole_and_fills_the_picture() {
     for _ in 0..500 {
         let center = random_point(&mut random, 1e3);
         let half = DVec3::from([0; 3].map(|_| 10_f64.powf(random.f64() * 6.0 - 3.0)));
-        let bounds =
-            Bounds::of_sphere(center - half, 1e-9).union(Bounds::of_sphere(center + half, 1e-9));
+        let bounds = Bounds::of_sphere(center - half, 1e-9).union(Bounds::of_sphere(center + half, 1e-9));
         let pose = Pose::looking_along(DVec3::ZERO, random_point(&mut random, 1.0), UP).unwrap();
         let aspect = 0.3 + random.f64() * 3.0;
         let fov = random.f64() * 2.0 + 0.1;
@@ -149,8 +142,7 @@ fn sizes_without_pixels_or_beyond_f32_are_refused() {
 fn degenerate_poses_are_errors_that_say_which() {
     let eye = DVec3::new(1.0, 2.0, 3.0);
     let target = DVec3::ZERO;
-    let at =
-        |eye: DVec3, look_at: DVec3, up: DVec3| Pose::looking_at(eye, look_at, up).unwrap_err();
+    let at = |eye: DVec3, look_at: DVec3, up: DVec3| Pose::looking_at(eye, look_at, up).unwrap_err();
     let same = "the eye and the look-at point are both at [1.0, 2.0, 3.0]; move one of them";
     assert_eq!(at(eye, eye, UP).to_string(), same);
     assert_eq!(at(eye, target, eye), CameraError::UpParallelToView { up: eye });
@@ -220,9 +212,7 @@ fn parallel() -> OrthographicCamera {
 fn area(camera: &dyn Camera, z: f64) -> usize {
     let scene = Scene::new(&[Sphere::new([0.0, 0.0, z], 1.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(200, 200).unwrap();
-    let image =
-        cpu::render(&scene, &View::new(camera, film), &RenderSettings::default(), LayerSet::DATA)
-            .unwrap();
+    let image = cpu::render(&scene, &View::new(camera, film), &RenderSettings::default(), LayerSet::DATA).unwrap();
     image.id().unwrap().iter().filter(|id| **id != NO_ID).count()
 }
 

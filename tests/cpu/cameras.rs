@@ -3,8 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use pinhole::camera::{
-    Camera, CameraError, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
-    ThinLensCamera,
+    Camera, CameraError, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
 use pinhole::glam::{DVec2, DVec3};
 use pinhole::image::NO_ID;
@@ -39,9 +38,7 @@ fn through_the_centre_goes_the_pinholes_ray() {
     for _ in 0..1000 {
         let location = 2.0 * random_point(&mut random) - 1.0;
         let expected = pinhole().ray_in_world(location);
-        for ray in
-            [camera.ray_in_world(location), camera.ray_through_lens(location, DVec2::splat(0.5))]
-        {
+        for ray in [camera.ray_in_world(location), camera.ray_through_lens(location, DVec2::splat(0.5))] {
             assert!((ray.origin - expected.origin).length() < 1e-15);
             assert!((ray.direction - expected.direction).length() < 1e-15);
         }
@@ -91,11 +88,10 @@ fn a_circle_of_confusion_is_as_wide_as_the_formula_says() {
                 let step = DVec2::new(at(1.0, 0.0).x - none.x, at(0.0, 1.0).y - none.y);
                 (target - none) / step
             };
-            for [a, b] in [[[0.0, 0.5], [1.0, 0.5]], [[0.5, 0.0], [0.5, 1.0]], [[0.0; 2], [1.0; 2]]]
-            {
+            for [a, b] in [[[0.0, 0.5], [1.0, 0.5]], [[0.5, 0.0], [0.5, 1.0]], [[0.0; 2], [1.0; 2]]] {
                 let diameter = ((location(a) - location(b)) * half_extent).length();
-                let expected = 2.0 * radius * (distance - focus).abs() / distance * focal_length
-                    / (focus - focal_length);
+                let expected =
+                    2.0 * radius * (distance - focus).abs() / distance * focal_length / (focus - focal_length);
                 assert!(
                     (diameter - expected).abs() < 1e-9 * (1e-3 + expected),
                     "{distance}: {diameter} is not {expected}"
@@ -232,9 +228,7 @@ fn outside_of_the_disk_there_is_nothing() {
     let scene = Scene::new(&[Sphere::new(EYE.to_array(), 5.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(90, 60).unwrap();
     let camera = FisheyeCamera::new(pose(), TAU, film.aspect()).unwrap();
-    let image =
-        cpu::render(&scene, &View::new(&camera, film), &RenderSettings::default(), LayerSet::ALL)
-            .unwrap();
+    let image = cpu::render(&scene, &View::new(&camera, film), &RenderSettings::default(), LayerSet::ALL).unwrap();
     for (index, id) in image.id().unwrap().iter().enumerate() {
         let (i, j) = ((index % 90) as f64 + 0.5, (index / 90) as f64 + 0.5);
         let is_in_disk = (i - 45.0).hypot(j - 30.0) <= 30.0;

@@ -1,14 +1,10 @@
 //! Certificates of the answers of any renderer. The reference is never accused, and planted faults are found.
 
-use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
-};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose};
 use pinhole::geometry::ray::Ray;
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
-use pinhole::verify::conformance::{
-    Answers, Conformance, ConformanceError, DepthKind, Rays, Reason,
-};
+use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays, Reason};
 use pinhole::verify::{Checker, Outcome};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
@@ -50,8 +46,7 @@ impl Layers {
             hits.filter_map(|(sphere, id)| Some((test(origin, direction, *sphere)?, id)))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
         });
-        let (depths, ids) =
-            hits.map(|hit| hit.map_or((0.0, NO_ID), |(t, id)| (f64::from(t), id))).unzip();
+        let (depths, ids) = hits.map(|hit| hit.map_or((0.0, NO_ID), |(t, id)| (f64::from(t), id))).unzip();
         Self { size, ids, depths, normals: Vec::new() }
     }
 
@@ -241,11 +236,9 @@ fn wrong_ids_are_found_without_depths() {
     let spheres = || (0..).zip(picture.scene.spheres().iter().copied());
     let behind = spheres().find(behind).map(|(id, _)| id);
     let mut tried = 0;
-    for (wrong, reason) in [
-        (Some(NO_ID), Reason::Hidden(id)),
-        (behind, Reason::Hidden(id)),
-        (Some((id + 1) % 300), Reason::Missed),
-    ] {
+    for (wrong, reason) in
+        [(Some(NO_ID), Reason::Hidden(id)), (behind, Reason::Hidden(id)), (Some((id + 1) % 300), Reason::Missed)]
+    {
         let Some(wrong) = wrong else { continue };
         let mut made = picture.made.clone();
         made.ids[hit] = wrong;
@@ -269,9 +262,7 @@ fn a_repeated_row_is_found() {
     made.ids.copy_within(row * width..(row + 1) * width, (row + 1) * width);
     made.depths.copy_within(row * width..(row + 1) * width, (row + 1) * width);
     let found = picture.judged(&made);
-    let hits = |row: usize| {
-        made.ids[row * width..(row + 1) * width].iter().filter(|id| **id != NO_ID).count()
-    };
+    let hits = |row: usize| made.ids[row * width..(row + 1) * width].iter().filter(|id| **id != NO_ID).count();
     let violated = found.count(Outcome::Violated);
     assert!(violated > hits(row) * 9 / 10 && violated <= width, "{found}");
     assert!(
@@ -327,8 +318,7 @@ fn turned_normals_are_found() {
     let made = Layers::by_reference(&scene, &view);
     let hits = made.ids.iter().filter(|id| **id != NO_ID).count();
     let spoilt = |spoil: fn(DVec3) -> DVec3| {
-        let normals: Vec<[f64; 3]> =
-            made.normals.iter().map(|n| spoil(DVec3::from(*n)).to_array()).collect();
+        let normals: Vec<[f64; 3]> = made.normals.iter().map(|n| spoil(DVec3::from(*n)).to_array()).collect();
         let answers = Answers { depths: None, normals: Some(&normals), ..made.answers() };
         let found = certified(&scene, &answers, Rays::View(view));
         assert!(found.worst[0].reason == Reason::Normal || found.largest() < 1.0, "{found}");
@@ -371,9 +361,7 @@ fn what_cannot_be_judged_is_refused() {
         normals: Some(&[[0.0, 0.0, 1.0]]),
         ..Answers::default()
     };
-    let judge = |answers: Answers<'_>, rays: &[Ray], limit| {
-        checker.certify_answers(&answers, Rays::Given(rays), limit)
-    };
+    let judge = |answers: Answers<'_>, rays: &[Ray], limit| checker.certify_answers(&answers, Rays::Given(rays), limit);
     assert_eq!(judge(good, &[ray], None).unwrap().outcome(), Outcome::Proved);
     let long = Ray { direction: DVec3::Z * 1.00001, ..ray };
     let nowhere = Ray { origin: DVec3::NAN, ..ray };
@@ -382,25 +370,10 @@ fn what_cannot_be_judged_is_refused() {
         (Answers { size: [2, 1], ..good }, ray, None, "there are 1 ids for a picture of 2x1"),
         (Answers { depths: Some(&[]), ..good }, ray, None, "there are 0 depths"),
         (Answers { normals: Some(&[]), ..good }, ray, None, "there are 0 normals"),
-        (
-            Answers { ids: &[1], ..good },
-            ray,
-            None,
-            "the id at pixel (0, 0) is 1, but the scene has 1",
-        ),
+        (Answers { ids: &[1], ..good }, ray, None, "the id at pixel (0, 0) is 1, but the scene has 1"),
         (Answers { depths: Some(&[-1.0]), ..good }, ray, None, "the depth at pixel (0, 0) is -1"),
-        (
-            Answers { depths: Some(&[f64::NAN]), ..good },
-            ray,
-            None,
-            "the depth at pixel (0, 0) is NaN",
-        ),
-        (
-            Answers { normals: Some(&[[f64::NAN; 3]]), ..good },
-            ray,
-            None,
-            "the normal at pixel (0, 0)",
-        ),
+        (Answers { depths: Some(&[f64::NAN]), ..good }, ray, None, "the depth at pixel (0, 0) is NaN"),
+        (Answers { normals: Some(&[[f64::NAN; 3]]), ..good }, ray, None, "the normal at pixel (0, 0)"),
         (Answers { depth_kind: along, ..good }, ray, None, "depths along an axis need a camera"),
         (good, long, None, "the direction of the ray at pixel (0, 0) has the length 1.00001"),
         (good, nowhere, None, "the ray at pixel (0, 0) starts at [NaN, NaN, NaN]"),

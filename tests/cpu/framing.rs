@@ -3,9 +3,7 @@
 use glam::{DVec2, DVec3};
 use pinhole::camera::{Camera, CameraKind, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
-use pinhole::{
-    Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, SphereArray, View, cpu, glam,
-};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, SphereArray, View, cpu, glam};
 
 /// The largest fraction of the picture's half width or half height that a framed scene fills with the default margin.
 const FILL: f64 = 0.85;
@@ -93,11 +91,9 @@ fn measured(scene: &Scene, camera: &dyn Camera, film: Film) -> ([f64; 2], [f64; 
 #[test]
 fn pictures_are_filled_to_85_percent_in_any_aspect() {
     let at = |x: f64, y: f64, z: f64, r: f64| Sphere::new([x, y, z], r, LinearRgb::WHITE);
-    let scene =
-        Scene::new(&[at(0.0, 0.0, 0.0, 1.0), at(3.0, 1.0, -2.0, 0.5), at(1.0, 0.2, 4.0, 0.8)]);
+    let scene = Scene::new(&[at(0.0, 0.0, 0.0, 1.0), at(3.0, 1.0, -2.0, 0.5), at(1.0, 0.2, 4.0, 0.8)]);
     let scene = scene.unwrap();
-    for [width, height] in [[400, 300], [300, 400], [210, 297], [480, 270], [200, 200], [120, 500]]
-    {
+    for [width, height] in [[400, 300], [300, 400], [210, 297], [480, 270], [200, 200], [120, 500]] {
         let film = Film::new(width, height).unwrap();
         let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect()).unwrap();
         let (covered, off_center) = measured(&scene, &camera, film);

@@ -11,9 +11,7 @@ fn spheres(kind: Kind, count: u64, seed: u64) -> Vec<[f32; 4]> {
 /// The FNV-1a hash of the bytes that a file would have.
 fn hash(spheres: &[[f32; 4]]) -> u64 {
     let bytes = spheres.as_flattened().iter().flat_map(|x| x.to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// A program in another language reproduced the random ones, to the bit. A change of these values changes all timings
@@ -21,26 +19,10 @@ fn hash(spheres: &[[f32; 4]]) -> u64 {
 #[test]
 fn the_same_bytes_everywhere() {
     for (kind, eighth, expected) in [
-        (
-            Kind::Random,
-            [0.336_846_9, 0.291_912_56, 0.503_863_16, 0.015_396_557],
-            0x0f4d_5f06_df19_b0b6,
-        ),
-        (
-            Kind::Lattice,
-            [0.097_222_224, 0.041_666_668, 0.013_888_889, 0.019_641_856],
-            0x3eba_aa20_0b59_49c5,
-        ),
-        (
-            Kind::Clusters,
-            [0.164_799_23, 0.183_925_29, 0.042_285_606, 1.150_728e-6],
-            0x97d2_a1d7_73c1_5c74,
-        ),
-        (
-            Kind::Sphereflake,
-            [0.549_809_75, 0.314_107_48, 0.772_165_54, 0.083_333_336],
-            0xca2b_dcee_e21f_0e83,
-        ),
+        (Kind::Random, [0.336_846_9, 0.291_912_56, 0.503_863_16, 0.015_396_557], 0x0f4d_5f06_df19_b0b6),
+        (Kind::Lattice, [0.097_222_224, 0.041_666_668, 0.013_888_889, 0.019_641_856], 0x3eba_aa20_0b59_49c5),
+        (Kind::Clusters, [0.164_799_23, 0.183_925_29, 0.042_285_606, 1.150_728e-6], 0x97d2_a1d7_73c1_5c74),
+        (Kind::Sphereflake, [0.549_809_75, 0.314_107_48, 0.772_165_54, 0.083_333_336], 0xca2b_dcee_e21f_0e83),
     ] {
         let found = spheres(kind, 20_000, 1);
         assert_eq!((found[7], hash(&found)), (eighth, expected), "{kind:?}");

@@ -1,9 +1,7 @@
 //! Cameras from the matrices of host programs.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use pinhole::camera::{
-    Camera, CameraKind, DepthOrder, HostCamera, OrthographicCamera, PinholeCamera, Pose,
-};
+use pinhole::camera::{Camera, CameraKind, DepthOrder, HostCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::glam;
 
 use crate::support::hosts::{Convention, changes, from_rows, view};
@@ -102,9 +100,7 @@ fn our_own_cameras_come_back() {
             let host = HostCamera::new(view(&pose, into), projection, convention.order()).unwrap();
             let (a, b) = (own.vectors(), host.vectors());
             assert_eq!(own.kind(), host.kind());
-            for (a, b) in
-                [(a.origin, b.origin), (a.right, b.right), (a.up, b.up), (a.forward, b.forward)]
-            {
+            for (a, b) in [(a.origin, b.origin), (a.right, b.right), (a.up, b.up), (a.forward, b.forward)] {
                 assert!((a - b).length() < 1e-14, "{case}: {a} {b}");
             }
         }
@@ -136,11 +132,7 @@ fn arrays_in_f32() {
     let a = HostCamera::new(view, projection, order).unwrap();
     let b = HostCamera::new(view.to_cols_array_2d(), projection.to_cols_array_2d(), order).unwrap();
     let c = HostCamera::new(view.to_cols_array(), projection.to_cols_array(), order).unwrap();
-    let d = HostCamera::new(
-        view.as_dmat4().to_cols_array_2d(),
-        projection.as_dmat4().to_cols_array(),
-        order,
-    );
+    let d = HostCamera::new(view.as_dmat4().to_cols_array_2d(), projection.as_dmat4().to_cols_array(), order);
     assert_eq!((a, a, Ok(a)), (b, c, d));
 }
 
@@ -155,12 +147,8 @@ fn what_is_no_camera_is_refused() {
     let (mut nan, mut infinite) = (good, view);
     (nan.y_axis.x, infinite.w_axis.x) = (f64::NAN, f64::INFINITY);
     let flat = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
-    let nearly = DMat4::from_cols(
-        DVec4::new(1.0, 1.0, 0.0, 0.0),
-        DVec4::new(1.0, 1.0001, 0.0, 0.0),
-        DVec4::Z,
-        DVec4::W,
-    );
+    let nearly =
+        DMat4::from_cols(DVec4::new(1.0, 1.0, 0.0, 0.0), DVec4::new(1.0, 1.0001, 0.0, 0.0), DVec4::Z, DVec4::W);
     let [x, y, _, w] = [0, 1, 2, 3].map(|row| good.row(row));
     for (view, projection, expected) in [
         (view, nan, "the projection matrix contains a number that is not finite"),

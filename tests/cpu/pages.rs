@@ -10,8 +10,7 @@ fn root() -> &'static Path {
 
 /// Markdown files: those in some folders, and all below `docs`.
 fn pages() -> Vec<PathBuf> {
-    let folders =
-        ["", "cli", "docs", "examples/hosts", "python", "python/gallery", "shaders", "viewer"];
+    let folders = ["", "cli", "docs", "examples/hosts", "python", "python/gallery", "shaders", "viewer"];
     let mut folders = folders.map(|folder| root().join(folder)).to_vec();
     let mut pages = Vec::new();
     while let Some(folder) = folders.pop() {
@@ -36,8 +35,7 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 
 /// The links of a page. Code in backticks has no links.
 fn links(text: &str) -> Vec<String> {
-    let prose: Vec<String> =
-        lines(text).map(|line| line.split('`').step_by(2).collect::<String>()).collect();
+    let prose: Vec<String> = lines(text).map(|line| line.split('`').step_by(2).collect::<String>()).collect();
     let prose = prose.join("\n");
     let ends = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     ends.map(str::to_owned).collect()
@@ -102,11 +100,7 @@ fn named_files_exist() {
         for line in lines(&text) {
             for name in line.split('`').skip(1).step_by(2) {
                 let is_file = name.ends_with(".rs") || name.ends_with(".wgsl");
-                if !is_file
-                    || !name.contains('/')
-                    || name.contains(['*', ' '])
-                    || name.contains("NAME")
-                {
+                if !is_file || !name.contains('/') || name.contains(['*', ' ']) || name.contains("NAME") {
                     continue;
                 }
                 let folders = ["", "src", "shaders"];

@@ -7,20 +7,13 @@ use pinhole::glam::DVec3;
 use pinhole::image::Layer;
 use pinhole::render::{Decision, NearestPicture, Outline, Progress, Sampling};
 use pinhole::scene::SceneExtent;
-use pinhole::{
-    Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, View,
-};
+use pinhole::{Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, View};
 
 use crate::support::random_light::{self, RandomView};
 
 /// Rectangles that cover a film of 24 by 18 pixels.
-const PARTS: [([u32; 2], [u32; 2]); 5] = [
-    ([0, 0], [11, 7]),
-    ([11, 0], [13, 3]),
-    ([11, 3], [13, 4]),
-    ([0, 7], [23, 11]),
-    ([23, 7], [1, 11]),
-];
+const PARTS: [([u32; 2], [u32; 2]); 5] =
+    [([0, 0], [11, 7]), ([11, 0], [13, 3]), ([11, 3], [13, 4]), ([0, 7], [23, 11]), ([23, 7], [1, 11])];
 
 /// The settings of a view without noise removal. A studio has outlines.
 fn finished(view: &RandomView) -> RenderSettings {
@@ -107,10 +100,7 @@ fn whole_of(scene: &Scene) -> SceneExtent {
 }
 
 fn settings() -> RenderSettings {
-    RenderSettings {
-        integrator: Integrator::Primary(Shading::Headlight),
-        ..RenderSettings::default()
-    }
+    RenderSettings { integrator: Integrator::Primary(Shading::Headlight), ..RenderSettings::default() }
 }
 
 /// The pictures of parts. The spheres of each part are given by their ids.
@@ -165,8 +155,7 @@ fn a_part_hides_only_what_changes_nothing() {
     let view = View::new(&camera, film);
     let (near, far): (Vec<u32>, Vec<u32>) =
         (0..scene.len() as u32).partition(|id| scene.spheres()[*id as usize][2] > 0.5);
-    let [mut near, far] =
-        <[NearestPicture; 2]>::try_from(parts(&scene, &[near, far], &view)).unwrap();
+    let [mut near, far] = <[NearestPicture; 2]>::try_from(parts(&scene, &[near, far], &view)).unwrap();
     let bounds = |[x, y, z]: [f64; 3], radius| Bounds::of_sphere([x, y, z].into(), radius);
     let all = scene.bounds().unwrap();
     let is_hidden = |nearest: &NearestPicture, bounds| nearest.hides(&view, &all, &bounds);
@@ -202,11 +191,7 @@ const FILM: [u32; 2] = [37, 29];
 const TALL: [u32; 2] = [37, 1601];
 
 /// Calls `test` with a lit picture of the path integrator and one of the studio integrator.
-fn with_lit(
-    [width, height]: [u32; 2],
-    samples: u32,
-    test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings),
-) {
+fn with_lit([width, height]: [u32; 2], samples: u32, test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings)) {
     let view = random_light::view(3);
     for mut settings in [view.settings.clone(), RenderSettings::studio()] {
         settings.sampling.samples = samples;
@@ -217,24 +202,14 @@ fn with_lit(
 }
 
 /// The picture with `samples` samples, rendered without a watch.
-fn whole(
-    tree: &SearchStructure<'_>,
-    view: &View<'_>,
-    settings: &RenderSettings,
-    count: u32,
-) -> Image {
+fn whole(tree: &SearchStructure<'_>, view: &View<'_>, settings: &RenderSettings, count: u32) -> Image {
     let mut settings = settings.clone();
     settings.sampling.samples = count;
     cpu::render(tree, view, &settings, LayerSet::ALL).unwrap()
 }
 
 /// The colours of all pixels, pixel by pixel. They are the means of samples taken without batches.
-fn means(
-    tree: &SearchStructure<'_>,
-    view: &View<'_>,
-    settings: &RenderSettings,
-    count: u32,
-) -> Vec<[f32; 3]> {
+fn means(tree: &SearchStructure<'_>, view: &View<'_>, settings: &RenderSettings, count: u32) -> Vec<[f32; 3]> {
     let picture = SampledPicture::new(tree, view, settings).unwrap();
     let [width, height] = [view.film.width(), view.film.height()];
     (0..width * height)

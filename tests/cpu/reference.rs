@@ -2,9 +2,7 @@
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::{
-    Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu,
-};
+use pinhole::{Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu};
 
 use crate::support::compare::{Picture, Violation, compare};
 use crate::support::spheres_of;
@@ -120,9 +118,7 @@ fn three_spheres_have_exactly_their_colors_and_places() {
 fn a_picture_of_nothing_is_background() {
     let (scene, camera) = (Scene::new(&[]).unwrap(), pinhole(4.0, 1.0));
     let film = Film::new(3, 2).unwrap();
-    let image =
-        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::COLOR)
-            .unwrap();
+    let image = cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::COLOR).unwrap();
     assert!(image.color().iter().all(|c| *c == [0.1, 0.2, 0.3]));
     assert_eq!((image.depth(), image.normal(), image.id()), (None, None, None));
 }

@@ -12,12 +12,11 @@ use pinhole::verify::run_file::{
     self, Extras, FinalPicture, LitSamples, Provenance, Run, RunFile, RunFileError, write_with,
 };
 use pinhole::verify::{
-    Checker, LitCertificate, LitRecording, Outcome, PlainRender, Recording, RequestedCamera,
-    TracedPixel, TracedRay,
+    Checker, LitCertificate, LitRecording, Outcome, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay,
 };
 use pinhole::{
-    Appearance, Colors, Film, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading,
-    Sphere, SphereArray, SurfaceProperties, View, cpu,
+    Appearance, Colors, Film, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, SphereArray,
+    SurfaceProperties, View, cpu,
 };
 use sha2::{Digest, Sha256};
 
@@ -70,11 +69,7 @@ fn written(scene: &Scene, recording: &Recording) -> Vec<u8> {
 /// A run file of three spheres in two colours, in a frame of its own, with 3 by 2 pixels.
 fn small() -> Vec<u8> {
     let far = |x: f64, color| Sphere::new([4e6 + x, 0.1, 0.0], 1.5, color);
-    let scene = Scene::new(&[
-        far(0.0, LinearRgb::WHITE),
-        far(0.4, LinearRgb::BLACK),
-        far(2.0, LinearRgb::WHITE),
-    ]);
+    let scene = Scene::new(&[far(0.0, LinearRgb::WHITE), far(0.4, LinearRgb::BLACK), far(2.0, LinearRgb::WHITE)]);
     let eye = [4e6, 0.0, 9.0];
     let pose = Pose::looking_along(eye, [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::new(pose, 2.0, [0.9, 0.6]).unwrap();
@@ -179,9 +174,8 @@ fn recorded() -> (Scene, Recording, LitRecording) {
 fn cut(made: &LitRecording, [x, y, width, height]: [u32; 4]) -> LitRecording {
     let mut cut = made.clone();
     let whole = made.given.size[0];
-    let indices: Vec<usize> = (y..y + height)
-        .flat_map(|j| (x..x + width).map(move |i| (j * whole + i) as usize))
-        .collect();
+    let indices: Vec<usize> =
+        (y..y + height).flat_map(|j| (x..x + width).map(move |i| (j * whole + i) as usize)).collect();
     fn only<T: Clone>(list: &mut Vec<T>, indices: &[usize]) {
         *list = indices.iter().map(|index| list[*index].clone()).collect();
     }
@@ -240,8 +234,7 @@ fn others_read_it() {
     assert_eq!(file.tensor("normal").unwrap().shape(), [2, 3, 3]);
     assert_eq!(file.tensor("traced").unwrap().dtype(), safetensors::Dtype::BOOL);
     let run = run_file::read(&bytes).unwrap();
-    let spheres: Vec<u8> =
-        run.scene.spheres().as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let spheres: Vec<u8> = run.scene.spheres().as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
     assert_eq!(file.tensor("spheres").unwrap().data(), spheres);
     let digest = data_encoding::HEXLOWER.encode(&Sha256::digest(&spheres));
     assert_eq!(run_file::scene_sha256(&run.scene), digest);
@@ -255,11 +248,7 @@ fn what_is_cut_off_is_refused() {
         let expected = if length < 8 + 17 {
             RunFileError::NotRun
         } else {
-            let expected = if length < 8 + bytes_of_header(&bytes) {
-                8 + bytes_of_header(&bytes)
-            } else {
-                bytes.len()
-            };
+            let expected = if length < 8 + bytes_of_header(&bytes) { 8 + bytes_of_header(&bytes) } else { bytes.len() };
             RunFileError::Truncated { found: length as u64, expected: expected as u64 }
         };
         assert_eq!(error, expected, "{length}");
@@ -277,8 +266,7 @@ fn other_files_and_other_versions() {
     let bytes = small();
     for version in ["5", "6", "8"] {
         let other = format!("\"pinhole_run\":\"{version}\"");
-        let error =
-            run_file::read(&with_header(&bytes, "\"pinhole_run\":\"7\"", &other)).unwrap_err();
+        let error = run_file::read(&with_header(&bytes, "\"pinhole_run\":\"7\"", &other)).unwrap_err();
         assert_eq!(error, RunFileError::Version(version.to_owned()));
         let words = "this program reads version 7; record it again with `verify --save`";
         assert_eq!(error.to_string(), format!("run file of version {version}; {words}"));
@@ -309,9 +297,7 @@ fn hostile_contents_with_a_right_digest() {
     let arrays: Vec<String> = (0..9)
         .map(|i| {
             let (start, end) = (i * most, (i + 1) * most);
-            format!(
-                "\"{i}\":{{\"dtype\":\"U8\",\"shape\":[{most}],\"data_offsets\":[{start},{end}]}}"
-            )
+            format!("\"{i}\":{{\"dtype\":\"U8\",\"shape\":[{most}],\"data_offsets\":[{start},{end}]}}")
         })
         .collect();
     let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"7\"}},{}}}", arrays.join(","));
@@ -385,8 +371,7 @@ fn rectangles_differ_and_pictures_do_not() {
     // One pixel of the second sample.
     let mut other = cut(&part(1..2), [3, 2, 1, 1]);
     samples.add(&other).unwrap();
-    let bytes =
-        written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
+    let bytes = written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
     let certificate = replayed(&bytes).unwrap().unwrap();
     assert_eq!((certificate.paths, certificate.violation_count), (109, 0), "{certificate}");
     // Lists that do not match the size of the rectangle, and samples of another picture.
@@ -405,8 +390,7 @@ fn rectangles_differ_and_pictures_do_not() {
     assert!(error.to_string().contains("another camera"), "{error}");
     // Cleared samples are not written.
     samples.clear();
-    let bytes =
-        written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
+    let bytes = written_with(&scene, &picture, Extras { light: Some(&samples), ..Extras::default() });
     assert_eq!(replayed(&bytes).unwrap(), None);
 }
 
@@ -539,8 +523,7 @@ fn materials_and_pictures_are_kept() {
     let view = View::new(&camera, Film::new(size[0], size[1]).unwrap());
     let noisy = cpu::render(&scene, &view, &RenderSettings::studio(), GUIDES).unwrap();
     let denoised = cpu::denoise(&noisy).unwrap();
-    let extras =
-        Extras { denoised: Some([&noisy, &denoised]), shown: Some(&shown), ..Extras::default() };
+    let extras = Extras { denoised: Some([&noisy, &denoised]), shown: Some(&shown), ..Extras::default() };
     let bytes = written_with(&scene, &picture, extras);
     let mut source = Cursor::new(&bytes);
     let file = RunFile::open(&mut source).unwrap();

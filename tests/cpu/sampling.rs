@@ -14,24 +14,19 @@ fn point(pixel: [u32; 2], sample: u32, number: u32) -> [f64; 2] {
 /// In every aligned block of 2ᵐ samples, every box of 2⁻ᵃ by 2ᵃ⁻ᵐ contains one sample.
 #[test]
 fn every_aligned_block_is_a_net() {
-    let addresses =
-        [([0, 0], 0), ([1, 0], 0), ([0, 1], 1), ([1919, 1079], 7), ([u32::MAX; 2], 999)];
+    let addresses = [([0, 0], 0), ([1, 0], 0), ([0, 1], 1), ([1919, 1079], 7), ([u32::MAX; 2], 999)];
     for (pixel, number) in addresses {
         let seed = pixel_seed(pixel, SEED);
         for m in 0..=10_u32 {
             let last = u32::MAX >> m;
             for block in [0, 1, 2, 5, 1000, last / 2, last - 1, last].map(|b: u32| b.min(last)) {
                 let samples = 0..1 << m;
-                let points: Vec<_> =
-                    samples.map(|i| pair(seed, (block << m) + i, number)).collect();
+                let points: Vec<_> = samples.map(|i| pair(seed, (block << m) + i, number)).collect();
                 for a in 0..=m {
                     let mut is_taken = vec![false; 1 << m];
                     for [x, y] in points.iter().map(|point| point.map(u64::from)) {
                         let place = ((x << a) >> 32 << (m - a)) | ((y << (m - a)) >> 32);
-                        assert!(
-                            !is_taken[place as usize],
-                            "{pixel:?}, {number}, {m}, {block}, {a}"
-                        );
+                        assert!(!is_taken[place as usize], "{pixel:?}, {number}, {m}, {block}, {a}");
                         is_taken[place as usize] = true;
                     }
                 }
@@ -77,10 +72,7 @@ fn pairs_are_independent() {
                     let pixel = [n % 64, n / 64];
                     (point(pixel, i, a)[c] - 0.5) * (point(pixel, i, b)[d] - 0.5)
                 });
-                assert!(
-                    (found - 1.0).abs() < bound(TRIES),
-                    "{samples}, {a}.{c} and {b}.{d}: {found}"
-                );
+                assert!((found - 1.0).abs() < bound(TRIES), "{samples}, {a}.{c} and {b}.{d}: {found}");
             }
         }
     }

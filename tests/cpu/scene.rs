@@ -7,8 +7,8 @@ use pinhole::render::SettingsError;
 use pinhole::scene::{Centers, NewColors, SceneError, SceneUpdate};
 use pinhole::verify::run_file;
 use pinhole::{
-    Appearance, ColorMap, Colors, Film, Image, LayerSet, LinearRgb, Material, Radii,
-    RenderSettings, Scene, Sphere, SphereArray, SurfaceProperties, View, cpu,
+    Appearance, ColorMap, Colors, Film, Image, LayerSet, LinearRgb, Material, Radii, RenderSettings, Scene, Sphere,
+    SphereArray, SurfaceProperties, View, cpu,
 };
 
 use crate::run_file::made;
@@ -57,8 +57,7 @@ fn data_around_the_origin_keeps_its_numbers() {
 #[test]
 fn data_far_from_the_origin_keeps_its_shape() {
     let far = 123_456_789.0;
-    let spheres: Vec<Sphere> =
-        (0..100).map(|i| sphere([far + f64::from(i) * 0.01, -far, far], 0.004)).collect();
+    let spheres: Vec<Sphere> = (0..100).map(|i| sphere([far + f64::from(i) * 0.01, -far, far], 0.004)).collect();
     let scene = Scene::new(&spheres).unwrap();
     for (given, kept) in spheres.iter().zip(scene.spheres()) {
         let world = scene.origin() + DVec3::new(kept[0].into(), kept[1].into(), kept[2].into());
@@ -89,8 +88,7 @@ fn data_that_was_exact_in_f32_stays_exact() {
 
 #[test]
 fn bounds_hold_every_sphere() {
-    let scene =
-        Scene::new(&[sphere([-4.0, 0.0, 0.0], 2.0), sphere([1.0, 5.0, -3.0], 0.5)]).unwrap();
+    let scene = Scene::new(&[sphere([-4.0, 0.0, 0.0], 2.0), sphere([1.0, 5.0, -3.0], 0.5)]).unwrap();
     let bounds = scene.bounds().unwrap();
     assert_eq!(bounds.min(), DVec3::new(-6.0, -2.0, -3.5));
     assert_eq!(bounds.max(), DVec3::new(1.5, 5.5, 2.0));
@@ -100,10 +98,7 @@ fn bounds_hold_every_sphere() {
 /// A list that is long enough for several threads.
 fn many(random: &mut fastrand::Rng, at: f64) -> Vec<[f64; 4]> {
     let coordinate = |random: &mut fastrand::Rng| at + random.f64() * 10.0 - 5.0;
-    (0..200_000)
-        .map(|_| [0; 3].map(|_| coordinate(random)))
-        .map(|[x, y, z]| [x, y, z, 0.1])
-        .collect()
+    (0..200_000).map(|_| [0; 3].map(|_| coordinate(random))).map(|[x, y, z]| [x, y, z, 0.1]).collect()
 }
 
 #[test]
@@ -136,8 +131,7 @@ fn arrays_far_from_the_origin_keep_their_shape() {
     // Multiples of 2⁻²⁰, which f64 adds to 10⁷ exactly.
     let step = f64::from(1 << 20).recip();
     let mut coordinate = || (f64::from(random.i32(-5_000_000..5_000_000))) * step;
-    let near: Vec<[f64; 4]> =
-        (0..1000).map(|_| [coordinate(), coordinate(), coordinate(), 0.1]).collect();
+    let near: Vec<[f64; 4]> = (0..1000).map(|_| [coordinate(), coordinate(), coordinate(), 0.1]).collect();
     let far: Vec<_> = near.iter().map(|[x, y, z, r]| [x + 1e7, y - 1e7, z + 1e7, *r]).collect();
     let near_scene = Scene::from_f64(&near, LinearRgb::WHITE).unwrap();
     let far_scene = Scene::from_f64(&far, LinearRgb::WHITE).unwrap();
@@ -197,8 +191,7 @@ fn run_files_keep_every_kind() {
         let recording = made(&kind.scene, &camera(), film());
         let written = |scene: &Scene| {
             let mut bytes = Vec::new();
-            run_file::write(scene, &recording, &run_file::Provenance::default(), &mut bytes)
-                .unwrap();
+            run_file::write(scene, &recording, &run_file::Provenance::default(), &mut bytes).unwrap();
             bytes
         };
         let bytes = written(&kind.scene);
@@ -247,26 +240,19 @@ fn refused(appearance: Appearance) -> SceneError {
 #[test]
 fn what_does_not_fit_is_named_by_index() {
     let gray = |level| LinearRgb::new([level; 3]).unwrap();
-    let palette =
-        |indices| Appearance::new(Colors::Palette { palette: vec![gray(0.1); 2], indices });
+    let palette = |indices| Appearance::new(Colors::Palette { palette: vec![gray(0.1); 2], indices });
     let map = ColorMap::new(vec![gray(0.1), gray(0.2)], [0.0, 1.0]).unwrap();
     let scalars = |values| Appearance::new(Colors::Scalars { values, map: map.clone() });
     let rgba = |count| Appearance::from(vec![[0; 4]; count]);
     let surfaces = |indices| rgba(3).with_surfaces(vec![SurfaceProperties::default(); 2], indices);
     for (appearance, words) in [
-        (
-            palette(vec![0, 2, 1]),
-            "sphere 1 has no color: its index is out of range; the palette has 2 colors",
-        ),
+        (palette(vec![0, 2, 1]), "sphere 1 has no color: its index is out of range; the palette has 2 colors"),
         (palette(vec![0, 1]), "sphere 2 has no color: there are 2 for 3 spheres"),
         (rgba(1), "sphere 1 has no color: there are 1 for 3 spheres"),
         (rgba(4), "color 3 has no sphere: there are 4 for 3 spheres"),
         (scalars(vec![0.0, 0.0, f32::NAN]), "sphere 2 has the number NaN, which has no color"),
         (scalars(vec![0.0]), "sphere 1 has no color: there are 1 for 3 spheres"),
-        (
-            surfaces(vec![0, 1, 2]),
-            "the surface index of sphere 2 is out of range; there are 2 surfaces",
-        ),
+        (surfaces(vec![0, 1, 2]), "the surface index of sphere 2 is out of range; there are 2 surfaces"),
         (surfaces(vec![0; 4]), "surface index 3 has no sphere: there are 4 for 3 spheres"),
         (
             rgba(3).with_surfaces(vec![], vec![0; 3]),
@@ -284,11 +270,10 @@ fn what_creates_light_is_named_by_index() {
     let lamp = SurfaceProperties { material: Material::Emissive { strength: 2.0 }, opacity: 1.0 };
     let check = |colors: [u32; 3], surfaces: [u32; 3]| {
         let colors = Colors::Palette { palette: palette.to_vec(), indices: colors.to_vec() };
-        let appearance = Appearance::new(colors)
-            .with_surfaces(vec![SurfaceProperties::default(), lamp], surfaces.to_vec());
+        let appearance =
+            Appearance::new(colors).with_surfaces(vec![SurfaceProperties::default(), lamp], surfaces.to_vec());
         let spheres = (0..3).map(|i| [i as f32, 0.0, 0.0, 0.4]).collect();
-        RenderSettings::studio()
-            .check(&Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap())
+        RenderSettings::studio().check(&Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap())
     };
     assert_eq!(check([0, 1, 0], [0, 1, 0]), Ok(()));
     assert_eq!(check([0, 0, 0], [0, 0, 1]), Ok(()));
@@ -334,8 +319,7 @@ fn updates_are_as_a_scene_that_was_made_so() {
                 let is_in = update.range().contains(&(id as u32));
                 let place = id.wrapping_sub(first);
                 let [x, y, z, r] = before.spheres()[id];
-                let [x, y, z] =
-                    if is_in && update.centers.is_some() { centers[place] } else { [x, y, z] };
+                let [x, y, z] = if is_in && update.centers.is_some() { centers[place] } else { [x, y, z] };
                 let r = if is_in && update.radii.is_some() { radii[place] } else { r };
                 assert_eq!(scene.spheres()[id], [x, y, z, r]);
                 if !is_in || update.colors.is_none() {
@@ -358,8 +342,7 @@ fn centers_are_in_the_world() {
     let mut scene = Scene::from_f64(&spheres, LinearRgb::WHITE).unwrap();
     let origin = scene.origin();
     let moved = [[1e7 + 0.125, 0.25, 0.0]];
-    let update =
-        SceneUpdate { first: 1, centers: Some(Centers::F64(&moved)), ..SceneUpdate::default() };
+    let update = SceneUpdate { first: 1, centers: Some(Centers::F64(&moved)), ..SceneUpdate::default() };
     scene.apply(&update).unwrap();
     assert_eq!(scene.origin(), origin);
     let [x, y, z, radius] = scene.spheres()[1].map(f64::from);
@@ -382,10 +365,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
     for (update, words) in [
         (SceneUpdate { first: 7, centers: moved(&centers), ..update }, "there is no sphere 10: "),
         (SceneUpdate { first: u32::MAX, centers: moved(&centers), ..update }, "there is no sphere"),
-        (
-            SceneUpdate { centers: moved(&bad_centers), ..update },
-            "sphere 6: its center is [1.0, NaN",
-        ),
+        (SceneUpdate { centers: moved(&bad_centers), ..update }, "sphere 6: its center is [1.0, NaN"),
         (SceneUpdate { radii, ..update }, "sphere 5: its radius is -1.0; "),
         (
             SceneUpdate { centers: moved(&centers), radii, ..update },
@@ -396,11 +376,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
             "sphere 5 has no color: its index is out of range; the palette has 3 colors",
         ),
         (
-            SceneUpdate {
-                radii: Some(&[1.0; 2]),
-                colors: Some(NewColors::Palette(&[2])),
-                ..update
-            },
+            SceneUpdate { radii: Some(&[1.0; 2]), colors: Some(NewColors::Palette(&[2])), ..update },
             "sphere 5 is not in every list: the update has a color for 1 spheres, but 2",
         ),
         (
@@ -423,9 +399,7 @@ fn what_is_refused_is_named_and_changes_nothing() {
         let before = parts(&kind.scene);
         let refused = kind.scene.apply(&update).unwrap_err();
         let is_named = match kind.scene.appearance().colors() {
-            Colors::Scalars { .. } => {
-                refused.to_string().starts_with("sphere 5 has the number NaN")
-            }
+            Colors::Scalars { .. } => refused.to_string().starts_with("sphere 5 has the number NaN"),
             _ => refused.to_string().starts_with("sphere 4 cannot be given"),
         };
         assert!(is_named, "{}: {refused}", kind.name);

@@ -7,9 +7,7 @@ use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::light::{Ground, Light};
 use pinhole::render::{DepthCue, Occlusion, Studio};
-use pinhole::{
-    Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View,
-};
+use pinhole::{Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View};
 
 use crate::support::random_light;
 use crate::support::spheres_of;
@@ -70,8 +68,7 @@ fn random_pictures() {
 }
 
 fn studio(random: &mut Rng, size: f64) -> RenderSettings {
-    let occlusion =
-        Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
+    let occlusion = Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
     let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
     let studio = Studio {
         occlusion: random.bool().then_some(occlusion),
@@ -80,12 +77,8 @@ fn studio(random: &mut Rng, size: f64) -> RenderSettings {
         depth_cue: random.bool().then_some(cue),
         ..Studio::default()
     };
-    let ground = Ground {
-        point: -size * DVec3::Y,
-        normal: DVec3::Y,
-        color: color(random),
-        is_shadow_catcher: random.bool(),
-    };
+    let ground =
+        Ground { point: -size * DVec3::Y, normal: DVec3::Y, color: color(random), is_shadow_catcher: random.bool() };
     let mut settings = RenderSettings {
         integrator: Integrator::Studio(studio),
         lights: Light::key_and_fill().to_vec(),
@@ -165,9 +158,7 @@ fn many_equal_spheres_hide_light_by_their_own_opacity() {
                 Sphere::new([0.0, 0.4, 0.0], 0.3, color(&mut random)).with_opacity(opacity)
             })
             .collect();
-        spheres.extend(
-            (0..400).map(|_| Sphere::new(point(&mut random).to_array(), 0.05, color(&mut random))),
-        );
+        spheres.extend((0..400).map(|_| Sphere::new(point(&mut random).to_array(), 0.05, color(&mut random))));
         let scene = Scene::new(&spheres).unwrap();
         let pose = Pose::looking_at([0.2, 2.5, 3.0], DVec3::ZERO, DVec3::Y).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.8, 4.0 / 3.0).unwrap();

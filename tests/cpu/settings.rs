@@ -6,8 +6,7 @@ use pinhole::image::NO_ID;
 use pinhole::light::{Ground, Light, Sky, SkyLight};
 use pinhole::render::{PathTracing, Sampling, SettingsError, Studio};
 use pinhole::{
-    Film, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, View,
-    cpu, glam,
+    Film, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, View, cpu, glam,
 };
 
 fn grey() -> LinearRgb {
@@ -117,8 +116,7 @@ fn what_is_odd_is_noted() {
         lights: Vec::new(),
         ..RenderSettings::studio()
     };
-    let (primary, studio, path) =
-        (RenderSettings::default(), RenderSettings::studio(), RenderSettings::path());
+    let (primary, studio, path) = (RenderSettings::default(), RenderSettings::studio(), RenderSettings::path());
     for (settings, scene, notes) in [
         (&primary, &matt, vec![]),
         (&primary, &metal, vec![]),
@@ -142,15 +140,12 @@ fn surfaces_that_are_left_out_are_noted() {
         let mut random = fastrand::Rng::with_seed(5);
         let inside = std::iter::repeat_with(|| [(); 3].map(|()| 2.0 * random.f64() - 1.0))
             .filter(|center| center.iter().map(|c| c * c).sum::<f64>() < 1.0);
-        let spheres = inside
-            .take(count as usize)
-            .map(|center| Sphere::new(center, 0.15, LinearRgb::WHITE).with_opacity(opacity));
+        let spheres =
+            inside.take(count as usize).map(|center| Sphere::new(center, 0.15, LinearRgb::WHITE).with_opacity(opacity));
         Scene::new(&spheres.collect::<Vec<_>>()).unwrap()
     };
     let studio = RenderSettings::studio();
-    for (count, opacity, is_deep) in
-        [(1000, 0.1, true), (1000, 0.5, false), (100, 0.1, false), (1000, 1.0, false)]
-    {
+    for (count, opacity, is_deep) in [(1000, 0.1, true), (1000, 0.5, false), (100, 0.1, false), (1000, 1.0, false)] {
         let notes = studio.notes(&ball(count, opacity));
         assert_eq!(notes.len(), usize::from(is_deep), "{count} {opacity}: {notes:?}");
         assert!(notes.iter().all(|note| note.contains("the 16 nearest surfaces")), "{notes:?}");
@@ -167,8 +162,7 @@ fn primary_rays_may_have_no_background() {
     let view = View::new(&camera, Film::new(9, 9).unwrap());
     let opaque = RenderSettings { background: grey(), ..RenderSettings::default() };
     let clear = RenderSettings { is_transparent: true, ..opaque.clone() };
-    let [opaque, clear] =
-        [opaque, clear].map(|s| cpu::render(&scene, &view, &s, LayerSet::ALL).unwrap());
+    let [opaque, clear] = [opaque, clear].map(|s| cpu::render(&scene, &view, &s, LayerSet::ALL).unwrap());
     for (pixel, id) in opaque.id().unwrap().iter().enumerate() {
         let (color, alpha) = (clear.color()[pixel], clear.alpha().unwrap()[pixel]);
         if *id == NO_ID {
@@ -184,10 +178,7 @@ fn primary_rays_may_have_no_background() {
 fn samples_of_primary_rays_are_the_picture() {
     let (scene, camera) = (one(sphere()), camera());
     let view = View::new(&camera, Film::new(5, 5).unwrap());
-    let settings = RenderSettings {
-        integrator: Integrator::Primary(Shading::Flat),
-        ..RenderSettings::default()
-    };
+    let settings = RenderSettings { integrator: Integrator::Primary(Shading::Flat), ..RenderSettings::default() };
     let picture = cpu::SampledPicture::new(&scene, &view, &settings).unwrap();
     let image = cpu::render(&scene, &view, &settings, LayerSet::ALL).unwrap();
     for (index, color) in image.color().iter().enumerate() {

@@ -8,8 +8,8 @@ use dashu_float::round::mode;
 use dashu_float::{Context, FBig};
 use fastrand::Rng;
 use pinhole::camera::{
-    Camera, DepthOrder, FisheyeCamera, HostCamera, OrthographicCamera, PanoramaCamera,
-    PinholeCamera, Pose, ThinLensCamera,
+    Camera, DepthOrder, FisheyeCamera, HostCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
+    ThinLensCamera,
 };
 use pinhole::glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use pinhole::internals::NO_HIT;
@@ -265,9 +265,7 @@ fn any_camera(random: &mut fastrand::Rng) -> Box<dyn Camera> {
         5 => Box::new(panorama.stereo_pair(separation, convergence).unwrap()[random.usize(0..2)]),
         6 => Box::new(FisheyeCamera::new(pose, TAU, half_extent[0]).unwrap()),
         7 => Box::new(any_host(random, pose, half_extent)),
-        _ => {
-            Box::new(FisheyeCamera::new(pose, TAU * (1.0 - random.f64()), half_extent[0]).unwrap())
-        }
+        _ => Box::new(FisheyeCamera::new(pose, TAU * (1.0 - random.f64()), half_extent[0]).unwrap()),
     }
 }
 
@@ -289,8 +287,7 @@ fn uploaded(camera: &dyn Camera, random: &mut fastrand::Rng) -> UploadedView {
     let can_advance = camera.location_of(vectors.origin + vectors.forward).is_some()
         && vectors.numbers[2] == 0.0
         && vectors.numbers[1] != 1.0;
-    let advance =
-        if can_advance && random.bool() { decades(random, -3.0, 3.0) as f32 } else { 0.0 };
+    let advance = if can_advance && random.bool() { decades(random, -3.0, 3.0) as f32 } else { 0.0 };
     verify::uploaded(&vectors, vectors.origin, advance, [[0.0; 3]; 2])
 }
 
@@ -364,8 +361,7 @@ fn the_references_ray_is_near_the_middle_of_what_is_legal() {
             ] {
                 let context = format!("case {case}, {camera:?} at {location:?}, lens {lens:?}");
                 // Wide lenses, and views to the side, have rays that are much shorter than their terms.
-                let terms =
-                    if scale == 1.0 { 1.0 + reach / shortest(camera.as_ref()) } else { scale };
+                let terms = if scale == 1.0 { 1.0 + reach / shortest(camera.as_ref()) } else { scale };
                 let error = ROUNDINGS * terms;
                 assert!(interval.high - interval.low <= error, "{context}: {interval:?}");
                 assert!(interval.low - error <= exact, "{context}: {exact} {interval:?}");

@@ -237,8 +237,7 @@ fn crowds_of_equal_spheres_and_crowds_elsewhere() {
     equal.push([1e4, 0.0, 0.0, 0.02]);
     check_crowd("equal", &equal);
     let moved = |[x, y, z, radius]: [f32; 4]| [x + 1e4, y, z - 3e3, radius];
-    let elsewhere: Spheres =
-        crowd_and_outliers(4_000, 4, 1e4, false).into_iter().map(moved).collect();
+    let elsewhere: Spheres = crowd_and_outliers(4_000, 4, 1e4, false).into_iter().map(moved).collect();
     check_crowd("elsewhere", &elsewhere);
     let outliers = vec![[-1e4, 1e4, 1e4, 0.5]; 4];
     let mut same = spheres::random(4_000, 31, |_| 0.01);

@@ -4,15 +4,13 @@ use std::f64::consts::TAU;
 
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{
-    Camera, CameraKind, CameraVectors, FisheyeCamera, OrthographicCamera, PanoramaCamera,
-    PinholeCamera, Pose, ThinLensCamera,
+    Camera, CameraKind, CameraVectors, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
+    ThinLensCamera,
 };
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::render::PrimarySettings;
-use pinhole::verify::{
-    Certificate, Checker, Outcome, PlainRender, Recording, RequestedCamera, UploadedView,
-};
+use pinhole::verify::{Certificate, Checker, Outcome, PlainRender, Recording, RequestedCamera, UploadedView};
 use pinhole::{Film, Image, LayerSet, Scene, View};
 
 use crate::scene::colored;
@@ -45,8 +43,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
     let vectors = camera.vectors();
     let bounds = scene.bounds_to_frame();
     let margin = 1e-4 * bounds.size().length();
-    let (low, high) =
-        (bounds.min() - scene.origin() - margin, bounds.max() - scene.origin() + margin);
+    let (low, high) = (bounds.min() - scene.origin() - margin, bounds.max() - scene.origin() + margin);
     let origin = vectors.origin - scene.origin();
     let forward = vectors.forward;
     let [low, high] = [low, high].map(|corner| corner.as_vec3().as_dvec3());
@@ -139,13 +136,7 @@ pub(crate) fn certify(scene: &Scene, recording: &Recording) -> Certificate {
 
 /// Checks that no habit of a legal device is accused.
 fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Film) -> usize {
-    let habits = [
-        (Habit::Nearest, 0),
-        (Habit::Up, 0),
-        (Habit::Down, 0),
-        (Habit::Random, 1),
-        (Habit::Random, 2),
-    ];
+    let habits = [(Habit::Nearest, 0), (Habit::Up, 0), (Habit::Down, 0), (Habit::Random, 1), (Habit::Random, 2)];
     let made = habits.map(|(habit, seed)| {
         let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(seed) };
         device.record(scene, &given(scene, camera, film))
@@ -156,11 +147,7 @@ fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Fi
         let mut recording = made[number].clone();
         recording.compare(made[(number + 1) % made.len()].image.clone());
         let certificate = certify(scene, &recording);
-        assert_ne!(
-            certificate.outcome(),
-            Outcome::Violated,
-            "{name}, {camera:?}, {habit:?}:\n{certificate}"
-        );
+        assert_ne!(certificate.outcome(), Outcome::Violated, "{name}, {camera:?}, {habit:?}:\n{certificate}");
         otherwise += certificate.rendered_otherwise.unwrap();
         let view = View::new(camera, film);
         assert_is_not_accused(name, scene, &view, &recording.image);
@@ -189,9 +176,8 @@ fn no_picture_of_a_conforming_device_is_accused() {
 /// A flat box with rays along its wall. Where these enter depends on the last bit of their direction.
 #[test]
 fn rays_that_graze_the_box_are_not_accused() {
-    let plate: Vec<[f32; 4]> = (0..48)
-        .map(|i| [(i / 4) as f32 * 8.0 - 44.0, 0.0, (i % 4) as f32 * 8.0 - 12.0, 1.0])
-        .collect();
+    let plate: Vec<[f32; 4]> =
+        (0..48).map(|i| [(i / 4) as f32 * 8.0 - 44.0, 0.0, (i % 4) as f32 * 8.0 - 12.0, 1.0]).collect();
     let scene = scene(&plate);
     for (height, down) in [(1.5, 10.0), (1.2, 10.0), (2.0, 6.0)] {
         let (eye, target) = ([-20.0, height, 1.0], [-10.0, height - down, 0.5]);

@@ -9,10 +9,7 @@ use pinhole::render::{PathTracing, PrimarySettings, Sampling};
 use pinhole::verify::denoised::certify;
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Outcome, Verdict};
-use pinhole::{
-    Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, View,
-    cpu,
-};
+use pinhole::{Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, View, cpu};
 use pinhole_figure::write::png;
 
 use crate::scene::colored;
@@ -81,8 +78,7 @@ fn scene() -> Scene {
 
 fn camera(scene: &Scene) -> PinholeCamera {
     let bounds = scene.bounds_to_frame();
-    let eye =
-        bounds.center() + pinhole::glam::DVec3::new(0.9, 0.5, 1.4) * bounds.size().max_element();
+    let eye = bounds.center() + pinhole::glam::DVec3::new(0.9, 0.5, 1.4) * bounds.size().max_element();
     let pose = Pose::looking_at(eye, bounds.center(), [0.1, 1.0, 0.2]).unwrap();
     PinholeCamera::with_vertical_fov(pose, 0.7, 1.3).unwrap()
 }
@@ -143,12 +139,7 @@ fn the_references_picture_is_proved_in_every_encoding() {
                 let made = Picture::new(settings(shading, is_transparent), encoding);
                 let found = made.judge(&made.bytes);
                 let name = format!("{shading:?}, {is_transparent}, {encoding:?}");
-                assert_eq!(
-                    found.outcome(),
-                    Outcome::Proved,
-                    "{name}: {:?}",
-                    found.violations.first()
-                );
+                assert_eq!(found.outcome(), Outcome::Proved, "{name}: {:?}", found.violations.first());
                 assert!(found.count(Verdict::Decided) > 4600, "{name}: {found:?}");
             }
         }
@@ -177,21 +168,15 @@ fn a_byte_two_steps_away_is_found() {
 #[test]
 fn pictures_that_are_changed_are_found() {
     let made = Picture::plain();
-    let moved: Vec<u8> =
-        made.bytes.iter().copied().cycle().skip(3).take(made.bytes.len()).collect();
+    let moved: Vec<u8> = made.bytes.iter().copied().cycle().skip(3).take(made.bytes.len()).collect();
     let upside_down: Vec<u8> = made.bytes.chunks(3 * 78).rev().flatten().copied().collect();
     let swapped: Vec<u8> = made.bytes.chunks(3).flat_map(|p| [p[2], p[1], p[0]]).collect();
-    let dithered: Vec<u8> =
-        made.bytes.iter().enumerate().map(|(i, b)| b.saturating_add(3 * (i % 2) as u8)).collect();
+    let dithered: Vec<u8> = made.bytes.iter().enumerate().map(|(i, b)| b.saturating_add(3 * (i % 2) as u8)).collect();
     let mut band = made.bytes.clone();
     band[3 * 78 * 20..3 * 78 * 21].fill(200);
-    for (name, bytes) in [
-        ("moved", moved),
-        ("upside down", upside_down),
-        ("swapped", swapped),
-        ("dithered", dithered),
-        ("band", band),
-    ] {
+    for (name, bytes) in
+        [("moved", moved), ("upside down", upside_down), ("swapped", swapped), ("dithered", dithered), ("band", band)]
+    {
         let found = made.judge(&bytes);
         assert_eq!(found.outcome(), Outcome::Violated, "{name}");
     }
@@ -213,8 +198,7 @@ fn pictures_of_something_else_are_found() {
 
     let flat = Picture::new(settings(Shading::Flat, false), Encoding::default());
     assert_eq!(flat.judge(&made.bytes).outcome(), Outcome::Violated);
-    let exposed =
-        Picture { encoding: Encoding::default().with_exposure(0.05).unwrap(), ..Picture::plain() };
+    let exposed = Picture { encoding: Encoding::default().with_exposure(0.05).unwrap(), ..Picture::plain() };
     assert_eq!(exposed.judge(&made.bytes).outcome(), Outcome::Violated);
 }
 
@@ -226,11 +210,7 @@ fn pictures_of_another_size_are_refused() {
     let primary = PrimarySettings::default();
     let judged = |size, bytes| {
         let samples = Samples::Encoded(bytes);
-        checker.certify_written(
-            &view,
-            &primary,
-            &WrittenPicture { size, samples, encoding: &made.encoding },
-        )
+        checker.certify_written(&view, &primary, &WrittenPicture { size, samples, encoding: &made.encoding })
     };
     let error = judged([60, 78], &made.bytes).unwrap_err().to_string();
     assert_eq!(error, "the picture is 60x78 pixels, but the view is 78x60");

@@ -2,12 +2,10 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan};
-use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::gpu::{
-    ColorTarget, Decision, GpuError, Headless, PictureRequest, RenderPlan, RendererOptions,
-    SceneBuffers, StructurePlans, UploadProgress, UploadStep, Wait, wgpu,
+    ColorTarget, Decision, GpuError, Headless, PictureRequest, RenderPlan, RendererOptions, SceneBuffers,
+    StructurePlans, UploadProgress, UploadStep, Wait, wgpu,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene};
 
@@ -33,9 +31,7 @@ fn scene() -> Scene {
 
 /// The scene in trees: in one brick, and in bricks for a binding of `bytes` bytes.
 fn trees(scene: &Scene, bytes: u64) -> [Accel; 2] {
-    [1 << 27, bytes].map(|bytes| {
-        AccelPlan::new(scene.spheres(), AccelChoice::Tree, bytes).build(scene.spheres())
-    })
+    [1 << 27, bytes].map(|bytes| AccelPlan::new(scene.spheres(), AccelChoice::Tree, bytes).build(scene.spheres()))
 }
 
 /// Cameras around and inside of the scene, which is the unit cube. Some see only a part of it.
@@ -84,8 +80,7 @@ fn every_camera(headless: &'static Headless) {
         // The recording has all rays, and they are legal.
         let buffers = headless.upload(&scene, &accels[1].clone().into()).wait().unwrap();
         let (seen, settings) = (view.seen(), &view.settings);
-        let recording =
-            headless.record_and_render(&buffers, &seen, settings, &mut go_on).wait().unwrap();
+        let recording = headless.record_and_render(&buffers, &seen, settings, &mut go_on).wait().unwrap();
         let checker = pinhole::verify::Checker::new(&scene).unwrap();
         assert!(checker.certify(&recording).is_legal(), "{kind:?}");
     }
@@ -104,8 +99,7 @@ fn many(headless: &'static Headless) {
 
 /// A picture whose hits do not fit into one binding of the host.
 fn bands(_: &'static Headless) {
-    let limits =
-        wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..wgpu::Limits::default() };
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..wgpu::Limits::default() };
     let host = Host::with_limits(limits);
     let scene = scene();
     let accels = trees(&scene, 16 * 300);
@@ -172,11 +166,9 @@ fn one_picture(headless: &'static Headless) {
         let [one, _] = trees(&scene, 16 * 300);
         for view in views(&scene, [93, 62]) {
             let expected = view.traced(headless, &one).unwrap();
-            for (choice, bytes) in [
-                (AccelChoice::Tree, 16 * 300),
-                (AccelChoice::Grid, 4 * 68 * 600),
-                (AccelChoice::List, 4800),
-            ] {
+            for (choice, bytes) in
+                [(AccelChoice::Tree, 16 * 300), (AccelChoice::Grid, 4 * 68 * 600), (AccelChoice::List, 4800)]
+            {
                 let plan = planned(headless, &view, choice, bytes);
                 assert!(plan.accel.brick_count > 1);
                 let (found, built) = dropped(headless, &view, &plan);
@@ -222,11 +214,7 @@ fn stopped(headless: &'static Headless) {
         let mut told = Vec::new();
         let watch = &mut |progress: &UploadProgress| {
             told.push(*progress);
-            if (progress.step, progress.brick) == (step, 2) {
-                Decision::Stop
-            } else {
-                Decision::GoOn
-            }
+            if (progress.step, progress.brick) == (step, 2) { Decision::Stop } else { Decision::GoOn }
         };
         let uploaded = headless.upload_planned(&scene, &plans, watch).wait();
         assert_eq!(uploaded.err(), Some(GpuError::Stopped));

@@ -10,8 +10,8 @@ use pinhole::camera::PinholeCamera;
 use pinhole::generate::Kind;
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{
-    Decision, GpuError, Headless, HeadlessOptions, Picture, PictureRequest, Profile, ProfileTrack,
-    Progress, SelfTestExtent, TestedProperty, Wait, wgpu,
+    Decision, GpuError, Headless, HeadlessOptions, Picture, PictureRequest, Profile, ProfileTrack, Progress,
+    SelfTestExtent, TestedProperty, Wait, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
@@ -44,8 +44,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 fn open(adapter: &str) -> Result<Headless, GpuError> {
-    Headless::open(&HeadlessOptions { adapter: Some(adapter.to_owned()), ..Default::default() })
-        .wait()
+    Headless::open(&HeadlessOptions { adapter: Some(adapter.to_owned()), ..Default::default() }).wait()
 }
 
 fn part_of_a_name(headless: &'static Headless) {
@@ -88,10 +87,7 @@ fn callers_fault(_: &'static Headless) {
 }
 
 /// Renders a picture in several submissions. `watch` is called after each of them except the last.
-fn render_watched(
-    headless: &Headless,
-    mut watch: impl FnMut(&Progress) -> Decision,
-) -> Result<Picture, GpuError> {
+fn render_watched(headless: &Headless, mut watch: impl FnMut(&Progress) -> Decision) -> Result<Picture, GpuError> {
     let view = View { film: Film::new(2400, 1800).unwrap(), ..View::three_spheres() };
     let scene = headless.upload(&view.scene, &view.planned(headless, AccelChoice::Auto)).wait()?;
     view.watched(headless, &scene, LayerSet::COLOR, &mut watch)
@@ -218,8 +214,7 @@ fn fences_in_trace(headless: &Headless) -> TestedProperty {
 fn seen_through(headless: &'static Headless) {
     let sound = fences_in_trace(headless);
     println!("{sound}");
-    let (_, rewritten) =
-        sound.figures.iter().find(|(name, _)| *name == "unfenced_rewritten_percent").unwrap();
+    let (_, rewritten) = sound.figures.iter().find(|(name, _)| *name == "unfenced_rewritten_percent").unwrap();
     let edit = ShaderEdit {
         file: "scene/frame.wgsl".to_owned(),
         find: "frame.iteration_limit ^ frame.iteration_limit_again".to_owned(),
@@ -237,8 +232,7 @@ fn bounds(headless: &'static Headless) {
     let film = Film::new(64, 48).unwrap();
     for kind in [Kind::Random, Kind::Clusters] {
         let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
-        let camera =
-            PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
         let view = pinhole::View::new(&camera, film);
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
             let settings = RenderSettings::default();

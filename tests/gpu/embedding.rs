@@ -10,8 +10,7 @@ use pinhole::accel::{AccelChoice, BrickKind, Primitive, Structure};
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::gpu::{
-    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets, Wait,
-    adapter, wgpu,
+    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets, Wait, adapter, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::{LayerSet, LinearRgb, RenderSettings, Scene};
@@ -47,8 +46,7 @@ impl Host {
 
     pub(crate) fn with_limits(required_limits: wgpu::Limits) -> Self {
         let adapter = adapter::choose(None).wait().unwrap();
-        let descriptor =
-            wgpu::DeviceDescriptor { required_limits, ..wgpu::DeviceDescriptor::default() };
+        let descriptor = wgpu::DeviceDescriptor { required_limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
         Self { device, queue }
     }
@@ -79,10 +77,7 @@ fn clear(encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
             view: target,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::GREEN),
-                store: wgpu::StoreOp::Store,
-            },
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::GREEN), store: wgpu::StoreOp::Store },
         })],
         ..wgpu::RenderPassDescriptor::default()
     });
@@ -92,10 +87,8 @@ fn foreign_frame(_: &'static Headless) {
     let host = Host::new();
     let view = View::three_spheres();
     let size = size_of_film(&view.film);
-    let Drawing { renderer, layers, mut frame } =
-        Drawing::new(&host, &RendererOptions::default(), size);
-    let scene =
-        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
+    let Drawing { renderer, layers, mut frame } = Drawing::new(&host, &RendererOptions::default(), size);
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
 
     // The application records its own commands for the same texture in the same encoder: a clear before, a copy after.
@@ -129,8 +122,7 @@ fn several_views(_: &'static Headless) {
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).wait().unwrap();
     let views = [View::three_spheres(), View::three_spheres_orthographic()];
     // Two frames of the same scene are recorded in one submission.
-    let scene =
-        SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).wait().unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).wait().unwrap();
     let mut encoder = host.encoder();
     let textures = views.each_ref().map(|view| {
         let layers = host.layers(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
@@ -149,8 +141,7 @@ fn several_views(_: &'static Headless) {
 /// A kernel that reaches the iteration limit sets the status of the frame, until the application clears it.
 fn given_up(_: &'static Headless) {
     let host = Host::new();
-    let Drawing { renderer, mut frame, .. } =
-        Drawing::new(&host, &RendererOptions::default(), [24, 16]);
+    let Drawing { renderer, mut frame, .. } = Drawing::new(&host, &RendererOptions::default(), [24, 16]);
     let is_software = host.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
     for (count, expected) in [(10, 0), (30_000, u32::from(is_software)), (10, 0)] {
         let spheres = spheres::nearly_coincident(count);
@@ -190,11 +181,7 @@ fn unfit_targets(_: &'static Headless) {
 fn data_layers(_: &'static Headless) {
     let host = Host::new();
     let view = View::three_spheres();
-    let options = RendererOptions {
-        color: ColorTarget::Linear16,
-        data_layers: true,
-        ..RendererOptions::default()
-    };
+    let options = RendererOptions { color: ColorTarget::Linear16, data_layers: true, ..RendererOptions::default() };
     let mut drawing = Drawing::new(&host, &options, size_of_film(&view.film));
     let scene = drawing.scene(&host, &view.scene);
     let encoder = drawing.record(&host, &scene, &view.seen(), &view.settings);
@@ -239,10 +226,8 @@ fn lit_frame(_: &'static Headless) {
     let host = Host::new();
     let view = View::three_spheres();
     let size = size_of_film(&view.film);
-    let Drawing { renderer, mut frame, .. } =
-        Drawing::new(&host, &RendererOptions::default(), size);
-    let scene =
-        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
+    let Drawing { renderer, mut frame, .. } = Drawing::new(&host, &RendererOptions::default(), size);
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
         let refused = frame.set_view(&host.queue, &scene, &view.seen(), &settings);
         let integrator = settings.integrator.name();
@@ -254,16 +239,13 @@ fn lit_frame(_: &'static Headless) {
 
 fn not_ready(_: &'static Headless) {
     let host = Host::new();
-    let options =
-        RendererOptions { cameras: vec![CameraKind::Orthographic], ..RendererOptions::default() };
+    let options = RendererOptions { cameras: vec![CameraKind::Orthographic], ..RendererOptions::default() };
     let Drawing { renderer, mut frame, .. } = Drawing::new(&host, &options, [8, 8]);
     let view = View::three_spheres();
-    let scene =
-        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
     let mut encoder = host.encoder();
     assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
-    let again =
-        SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
+    let again = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).wait().unwrap();
 
     let mut set_view = |film: &Film| {
         let view_of_film = pinhole::View::new(view.camera.as_ref(), *film);
@@ -302,8 +284,7 @@ fn same_pictures(headless: &'static Headless) {
     let view = View::three_spheres();
     for mut settings in settings() {
         settings.sampling.denoise = !settings.integrator.is_primary();
-        let expected =
-            headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
+        let expected = headless.render(&view.scene, &view.seen(), &settings, LayerSet::ALL).wait().unwrap();
         let seen = view.seen();
         // The speed of the device determines how often it returned unfinished.
         let (_, found) = run(headless.render(&view.scene, &seen, &settings, LayerSet::ALL));
@@ -315,9 +296,8 @@ fn turns(headless: &'static Headless) {
     let view = View::three_spheres();
     let seen = view.seen();
     let [first, second, _] = settings();
-    let expected = [&first, &second].map(|settings| {
-        headless.render(&view.scene, &seen, settings, LayerSet::COLOR).wait().unwrap()
-    });
+    let expected = [&first, &second]
+        .map(|settings| headless.render(&view.scene, &seen, settings, LayerSet::COLOR).wait().unwrap());
     type Render<'a> = Pin<Box<dyn Future<Output = Result<pinhole::Image, GpuError>> + 'a>>;
     let mut renders: [Option<Render<'_>>; 2] = [&first, &second].map(|settings| {
         let render = headless.render(&view.scene, &seen, settings, LayerSet::COLOR);

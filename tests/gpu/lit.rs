@@ -13,8 +13,7 @@ use pinhole::render::{Integrator, PrimarySettings, Studio};
 use pinhole::scene::material::Material;
 use pinhole::verify::run_file::{Extras, LitSamples, Provenance, RunFile, write_with};
 use pinhole::verify::{
-    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PlainRender, Recording,
-    TracedPixel,
+    Checker, LitCertificate, LitInputs, LitRecording, NO_HIT, Outcome, PlainRender, Recording, TracedPixel,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
@@ -55,10 +54,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || {
             let view = lit_scenes::view("paths", "thrice");
-            is_legal(&certify(
-                &view,
-                &record(headless()?, &view, &in_bricks(&view, choice).into())?,
-            ))
+            is_legal(&certify(&view, &record(headless()?, &view, &in_bricks(&view, choice).into())?))
         }));
     }
     trials.extend(planted::trials("paths::faults::", planted("paths_by_id"), |fault| {
@@ -79,11 +75,7 @@ fn chosen(device: &Headless, view: &View) -> Structures {
 }
 
 /// Records some samples. In studios, they are the first, one in between, and the last sample of a picture with many.
-fn record(
-    device: &Headless,
-    view: &View,
-    structures: &Structures,
-) -> Result<LitRecording, GpuError> {
+fn record(device: &Headless, view: &View, structures: &Structures) -> Result<LitRecording, GpuError> {
     let buffers = device.upload(&view.scene, structures).wait()?;
     let samples = match view.settings.integrator {
         Integrator::Studio(_) => &[0, 37, 63][..],
@@ -95,16 +87,7 @@ fn record(
         Some(LitRecording { samples, .. }) => samples.extend_from_slice(&one.samples),
     };
     let go_on = &mut |_: &_| Decision::GoOn;
-    device
-        .record_lit(
-            &buffers,
-            &view.seen(),
-            &view.settings,
-            SampleRequest::middle(samples),
-            each,
-            go_on,
-        )
-        .wait()?;
+    device.record_lit(&buffers, &view.seen(), &view.settings, SampleRequest::middle(samples), each, go_on).wait()?;
     Ok(all.unwrap())
 }
 
@@ -171,28 +154,18 @@ fn random(suite: &str, seed: u64) -> Result<(), Failed> {
         "paths" => certificate.outcome() != Outcome::Violated && said > stages.checked / 2,
         _ => certificate.is_legal() && said > stages.checked / 10 * 9,
     };
-    if is_good {
-        Ok(())
-    } else {
-        Err(format!("seed {seed}: {name}: {certificate}\n{:#?}", certificate.named()).into())
-    }
+    if is_good { Ok(()) } else { Err(format!("seed {seed}: {name}: {certificate}\n{:#?}", certificate.named()).into()) }
 }
 
 /// Asserts that the fault is found in the stage in which it was inserted.
-fn is_found(
-    fault: &Fault,
-    suite: &str,
-    structures: impl Fn(&Headless, &View) -> Structures,
-) -> Result<(), Failed> {
+fn is_found(fault: &Fault, suite: &str, structures: impl Fn(&Headless, &View) -> Structures) -> Result<(), Failed> {
     let [view, stage] = fault.setup();
     let (device, view) = (fault.device()?, lit_scenes::view(suite, view));
     let certificate = certify(&view, &record(&device, &view, &structures(&device, &view))?);
     println!("{certificate}");
     match certificate.violations.first() {
         None => Err(format!("the fault was not found: {certificate}").into()),
-        Some(first) if format!("{:?}", first.stage) != stage => {
-            Err(format!("elsewhere: {certificate}").into())
-        }
+        Some(first) if format!("{:?}", first.stage) != stage => Err(format!("elsewhere: {certificate}").into()),
         Some(_) => Ok(()),
     }
 }
@@ -240,9 +213,8 @@ fn stops_when_told(headless: &'static Headless) {
     let buffers = headless.upload(&view.scene, &chosen(headless, &view)).wait().unwrap();
     let stop = &mut |_: &_| Decision::Stop;
     let each = &mut |_: &LitRecording| {};
-    let stopped = headless
-        .record_lit(&buffers, &view.seen(), &view.settings, SampleRequest::middle(&[0]), each, stop)
-        .wait();
+    let stopped =
+        headless.record_lit(&buffers, &view.seen(), &view.settings, SampleRequest::middle(&[0]), each, stop).wait();
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }
 
@@ -271,8 +243,7 @@ fn replay(scene: &Scene, recording: &LitRecording, certificate: &LitCertificate)
     }
     let extras = Extras { light: Some(&samples), ..Extras::default() };
     let mut bytes = Vec::new();
-    write_with(scene, &nothing(&recording.given), &Provenance::default(), extras, &mut bytes)
-        .unwrap();
+    write_with(scene, &nothing(&recording.given), &Provenance::default(), extras, &mut bytes).unwrap();
     let mut source = Cursor::new(&bytes);
     let file = RunFile::open(&mut source).unwrap();
     let run = file.run().unwrap();

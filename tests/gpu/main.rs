@@ -55,8 +55,7 @@ fn main() {
             written::trials(),
         ];
         // Groups take turns: tests that follow each other need the same kernels, and a device compiles one at a time.
-        let mut trials: Vec<_> =
-            groups.into_iter().flat_map(|group| group.into_iter().enumerate()).collect();
+        let mut trials: Vec<_> = groups.into_iter().flat_map(|group| group.into_iter().enumerate()).collect();
         trials.sort_by_key(|(index, _)| *index);
         trials.into_iter().map(|(_, trial)| trial).collect()
     });

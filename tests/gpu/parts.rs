@@ -39,8 +39,7 @@ const ENVIRONMENT: &str = include_str!("../../shaders/scene/environment.wgsl");
 const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";
 
 /// Words that may overflow, be truncated or be interpreted as signed.
-const EXTREMES: [u32; 8] =
-    [0, 1, 0x00ff_ffff, 0x0100_0000, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, u32::MAX];
+const EXTREMES: [u32; 8] = [0, 1, 0x00ff_ffff, 0x0100_0000, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, u32::MAX];
 
 /// All combinations of extreme words, and random words: small words, as in pictures, and arbitrary ones.
 fn questions(count: usize) -> Vec<[u32; 4]> {
@@ -202,10 +201,8 @@ fn answer(q: vec4u) -> vec4u {
 }";
     let [cosine, sine] = rotation.map(f32::to_bits);
     let lighting = [map.width(), map.height(), cosine, sine, u32::from(samples), 0];
-    let texels: Vec<u32> =
-        map.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.0].map(f32::to_bits)).collect();
-    let shares: Vec<u32> =
-        map.rows().iter().chain(map.columns()).map(|share| share.to_bits()).collect();
+    let texels: Vec<u32> = map.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.0].map(f32::to_bits)).collect();
+    let shares: Vec<u32> = map.rows().iter().chain(map.columns()).map(|share| share.to_bits()).collect();
     let tables = [(0, 2, &lighting[..]), (3, 0, &texels), (3, 1, &shares[..])];
     let parts = [ENVIRONMENT, TURNS, INVERSE, FENCE, RUNTIME_ZERO, source];
     let answers = answers(headless, &parts, &tables, questions);
@@ -256,10 +253,7 @@ fn environment_lookup(headless: &'static Headless) {
                 assert_eq!(answer[..3], [red, green, blue], "{size:?}, {d}");
                 let density = map.density(d, rotation);
                 let bound = DENSITY * density;
-                assert!(
-                    (answer[3] - density).abs() <= bound,
-                    "{size:?}, {d}: {answer:?}, {density}"
-                );
+                assert!((answer[3] - density).abs() <= bound, "{size:?}, {d}: {answer:?}, {density}");
             }
             assert!(near_edges < questions.len() / 8, "{size:?}: {near_edges}");
         }
@@ -282,18 +276,11 @@ fn environment_samples(headless: &'static Headless) {
                 let (direction, density) = map.sample([*u, *v], rotation);
                 let [x, y, z, found] = answer;
                 let bound = DENSITY * density;
-                assert!(
-                    (found - density).abs() <= bound,
-                    "{size:?}, {u:x}, {v:x}: {found}, {density}"
-                );
+                assert!((found - density).abs() <= bound, "{size:?}, {u:x}, {v:x}: {found}, {density}");
                 let found = DVec3::new(x, y, z);
                 // Heights are computed from one pole. Near the other pole they have the resolution of f32 near 1, which
                 // matters for a map with a single row.
-                let error = if size[1] == 1 {
-                    (y - direction.y).abs()
-                } else {
-                    (found - direction).length()
-                };
+                let error = if size[1] == 1 { (y - direction.y).abs() } else { (found - direction).length() };
                 assert!(error < DIRECTION, "{size:?}, {u:x}, {v:x}: {found}, {direction}");
             }
         }
@@ -358,8 +345,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u,
     };
     let size = size_of_val(questions) as u64;
     let empty = |usage| {
-        let descriptor =
-            wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
         device.create_buffer(&descriptor)
     };
     let written = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
@@ -380,11 +366,8 @@ fn main(@builtin(global_invocation_id) invocation: vec3u,
             })
             .collect();
         let layout = pipeline.get_bind_group_layout(group);
-        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &layout,
-            entries: &entries,
-        });
+        let bound =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         pass.set_bind_group(group, &bound, &[]);
     }
     let workgroups = questions.len() as u32 / 64;

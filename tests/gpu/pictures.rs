@@ -5,9 +5,7 @@ use glam::DVec3;
 use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{
-    self, Decision, GpuError, Headless, PictureRequest, Progress, SceneBuffers, Structures, Wait,
-};
+use pinhole::gpu::{self, Decision, GpuError, Headless, PictureRequest, Progress, SceneBuffers, Structures, Wait};
 use pinhole::image::{Layer, NO_ID};
 use pinhole::render::{Integrator, Outline, Sampling};
 use pinhole::verify::Recording;
@@ -60,10 +58,8 @@ fn on_the_wall(headless: &'static Headless) {
         let pose = Pose::looking_along(outward, along, outward).unwrap();
         let camera = PinholeCamera::new(pose, 1.0, [1.0, 1e-5]).unwrap();
         let settings = RenderSettings::default();
-        let image = headless
-            .render(&scene, &pinhole::View::new(&camera, film), &settings, LayerSet::ALL)
-            .wait()
-            .unwrap();
+        let image =
+            headless.render(&scene, &pinhole::View::new(&camera, film), &settings, LayerSet::ALL).wait().unwrap();
         for depth in image.depth().unwrap().iter().filter(|depth| depth.is_finite()) {
             assert!(*depth <= 1e-3, "eye {outward}: {depth}");
             hits += 1;
@@ -119,11 +115,7 @@ impl View {
         device.render_uploaded(scene, &self.seen(), &self.settings, layers, watch).wait()
     }
 
-    pub(crate) fn record(
-        &self,
-        device: &Headless,
-        structures: &Structures,
-    ) -> Result<Recording, GpuError> {
+    pub(crate) fn record(&self, device: &Headless, structures: &Structures) -> Result<Recording, GpuError> {
         let scene = device.upload(&self.scene, structures).wait()?;
         device.record(&scene, &self.seen(), &self.settings, &mut go_on).wait()
     }

@@ -24,8 +24,7 @@ const SUITES: [&str; 11] = [
     "live",
 ];
 
-static LIST: LazyLock<Result<Vec<Fault>, String>> =
-    LazyLock::new(|| parse(include_str!("faults.txt")));
+static LIST: LazyLock<Result<Vec<Fault>, String>> = LazyLock::new(|| parse(include_str!("faults.txt")));
 
 /// A fault of a shader.
 #[derive(Clone, Debug)]
@@ -69,23 +68,19 @@ pub(crate) fn trials(
     faults: impl Iterator<Item = Fault>,
     is_found: impl Fn(&Fault) -> Result<(), Failed> + Copy + Send + 'static,
 ) -> impl Iterator<Item = Trial> {
-    share(faults)
-        .map(move |fault| Trial::test(format!("{group}{}", fault.name), move || is_found(&fault)))
+    share(faults).map(move |fault| Trial::test(format!("{group}{}", fault.name), move || is_found(&fault)))
 }
 
 /// Opens a device with an edit of one part of its shaders. `file` may name a variant: `file.wgsl#variant`.
 pub(crate) fn faulty(file: &str, find: &str, replace: &str) -> Result<Headless, Failed> {
     check_text(file, find)?;
     let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-    Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() })
-        .wait()?)
+    Ok(Headless::open(&HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() }).wait()?)
 }
 
 /// Returns an error if a text to edit is not in its file.
 fn check_text(file: &str, text: &str) -> Result<(), Failed> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("shaders")
-        .join(file.split('#').next().unwrap_or(file));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file.split('#').next().unwrap_or(file));
     match std::fs::read_to_string(path)?.contains(text) {
         true => Ok(()),
         false => Err(format!("{file} has no `{text}`").into()),
@@ -123,16 +118,10 @@ fn parse_fault(suite: &'static str, line: &'static str) -> Option<Fault> {
     let file = words.pop().filter(|file| file.contains(".wgsl"))?;
     let name = (!words.is_empty()).then(|| words.remove(0))?;
     let [find, replace] = [find, replace].map(|text| text.replace("\\n", "\n"));
-    let is_text =
-        !find.is_empty() && find != replace && !(find.clone() + &replace).contains(['`', '\\']);
+    let is_text = !find.is_empty() && find != replace && !(find.clone() + &replace).contains(['`', '\\']);
     let is_word = |word: &&str| !word.is_empty() && !word.contains(".wgsl");
     let edit = ShaderEdit { file: file.to_owned(), find, replace };
-    (is_text && is_word(&name) && words.iter().all(is_word)).then_some(Fault {
-        suite,
-        name,
-        setup: words,
-        edit,
-    })
+    (is_text && is_word(&name) && words.iter().all(is_word)).then_some(Fault { suite, name, setup: words, edit })
 }
 
 /// Tests that all faults can be planted, including those that do not run, and that the parser refuses malformed lists.

@@ -13,9 +13,8 @@ use crate::harness::trial_unless;
 use crate::support::spheres;
 use crate::{headless, scenes};
 
-static DEVICE: LazyLock<Result<Headless, GpuError>> = LazyLock::new(|| {
-    Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() }).wait()
-});
+static DEVICE: LazyLock<Result<Headless, GpuError>> =
+    LazyLock::new(|| Headless::open(&HeadlessOptions { ray_query: true, ..HeadlessOptions::default() }).wait());
 
 /// Margins of boxes that are too small, as a multiple of the margin in use: the boxes cut spheres.
 const TOO_SMALL: f32 = -60.0;

@@ -2,9 +2,7 @@
 //! `tests/gpu/scenes/primary`.
 
 use pinhole::camera::film::YAxis;
-use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, Shading, Sphere, glam};
 
 use crate::lit_scenes::{names_of_files, text};
@@ -89,32 +87,24 @@ fn sphere(center: [f64; 3], radius: f64) -> Sphere {
     Sphere::new(center, radius, LinearRgb::new(color).unwrap())
 }
 
-pub(crate) fn pinhole(
-    eye: [f64; 3],
-    look_at: [f64; 3],
-    fov_degrees: f64,
-    aspect: f64,
-) -> PinholeCamera {
+pub(crate) fn pinhole(eye: [f64; 3], look_at: [f64; 3], fov_degrees: f64, aspect: f64) -> PinholeCamera {
     let pose = Pose::looking_at(eye, look_at, [0.1, 1.0, 0.2]).unwrap();
     PinholeCamera::with_vertical_fov(pose, fov_degrees.to_radians(), aspect).unwrap()
 }
 
 fn coincident_spheres() -> View {
-    let mut spheres: Vec<Sphere> = (0..40)
-        .map(|i| sphere([f64::from(i % 8) - 3.5, f64::from(i / 8) - 2.0, 0.0], 0.7))
-        .collect();
+    let mut spheres: Vec<Sphere> =
+        (0..40).map(|i| sphere([f64::from(i % 8) - 3.5, f64::from(i / 8) - 2.0, 0.0], 0.7)).collect();
     // Each sphere is repeated in reverse order and with another colour. The smaller id must win.
-    let again: Vec<Sphere> =
-        spheres.iter().rev().map(|s| Sphere::new(s.center, s.radius, LinearRgb::WHITE)).collect();
+    let again: Vec<Sphere> = spheres.iter().rev().map(|s| Sphere::new(s.center, s.radius, LinearRgb::WHITE)).collect();
     spheres.extend(again);
     let view = view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 50.0, 1.5), [96, 64]);
     View { settings: flat(), ..view }
 }
 
 fn tiny_radii() -> View {
-    let spheres: Vec<Sphere> = (0..100)
-        .map(|i| sphere([f64::from(i % 10) * 1e-5, f64::from(i / 10) * 1e-5, 0.0], 4e-6))
-        .collect();
+    let spheres: Vec<Sphere> =
+        (0..100).map(|i| sphere([f64::from(i % 10) * 1e-5, f64::from(i / 10) * 1e-5, 0.0], 4e-6)).collect();
     let center = [4.5e-5, 4.5e-5, 0.0];
     let eye = [4.5e-5, 4.5e-5, 2e-4];
     view(&spheres, pinhole(eye, center, 30.0, 1.0), [96, 96])

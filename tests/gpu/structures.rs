@@ -12,8 +12,7 @@ use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, RendererOptions,
-    SceneBuffers, Wait, wgpu,
+    ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::internals::{NO_HIT, ShaderEdit};
@@ -93,11 +92,8 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 /// All structures, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
-    let kinds =
-        [(Structure::Grid, TINY_FOR_BALLS), (Structure::WideTree, TINY), (Structure::List, TINY)];
-    let build = |(structure, tiny)| {
-        [ROOMY, tiny].map(|bytes| AccelPlan::of(spheres, structure, bytes).build(spheres))
-    };
+    let kinds = [(Structure::Grid, TINY_FOR_BALLS), (Structure::WideTree, TINY), (Structure::List, TINY)];
+    let build = |(structure, tiny)| [ROOMY, tiny].map(|bytes| AccelPlan::of(spheres, structure, bytes).build(spheres));
     kinds.into_iter().flat_map(build).collect()
 }
 
@@ -129,11 +125,7 @@ fn views(scene: &Scene) -> [View; 3] {
     let eye = center + glam::DVec3::X * size;
     let pose = Pose::looking_along(eye, [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let parallel = OrthographicCamera::new(pose, [size * 1.1, size * 1.1]).unwrap();
-    [
-        view(scene, from_front, [101, 67]),
-        view(scene, from_within, [45, 83]),
-        view(scene, parallel, [64, 33]),
-    ]
+    [view(scene, from_front, [101, 67]), view(scene, from_within, [45, 83]), view(scene, parallel, [64, 33])]
 }
 
 fn render(headless: &Headless, views: &[View], accel: &Accel) -> Vec<Image> {
@@ -257,8 +249,7 @@ fn any(headless: &'static Headless) {
 }
 
 /// The statement of `trace` that runs once for each brick: it finds the nearest sphere.
-const NEAREST: &str =
-    "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
+const NEAREST: &str = "    store_hit(index, nearest_hit(entry, no_exclusion(), hit_before(index)));\n";
 
 /// The statement that replaces it: it looks for any sphere, and records a hit as distance 0 without an id.
 const ANY: &str = "
@@ -288,8 +279,7 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
     };
     let mut drawing = Drawing::new(host, &options, size_of_film(film));
     let Host { device, queue } = host;
-    let scene =
-        SceneBuffers::with_accel(&drawing.renderer, device, queue, scene, accel).wait().unwrap();
+    let scene = SceneBuffers::with_accel(&drawing.renderer, device, queue, scene, accel).wait().unwrap();
     let encoder = drawing.record(host, &scene, &view.seen(), settings);
     let depths: Vec<f32> = host.submit_and_read(encoder, &drawing.layers.depth);
     let is_hit = |depth: &f32| match depth.to_bits() {
@@ -311,8 +301,8 @@ fn long_list(headless: &'static Headless) {
     let scene = white(spheres::random(120_000, 26, |_| 0.005));
     let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
     let view = view(&scene, camera, [24, 16]);
-    let [list, grid] = [AccelChoice::List, AccelChoice::Grid]
-        .map(|choice| headless.plan_accel(&scene, choice).build(scene.spheres()));
+    let [list, grid] =
+        [AccelChoice::List, AccelChoice::Grid].map(|choice| headless.plan_accel(&scene, choice).build(scene.spheres()));
     assert_eq!((list.structure(), list.bricks().len()), (Structure::List, 3));
     let found = view.traced(headless, &list).unwrap();
     let seen = |brick: &Brick| {

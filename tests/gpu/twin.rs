@@ -38,8 +38,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
     let info = headless.adapter_info();
     let is_plain = PLAIN.iter().any(|version| info.driver_info.starts_with(version));
-    (!is_plain)
-        .then(|| format!("{} {} need not compute as plain f32 does", info.driver, info.driver_info))
+    (!is_plain).then(|| format!("{} {} need not compute as plain f32 does", info.driver, info.driver_info))
 }
 
 /// Twin of `surface_color` in shaders/primary/shading.wgsl.
@@ -99,8 +98,7 @@ fn bits(v: [f32; 3]) -> [u32; 3] {
 }
 
 /// Points in all cases of the map from the square to the disk, on a seam, and on the edge.
-const POINTS: [[f32; 2]; 7] =
-    [[0.5, 0.5], [0.9, 0.6], [0.4, 0.1], [0.1, 0.45], [0.3, 0.95], [0.75, 0.75], [0.0, 0.5]];
+const POINTS: [[f32; 2]; 7] = [[0.5, 0.5], [0.9, 0.6], [0.4, 0.1], [0.1, 0.45], [0.3, 0.95], [0.75, 0.75], [0.0, 0.5]];
 
 /// Maximum distance between a unit direction and the direction of the reference: twenty roundings of f32.
 const NEAR: f64 = 20.0 / (1 << 24) as f64;
@@ -118,8 +116,7 @@ fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
         let location = film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
         let point = DVec2::from(lens.map(f64::from));
         let expected = view.camera.ray_through_lens(location, point);
-        let [origin, direction] =
-            [ray.origin, ray.direction].map(|v| DVec3::from(v.map(f64::from)));
+        let [origin, direction] = [ray.origin, ray.direction].map(|v| DVec3::from(v.map(f64::from)));
         let off = (direction - expected.direction).length();
         if off > NEAR {
             return Err(format!("({i}, {j}): the direction is off by {off:e}").into());

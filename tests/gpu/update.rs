@@ -5,8 +5,7 @@ use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::gpu::{
-    ColorTarget, GpuError, Headless, PictureRequest, Recolor, Renderer, RendererOptions,
-    SceneBuffers, Wait,
+    ColorTarget, GpuError, Headless, PictureRequest, Recolor, Renderer, RendererOptions, SceneBuffers, Wait,
 };
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
 use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View};
@@ -17,9 +16,9 @@ use crate::support::appearances::{Numbers, camera, kinds, settings};
 use crate::{headless, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
-    let of_kinds = kinds().into_iter().map(|kind| {
-        Trial::test(format!("update::{}", kind.name), move || updated(kind.scene.clone()))
-    });
+    let of_kinds = kinds()
+        .into_iter()
+        .map(|kind| Trial::test(format!("update::{}", kind.name), move || updated(kind.scene.clone())));
     let others = [
         trial("update::frames_and_bindings_survive_colors", survives),
         trial("update::colors_of_ranges_in_bricks", in_bricks),
@@ -33,11 +32,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     of_kinds.chain(others).chain(appearances).collect()
 }
 
-fn shown(
-    headless: &Headless,
-    buffers: &SceneBuffers,
-    settings: &RenderSettings,
-) -> Result<Image, GpuError> {
+fn shown(headless: &Headless, buffers: &SceneBuffers, settings: &RenderSettings) -> Result<Image, GpuError> {
     let (camera, film) = (camera(), Film::new(40, 40).unwrap());
     let (view, layers) = (View::new(&camera, film), LayerSet::ALL);
     Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut go_on).wait()?.image)
@@ -123,11 +118,8 @@ fn survives(headless: &'static Headless) {
     let settings = RenderSettings::default();
     frame.set_view(queue, &buffers, &view, &settings).unwrap();
 
-    let colors = SceneUpdate {
-        first: 7,
-        colors: Some(NewColors::Rgba8(&[[9, 8, 7, 255]; 20])),
-        ..SceneUpdate::default()
-    };
+    let colors =
+        SceneUpdate { first: 7, colors: Some(NewColors::Rgba8(&[[9, 8, 7, 255]; 20])), ..SceneUpdate::default() };
     scene.apply(&colors).unwrap();
     let mut encoder = host.encoder();
     recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &colors).wait().unwrap();

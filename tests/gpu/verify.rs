@@ -8,9 +8,7 @@ mod example;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan};
 use pinhole::camera::film::YAxis;
-use pinhole::camera::{
-    FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-};
+use pinhole::camera::{FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::NO_ID;
 use pinhole::verify::conformance::{Answers, Rays};
@@ -24,9 +22,7 @@ use crate::{headless, planted};
 
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
-    trials.push(Trial::test("verify::the_example", || {
-        example::this_adapter_renders_legally().map_err(Into::into)
-    }));
+    trials.push(Trial::test("verify::the_example", || example::this_adapter_renders_legally().map_err(Into::into)));
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(name, &view)));
     }
@@ -38,9 +34,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     let group = "verify::faults::render_";
     trials.extend(planted::trials(group, planted("render"), fault_of_render_is_found));
     for (name, spoil) in INPUT_FAULTS {
-        trials.push(Trial::test(format!("verify::faults::input_{name}"), move || {
-            input_fault_is_found(*spoil)
-        }));
+        trials.push(Trial::test(format!("verify::faults::input_{name}"), move || input_fault_is_found(*spoil)));
     }
     trials
 }
@@ -67,8 +61,7 @@ const STRUCTURES: &[(&str, How)] = &[
 ];
 
 /// Scenes in which rounding decides which sphere many pixels show: cameras on a surface, and rays along surfaces.
-const UNDECIDED: [&str; 4] =
-    ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
+const UNDECIDED: [&str; 4] = ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
 
 fn legal(name: &str, view: &View) -> Result<(), Failed> {
     let certificate = headless()?.verify(&view.scene, &view.seen(), &view.settings).wait()?;
@@ -85,8 +78,7 @@ fn legal(name: &str, view: &View) -> Result<(), Failed> {
 /// Judges a picture by exact rays, like the answers of any renderer.
 fn certified(view: &View) -> Result<(), Failed> {
     let image = view.picture(headless()?, LayerSet::DATA);
-    let depths: Vec<f64> =
-        image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
+    let depths: Vec<f64> = image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
     let normals: Vec<[f64; 3]> =
         image.normal().unwrap_or_default().iter().map(|normal| normal.map(f64::from)).collect();
     let answers = Answers {
@@ -184,9 +176,7 @@ const INPUT_FAULTS: &[(&str, Spoil)] = &[
     ("center_off_by_a_ten_thousandth", |view, record, seen| {
         with_spheres(view, record, |spheres| spheres[seen].center[1] += 1e-4)
     }),
-    ("two_spheres_swapped", |view, record, seen| {
-        with_spheres(view, record, |spheres| spheres.swap(seen, seen / 2))
-    }),
+    ("two_spheres_swapped", |view, record, seen| with_spheres(view, record, |spheres| spheres.swap(seen, seen / 2))),
     ("one_sphere_twice_for_another", |view, record, seen| {
         with_spheres(view, record, |spheres| spheres[seen] = spheres[seen / 2])
     }),
@@ -313,8 +303,7 @@ pub(crate) fn own_colors() -> View {
 }
 
 pub(crate) fn parallel() -> View {
-    let camera =
-        OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();
+    let camera = OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();
     view(&random(400, 31), camera, [96, 80])
 }
 

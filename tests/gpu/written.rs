@@ -24,11 +24,8 @@ const OF_LAYERS: [&str; 5] = [
 ];
 
 /// Faults below the bounds of all rays together that a device may compute. They are found if rays are recorded.
-const TOO_SMALL: [&str; 3] = [
-    "origin_off_by_a_hundred_thousandth",
-    "normal_turned_by_a_thirty_thousandth",
-    "colors_larger_by_a_part_in_300000",
-];
+const TOO_SMALL: [&str; 3] =
+    ["origin_off_by_a_hundred_thousandth", "normal_turned_by_a_thirty_thousandth", "colors_larger_by_a_part_in_300000"];
 
 /// Whether a fault can be seen in a picture alone.
 fn is_visible(name: &str) -> bool {
@@ -103,9 +100,7 @@ fn means(device: &Headless, view: &View) -> Result<Means, Failed> {
     let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
     settings.sampling.seed += 1;
     let expected = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
-    let wide = |image: &Image| -> Vec<[f64; 3]> {
-        image.color().iter().map(|rgb| rgb.map(f64::from)).collect()
-    };
+    let wide = |image: &Image| -> Vec<[f64; 3]> { image.color().iter().map(|rgb| rgb.map(f64::from)).collect() };
     let ties = Checker::new(scene)?.ties(&view.seen());
     let estimates = Estimates {
         size: [found.width(), found.height()],

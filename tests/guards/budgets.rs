@@ -12,9 +12,7 @@ const FILE: &str = "tests/guards/budgets.txt";
 
 /// Returns the current amount for a budget, by its name, and a list that helps to reduce it, which may be empty.
 fn amount(what: &str) -> (usize, String) {
-    let lines = |folder: &str| -> usize {
-        sources(folder).iter().map(|(_, text)| text.lines().count()).sum()
-    };
+    let lines = |folder: &str| -> usize { sources(folder).iter().map(|(_, text)| text.lines().count()).sum() };
     match what.split_once(' ').unwrap_or((what, "")) {
         ("lines", folder) => (lines(folder), String::new()),
         ("files", folder) => (sources(folder).len(), String::new()),
@@ -24,10 +22,7 @@ fn amount(what: &str) -> (usize, String) {
             let features = manifest.split("\n[features]\n").nth(1).unwrap();
             let features = features.split("\n[").next().unwrap().lines();
             let is_feature = |line: &&str| line.contains(" = ") && !line.starts_with(['#', ' ']);
-            (
-                features.filter(is_feature).filter(|line| !line.starts_with("default ")).count(),
-                String::new(),
-            )
+            (features.filter(is_feature).filter(|line| !line.starts_with("default ")).count(), String::new())
         }
         _ => panic!("{FILE}: `{what}` is not a budget"),
     }

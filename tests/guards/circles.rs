@@ -61,8 +61,7 @@ impl Names {
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let words = attribute.meta.to_token_stream().to_string();
-        attribute.path().is_ident("cfg")
-            && ["(test)", "(all (test ,"].iter().any(|t| words.contains(t))
+        attribute.path().is_ident("cfg") && ["(test)", "(all (test ,"].iter().any(|t| words.contains(t))
     })
 }
 
@@ -104,8 +103,7 @@ impl Crate {
         let mut files = BTreeMap::new();
         for (path, text) in sources(folder) {
             let path = path.strip_prefix(&root).unwrap().with_extension("");
-            let mut module: Module =
-                path.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+            let mut module: Module = path.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
             let is_root = module == ["lib"] || module == ["main"];
             if is_root || module.last().is_some_and(|last| last == "mod") {
                 module.pop();
@@ -167,10 +165,7 @@ impl Crate {
     /// Returns the files that a file imports.
     fn imports(&self, file: &Module) -> BTreeSet<Module> {
         let names = &self.files[file];
-        let used = names
-            .uses
-            .iter()
-            .filter(|(is_public, name, _)| !is_public || names.words.contains(name));
+        let used = names.uses.iter().filter(|(is_public, name, _)| !is_public || names.words.contains(name));
         let paths = used.map(|(_, _, path)| path).chain(&names.paths);
         let absolute = paths.filter_map(|path| self.absolute(file, path));
         let found = absolute.filter_map(|path| self.definition(&path, 0));
@@ -219,9 +214,8 @@ fn circles_are_found() {
         names
     };
     let of = |files: &[(&str, &str)]| {
-        let module = |path: &str| -> Module {
-            path.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect()
-        };
+        let module =
+            |path: &str| -> Module { path.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect() };
         let files = files.iter().map(|(path, text)| (module(path), names(text))).collect();
         Crate { files }.circles().into_keys().map(|file| file.join("/")).collect::<Vec<_>>()
     };

@@ -7,8 +7,7 @@ use std::path::Path;
 use super::sources::{ROOT, sources};
 
 /// The sources of all crates.
-const CRATES: [&str; 6] =
-    ["src", "crates/data/src", "crates/figure/src", "cli/src", "python/src", "viewer/src"];
+const CRATES: [&str; 6] = ["src", "crates/data/src", "crates/figure/src", "cli/src", "python/src", "viewer/src"];
 
 /// Checks that files below `folder` contain none of the words, except files whose paths end with one of `except`.
 fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
@@ -56,11 +55,7 @@ fn only_the_gpu_module_names_wgpu() {
     for (path, text) in sources("src") {
         let allowed = path.components().any(|c| c.as_os_str() == "gpu");
         // The crate's documentation mentions wgpu for embedders.
-        assert!(
-            allowed || path.ends_with("lib.rs") || !text.contains("wgpu"),
-            "{}",
-            path.display()
-        );
+        assert!(allowed || path.ends_with("lib.rs") || !text.contains("wgpu"), "{}", path.display());
     }
 }
 
@@ -150,8 +145,7 @@ fn shaders_that_are_named_exist() {
     for folder in fs::read_dir(&root).unwrap().map(|entry| entry.unwrap().path()) {
         if folder.is_dir() {
             for file in fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()) {
-                known
-                    .insert(file.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/"));
+                known.insert(file.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/"));
                 known.insert(file.file_name().unwrap().to_str().unwrap().to_owned());
             }
         }

@@ -7,8 +7,8 @@ use std::thread;
 
 use pinhole::camera::{CameraKind, DepthOrder, HostCamera};
 use pinhole::gpu::{
-    DepthTest, Frame, GpuError, Headless, HeadlessOptions, HostDepth, LitPicture, LitRenderer,
-    LivePicture, Recolor, Renderer, RendererOptions, SceneBuffers, Wait, adapter, wgpu,
+    DepthTest, Frame, GpuError, Headless, HeadlessOptions, HostDepth, LitPicture, LitRenderer, LivePicture, Recolor,
+    Renderer, RendererOptions, SceneBuffers, Wait, adapter, wgpu,
 };
 use pinhole::internals::ShaderEdit;
 
@@ -87,9 +87,8 @@ fn the_pipelines_of_a_frame_are_built_first() {
     // With the depth of a host, other pipelines are needed, and nothing is recorded until they are built.
     let (test, depth) = host_depth(&host, &renderer, &frame);
     let mut encoder = host.encoder();
-    let (calls, refused) = calls_of(|| {
-        renderer.record_with_depth(&mut encoder, &scene, &frame, &test, &depth).unwrap_err()
-    });
+    let (calls, refused) =
+        calls_of(|| renderer.record_with_depth(&mut encoder, &scene, &frame, &test, &depth).unwrap_err());
     assert!(matches!(refused, GpuError::NotReady { .. }), "{refused}");
     assert_eq!(calls, Calls::default());
     while renderer.build_next(&host.device).unwrap() > 0 {}

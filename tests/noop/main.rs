@@ -10,12 +10,8 @@ mod passes;
 mod steady_state;
 
 use pinhole::accel::AccelChoice;
-use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-};
-use pinhole::gpu::{
-    Frame, Renderer, RendererOptions, SceneBuffers, Targets, WGPU_VERSION, Wait, wgpu,
-};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, WGPU_VERSION, Wait, wgpu};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use host_program::Host;
@@ -29,18 +25,12 @@ impl Host {
         Self { device, queue }
     }
 
-    fn with_targets<T>(
-        &self,
-        options: &RendererOptions,
-        size: [u32; 2],
-        work: impl FnOnce(&Targets<'_>) -> T,
-    ) -> T {
+    fn with_targets<T>(&self, options: &RendererOptions, size: [u32; 2], work: impl FnOnce(&Targets<'_>) -> T) -> T {
         self.layers(size, options.color.texture_format()).with(options.data_layers, work)
     }
 
     fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
-        let frame =
-            |targets: &Targets<'_>| Frame::new(renderer, &self.device, targets).wait().unwrap();
+        let frame = |targets: &Targets<'_>| Frame::new(renderer, &self.device, targets).wait().unwrap();
         self.with_targets(options, size, frame)
     }
 
@@ -114,10 +104,7 @@ fn the_documented_version_of_wgpu_is_that_of_the_manifest() {
         .collect();
     assert!(required.len() >= 2, "{required:?}");
     for version in &required {
-        assert!(
-            version.starts_with(&format!("{WGPU_VERSION}.")),
-            "{version} is not {WGPU_VERSION}"
-        );
+        assert!(version.starts_with(&format!("{WGPU_VERSION}.")), "{version} is not {WGPU_VERSION}");
     }
     let release = env!("CARGO_PKG_VERSION");
     let row = format!("| {release} | {WGPU_VERSION} |");

@@ -1,9 +1,7 @@
 //! Tests that record and submit every kind of pass on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::gpu::{
-    ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions, Wait,
-};
+use pinhole::gpu::{ColorTarget, LitPicture, LitRenderer, Recolor, Renderer, RendererOptions, Wait};
 use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};
@@ -15,11 +13,9 @@ use crate::{SIZE, cameras, film, pinhole_camera, scene, spheres};
 fn primary_rays_of_every_camera_structure_and_target() {
     let host = Host::new();
     let (scene, cameras) = (scene(), cameras());
-    for (color, data_layers, keeps_rays) in [
-        (ColorTarget::Srgb8, false, false),
-        (ColorTarget::Linear16, true, true),
-        (ColorTarget::Linear32, true, false),
-    ] {
+    for (color, data_layers, keeps_rays) in
+        [(ColorTarget::Srgb8, false, false), (ColorTarget::Linear16, true, true), (ColorTarget::Linear32, true, false)]
+    {
         let options = RendererOptions {
             color,
             data_layers,
@@ -92,13 +88,10 @@ fn new_colors() {
 fn studios_and_paths() {
     let host = Host::new();
     let scene = scene();
-    for (color, data_layers, indirect) in [
-        (ColorTarget::Srgb8, false, true),
-        (ColorTarget::Linear16, true, true),
-        (ColorTarget::Linear32, true, false),
-    ] {
-        let options =
-            RendererOptions { color, data_layers, indirect, ..RendererOptions::default() };
+    for (color, data_layers, indirect) in
+        [(ColorTarget::Srgb8, false, true), (ColorTarget::Linear16, true, true), (ColorTarget::Linear32, true, false)]
+    {
+        let options = RendererOptions { color, data_layers, indirect, ..RendererOptions::default() };
         let renderer = Renderer::new(&host.device, &options).wait().unwrap();
         let buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
         let lit = LitRenderer::new(renderer);
@@ -109,9 +102,7 @@ fn studios_and_paths() {
                 let view = View::new(camera.as_ref(), film());
                 let (device, queue) = (&host.device, &host.queue);
                 let mut picture = host.with_targets(&options, SIZE, |targets| {
-                    LitPicture::new(&lit, device, queue, &buffers, &view, &settings, targets)
-                        .wait()
-                        .unwrap()
+                    LitPicture::new(&lit, device, queue, &buffers, &view, &settings, targets).wait().unwrap()
                 });
                 let refused = host.refused(|| {
                     let mut encoder = host.encoder();

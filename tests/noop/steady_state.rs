@@ -7,8 +7,7 @@ use std::sync::Once;
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{
-    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, Wait,
-    wgpu,
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::{RenderSettings, View};
 
@@ -157,23 +156,18 @@ fn lit_pictures_create_submit_and_await_nothing() {
         let mut record = |moves: bool| {
             let moved = if moves { moved_camera } else { camera };
             let view = View::new(&moved, film());
-            let (set, begins_again) =
-                calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
+            let (set, begins_again) = calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
             assert_eq!(begins_again.unwrap(), moves);
             assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
             assert!(set.writes <= if moves { 4 } else { 0 }, "{set:?}");
             let mut encoder = host.encoder();
-            let (recorded, done) =
-                calls_of(|| picture.record(&lit, queue, &mut encoder, &scene, 1 << 16));
+            let (recorded, done) = calls_of(|| picture.record(&lit, queue, &mut encoder, &scene, 1 << 16));
             let mapped = recorded.mapped;
             let only = Calls { writes: 1, mapped, all: recorded.all, ..Calls::default() };
             assert_eq!(recorded, only);
             assert!(mapped <= 1, "{recorded:?}");
             let done = done.unwrap();
-            assert!(
-                done.rays > 0 && done.state == LitState::Refining && !done.was_lost,
-                "{done:?}"
-            );
+            assert!(done.rays > 0 && done.state == LitState::Refining && !done.was_lost, "{done:?}");
             queue.submit([encoder.finish()]);
             device.poll(wgpu::PollType::Poll).unwrap();
         };
@@ -199,8 +193,7 @@ fn live_pictures_create_submit_and_await_nothing() {
         let pose = Pose::looking_at(eye, [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
         let view = View::new(&camera, film());
-        let (set, done) =
-            calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
+        let (set, done) = calls_of(|| picture.set(&lit, device, queue, &scene, &view, &settings).wait());
         done.unwrap();
         assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
         assert!((1..=3).contains(&set.writes), "{set:?}");

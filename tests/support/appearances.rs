@@ -4,10 +4,7 @@ use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::render::Sampling;
 use pinhole::scene::NewColors;
 use pinhole::scene::material::Material;
-use pinhole::{
-    Appearance, ColorMap, Colors, LinearRgb, RenderSettings, Scene, Sphere, SphereArray,
-    SurfaceProperties,
-};
+use pinhole::{Appearance, ColorMap, Colors, LinearRgb, RenderSettings, Scene, Sphere, SphereArray, SurfaceProperties};
 
 /// The number of spheres of each scene.
 const COUNT: u32 = 60;
@@ -53,11 +50,8 @@ fn kind(name: String, appearance: Appearance) -> Kind {
     let one_by_one: Vec<Sphere> = (0..)
         .zip(&spheres)
         .map(|(id, [x, y, z, radius])| {
-            let mut sphere = Sphere::new(
-                [x, y, z].map(|c| f64::from(*c)),
-                f64::from(*radius),
-                appearance.color(id).unwrap(),
-            );
+            let mut sphere =
+                Sphere::new([x, y, z].map(|c| f64::from(*c)), f64::from(*radius), appearance.color(id).unwrap());
             let place = appearance.surface_indices().map_or(0, |indices| indices[id as usize]);
             sphere.surface = appearance.surfaces()[place as usize];
             if let Colors::Rgba8(colors) = appearance.colors() {
@@ -67,11 +61,7 @@ fn kind(name: String, appearance: Appearance) -> Kind {
         })
         .collect();
     let expected = Scene::new(&one_by_one).unwrap();
-    Kind {
-        name,
-        scene: Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap(),
-        expected,
-    }
+    Kind { name, scene: Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap(), expected }
 }
 
 fn spheres() -> Vec<[f32; 4]> {
@@ -85,8 +75,7 @@ fn spheres() -> Vec<[f32; 4]> {
 
 fn colors() -> Vec<(&'static str, Colors)> {
     let mut random = fastrand::Rng::with_seed(24);
-    let table: Vec<LinearRgb> =
-        (0..40).map(|_| LinearRgb::new([0; 3].map(|_| random.f32())).unwrap()).collect();
+    let table: Vec<LinearRgb> = (0..40).map(|_| LinearRgb::new([0; 3].map(|_| random.f32())).unwrap()).collect();
     let indices = (0..COUNT).map(|_| random.u32(..40)).collect();
     let values = (0..COUNT).map(|_| random.f32() * 14.0 - 2.0).collect();
     let rgba = (0..COUNT).map(|_| [0; 4].map(|_| random.u8(..)));

@@ -43,9 +43,7 @@ pub(crate) fn answered(text: &str, mut answer: impl FnMut(&Case<'_>) -> String) 
         found += block;
         case.files.push(match command.strip_prefix("$ cat ") {
             Some(name) => (name, body.as_bytes().to_vec()),
-            None => {
-                (command.strip_prefix("$ printf ").unwrap(), bytes(body.trim_end_matches('\n')))
-            }
+            None => (command.strip_prefix("$ printf ").unwrap(), bytes(body.trim_end_matches('\n'))),
         });
     }
     assert!(case.files.is_empty(), "the last file belongs to no command");

@@ -97,8 +97,8 @@ pub(crate) fn compare(view: &View, reference: &Picture, result: &Picture) -> Com
 fn differences(view: &View, pixel: [u32; 2], a: &Pixel, b: &Pixel) -> Vec<Violation> {
     let bounds = bounds(view, pixel, a);
     // Two misses are equal, although the difference of two infinities is NaN.
-    let same_depth = a.depth.to_bits() == b.depth.to_bits()
-        || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
+    let same_depth =
+        a.depth.to_bits() == b.depth.to_bits() || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
     let same_normal = distance(a.normal, b.normal) <= bounds.normal && is_unit_or_zero(b);
     let same_position = distance(a.position, b.position) <= bounds.position;
     let same_albedo = a.albedo.map(f32::to_bits) == b.albedo.map(f32::to_bits);
@@ -172,10 +172,9 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
 fn nudged_ids(view: &View, i: u32, j: u32) -> [u32; 8] {
     std::array::from_fn(|k| {
         let (sin, cos) = (k as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
-        let location = view.film.relative_location(
-            f64::from(i) + 0.5 + NUDGE_PIXELS * cos,
-            f64::from(j) + 0.5 + NUDGE_PIXELS * sin,
-        );
+        let location = view
+            .film
+            .relative_location(f64::from(i) + 0.5 + NUDGE_PIXELS * cos, f64::from(j) + 0.5 + NUDGE_PIXELS * sin);
         let ray = view.camera.ray_in_world(location);
         let hit = view.camera.sees(location).then(|| cpu::trace(&view.scene, &ray)).flatten();
         hit.map_or(NO_ID, |hit| hit.id)

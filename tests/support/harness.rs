@@ -6,15 +6,12 @@ use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use pinhole::gpu::{Headless, HeadlessOptions, Wait};
 
 /// The device of all tests, which is opened, and printed, only once.
-static HEADLESS: LazyLock<Result<Headless, String>> = LazyLock::new(|| {
-    Headless::open(&HeadlessOptions::default()).wait().map_err(|error| error.to_string())
-});
+static HEADLESS: LazyLock<Result<Headless, String>> =
+    LazyLock::new(|| Headless::open(&HeadlessOptions::default()).wait().map_err(|error| error.to_string()));
 
 pub(crate) fn headless() -> Result<&'static Headless, Failed> {
     HEADLESS.as_ref().map_err(|error| {
-        Failed::from(format!(
-            "{error}; without a GPU install mesa-vulkan-drivers, or set PINHOLE_NO_GPU_TESTS=1"
-        ))
+        Failed::from(format!("{error}; without a GPU install mesa-vulkan-drivers, or set PINHOLE_NO_GPU_TESTS=1"))
     })
 }
 
@@ -52,10 +49,7 @@ pub(crate) fn run(trials: impl FnOnce() -> Vec<Trial>) -> ! {
         match &*HEADLESS {
             Ok(headless) => {
                 let info = headless.adapter_info();
-                println!(
-                    "\nadapter: {} ({:?}), driver: {} {}",
-                    info.name, info.backend, info.driver, info.driver_info
-                );
+                println!("\nadapter: {} ({:?}), driver: {} {}", info.name, info.backend, info.driver, info.driver_info);
             }
             Err(error) => println!("\nadapter: none, {error}"),
         }

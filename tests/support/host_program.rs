@@ -1,9 +1,7 @@
 //! A program with a device of its own that draws with this library.
 
 use pinhole::accel::{AccelChoice, AccelPlan};
-use pinhole::gpu::{
-    DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, Wait, wgpu,
-};
+use pinhole::gpu::{DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, Wait, wgpu};
 use pinhole::{RenderSettings, Scene, View};
 use wgpu::TextureFormat::{R32Float, R32Uint, Rgba32Float};
 
@@ -79,11 +77,7 @@ impl Host {
         let used = texture.width() * texture.format().block_copy_size(None).unwrap();
         let row = used.next_multiple_of(256);
         let buffer = self.read_buffer(u64::from(row * texture.height()));
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(row),
-            rows_per_image: None,
-        };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
         let copy = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), copy, texture.size());
         let bytes = self.submit_and_map(encoder, &buffer);
@@ -96,11 +90,7 @@ impl Host {
     }
 
     /// Runs the encoder and returns the word in a buffer.
-    pub(crate) fn submit_and_read_word(
-        &self,
-        mut encoder: wgpu::CommandEncoder,
-        word: &wgpu::Buffer,
-    ) -> u32 {
+    pub(crate) fn submit_and_read_word(&self, mut encoder: wgpu::CommandEncoder, word: &wgpu::Buffer) -> u32 {
         let buffer = self.read_buffer(4);
         encoder.copy_buffer_to_buffer(word, 0, &buffer, 0, 4);
         u32::from_ne_bytes(self.submit_and_map(encoder, &buffer).try_into().unwrap())
@@ -129,13 +119,7 @@ impl Host {
     }
 
     /// A scene in a structure, divided into bricks of at most `binding` bytes.
-    pub(crate) fn scene(
-        &self,
-        renderer: &Renderer,
-        scene: &Scene,
-        choice: AccelChoice,
-        binding: u64,
-    ) -> SceneBuffers {
+    pub(crate) fn scene(&self, renderer: &Renderer, scene: &Scene, choice: AccelChoice, binding: u64) -> SceneBuffers {
         let accel = AccelPlan::new(scene.spheres(), choice, binding).build(scene.spheres());
         SceneBuffers::with_accel(renderer, &self.device, &self.queue, scene, &accel).wait().unwrap()
     }
@@ -162,12 +146,7 @@ impl Layers {
     }
 
     /// A frame in these textures.
-    pub(crate) fn frame(
-        &self,
-        renderer: &Renderer,
-        device: &wgpu::Device,
-        has_data: bool,
-    ) -> Frame {
+    pub(crate) fn frame(&self, renderer: &Renderer, device: &wgpu::Device, has_data: bool) -> Frame {
         self.with(has_data, |targets| Frame::new(renderer, device, targets).wait().unwrap())
     }
 }
@@ -184,12 +163,7 @@ impl Drawing {
         Self::of(host, Renderer::new(&host.device, options).wait().unwrap(), options, size)
     }
 
-    pub(crate) fn of(
-        host: &Host,
-        renderer: Renderer,
-        options: &RendererOptions,
-        size: [u32; 2],
-    ) -> Self {
+    pub(crate) fn of(host: &Host, renderer: Renderer, options: &RendererOptions, size: [u32; 2]) -> Self {
         let layers = host.layers(size, options.color.texture_format());
         let frame = layers.frame(&renderer, &host.device, options.data_layers);
         Self { renderer, layers, frame }

@@ -27,19 +27,14 @@ impl LegalDevice {
         let (right, up, forward) = (view.right, view.up, view.forward);
         match kind {
             CameraKind::Orthographic => {
-                let origin = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])])
-                });
+                let origin = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])]));
                 LegalRay { origin, direction: forward, distance: view.advance, is_seen: true }
             }
             CameraKind::Pinhole => {
                 let aside = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k])]));
-                let toward = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])])
-                });
+                let toward = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])]));
                 let (direction, length) = self.unit(toward);
-                let origin =
-                    self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
+                let origin = self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
                 let distance = self.mul(view.advance, length);
                 LegalRay { origin, direction, distance, is_seen: true }
             }
@@ -70,16 +65,12 @@ impl LegalDevice {
         let on_lens = [self.mul(disk[0], first), self.mul(disk[1], second)];
         let offset = self.sum(on_lens[0], right, on_lens[1], up);
         let aside = self.sum(x, right, y, up);
-        let toward = self.vector(|this, k| {
-            this.dot(&mut [(1.0, aside[k]), (1.0, forward[k]), (-1.0, offset[k])])
-        });
+        let toward = self.vector(|this, k| this.dot(&mut [(1.0, aside[k]), (1.0, forward[k]), (-1.0, offset[k])]));
         let (direction, length) = self.unit(toward);
         let far = self.vector(|this, k| this.mul(view.advance, aside[k]));
         let before = self.add(1.0, -view.advance);
         let near = self.vector(|this, k| this.mul(before, offset[k]));
-        let origin = self.vector(|this, k| {
-            this.dot(&mut [(1.0, view.origin[k]), (1.0, far[k]), (1.0, near[k])])
-        });
+        let origin = self.vector(|this, k| this.dot(&mut [(1.0, view.origin[k]), (1.0, far[k]), (1.0, near[k])]));
         let distance = self.mul(view.advance, length);
         LegalRay { origin, direction, distance, is_seen: true }
     }

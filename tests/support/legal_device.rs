@@ -47,11 +47,7 @@ impl LegalDevice {
             Habit::Random if self.random.bool() => up,
             _ => down,
         };
-        if self.habit == Habit::Random && rounded.is_subnormal() && self.random.bool() {
-            0.0
-        } else {
-            rounded
-        }
+        if self.habit == Habit::Random && rounded.is_subnormal() && self.random.bool() { 0.0 } else { rounded }
     }
 
     /// The direction in which the next operation of [`Habit::Chosen`] rounds.
@@ -100,9 +96,7 @@ impl LegalDevice {
 
     /// The quotient, or the product with the inverse, by which compilers may replace it.
     pub(crate) fn divide(&mut self, a: f32, b: f32) -> f32 {
-        if matches!(self.habit, Habit::Chosen(_))
-            || self.habit != Habit::Nearest && self.random.bool()
-        {
+        if matches!(self.habit, Habit::Chosen(_)) || self.habit != Habit::Nearest && self.random.bool() {
             let inverse = self.off(1.0 / f64::from(b), 2.5);
             return self.mul(a, inverse);
         }
@@ -169,10 +163,7 @@ pub(crate) struct Triangle {
 
 /// The kernels of a picture, in their order.
 impl LegalDevice {
-    pub(crate) fn vector(
-        &mut self,
-        mut component: impl FnMut(&mut Self, usize) -> f32,
-    ) -> [f32; 3] {
+    pub(crate) fn vector(&mut self, mut component: impl FnMut(&mut Self, usize) -> f32) -> [f32; 3] {
         [0, 1, 2].map(|k| component(self, k))
     }
 
@@ -203,12 +194,7 @@ impl LegalDevice {
     }
 
     /// Does what `enter_scene` of shaders/scene/enter.wgsl does. Also returns whether the ray meets the box.
-    pub(crate) fn enter(
-        &mut self,
-        view: &UploadedView,
-        origin: [f32; 3],
-        direction: [f32; 3],
-    ) -> (TracedRay, bool) {
+    pub(crate) fn enter(&mut self, view: &UploadedView, origin: [f32; 3], direction: [f32; 3]) -> (TracedRay, bool) {
         let (mut near, mut far) = (0.0_f32, f32::MAX);
         for k in 0..3 {
             let size = direction[k].abs().max(2_f32.powi(-40));

@@ -13,8 +13,7 @@ pub(crate) fn random_map(seed: u64, [width, height]: [u32; 2]) -> Environment {
     let mut random = fastrand::Rng::with_seed(seed);
     let texels = (0..width * height).map(|i| {
         let is_black = random.u32(..8) == 0 || (i / width == 1 && height > 2);
-        let brightness =
-            if is_black && i > 0 { 0.0 } else { 10_f32.powf(5.0 * random.f32() - 3.0) };
+        let brightness = if is_black && i > 0 { 0.0 } else { 10_f32.powf(5.0 * random.f32() - 3.0) };
         [0; 3].map(|_: i32| brightness * random.f32())
     });
     Environment::new(width, height, texels.collect()).unwrap()

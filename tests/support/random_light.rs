@@ -5,18 +5,13 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fastrand::Rng;
-use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
-use pinhole::render::{
-    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio,
-};
+use pinhole::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{
-    Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene,
-    Sphere, SphereArray,
+    Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere, SphereArray,
 };
 
 /// A scene, its lighting and view, and a description of it in words.
@@ -150,8 +145,7 @@ impl Random {
             }
         };
         let surfaces = spheres.iter().map(|sphere| sphere.surface).collect();
-        let appearance =
-            Appearance::new(colors).with_surfaces(surfaces, (0..count as u32).collect());
+        let appearance = Appearance::new(colors).with_surfaces(surfaces, (0..count as u32).collect());
         let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
         Scene::from_parts(SphereArray::F64(points.collect()), appearance).unwrap()
     }
@@ -167,11 +161,8 @@ impl Random {
         let largest = 1.6 / (count as f64).cbrt();
         let mut spheres: Vec<Sphere> = Vec::new();
         while spheres.len() < count {
-            let mut sphere = Sphere::new(
-                self.point(SIDE).to_array(),
-                self.between(0.05, 1.0) * largest,
-                self.color(1.0),
-            );
+            let mut sphere =
+                Sphere::new(self.point(SIDE).to_array(), self.between(0.05, 1.0) * largest, self.color(1.0));
             if !spheres.is_empty() && self.chance(coincident) {
                 // Coincides with another sphere: equal, with another surface, inside it, or around it.
                 let other = spheres[self.0.usize(0..spheres.len())];
@@ -199,8 +190,7 @@ impl Random {
         let sphere = spheres[self.0.usize(0..spheres.len())];
         let is_inside = self.chance(0.25);
         let eye = if is_inside {
-            let within =
-                self.direction().normalize_or_zero() * self.between(0.0, 0.9) * sphere.radius;
+            let within = self.direction().normalize_or_zero() * self.between(0.0, 0.9) * sphere.radius;
             DVec3::from(sphere.center) + within
         } else {
             let away = self.between(4.0, 9.0);
@@ -232,17 +222,9 @@ impl Random {
         let kind = match self.0.u32(0..5) {
             0 => LightKind::Head { strength: color },
             1 => LightKind::Directional { toward: place, strength: color, angular_radius: 0.0 },
-            2 => LightKind::Directional {
-                toward: place,
-                strength: color,
-                angular_radius: self.between(0.001, 1.0),
-            },
+            2 => LightKind::Directional { toward: place, strength: color, angular_radius: self.between(0.001, 1.0) },
             3 => LightKind::Point { position: place, intensity: self.color(20.0) },
-            _ => LightKind::Sphere {
-                center: place,
-                radius: self.between(0.05, 1.0),
-                radiance: self.color(10.0),
-            },
+            _ => LightKind::Sphere { center: place, radius: self.between(0.05, 1.0), radiance: self.color(10.0) },
         };
         let frame = if self.chance(0.3) { LightFrame::Camera } else { LightFrame::World };
         Light { kind, frame }
@@ -252,11 +234,7 @@ impl Random {
         let light = match self.0.u32(0..6) {
             0 => SkyLight::Constant(LinearRgb::BLACK),
             1 => SkyLight::Constant(self.color(1.5)),
-            2 | 3 => SkyLight::Gradient {
-                zenith: self.color(1.5),
-                horizon: self.color(1.5),
-                nadir: self.color(1.5),
-            },
+            2 | 3 => SkyLight::Gradient { zenith: self.color(1.5), horizon: self.color(1.5), nadir: self.color(1.5) },
             _ => SkyLight::Image {
                 environment: self.environment(),
                 strength: if self.chance(0.1) { 0.0 } else { 2.0 * self.0.f32() },

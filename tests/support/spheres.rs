@@ -147,12 +147,7 @@ pub(crate) fn crowd(count: usize) -> Spheres {
 
 /// A crowd in the unit cube, with some outliers in the list of its spheres, at up to `far` times its size. They are far
 /// along only one axis if `is_in_line`.
-pub(crate) fn crowd_and_outliers(
-    count: usize,
-    outliers: usize,
-    far: f32,
-    is_in_line: bool,
-) -> Spheres {
+pub(crate) fn crowd_and_outliers(count: usize, outliers: usize, far: f32, is_in_line: bool) -> Spheres {
     let mut spheres = random(count, 28, |rng| 0.02 * (0.2 + rng.f32()));
     let mut rng = Rng::with_seed(29);
     for i in 0..outliers {

@@ -276,8 +276,7 @@ impl App {
     fn ask(&mut self, context: &egui::Context) {
         let Some(changed) = self.changed else { return };
         let request = self.state.request(!self.player.plays);
-        let is_read =
-            self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.facts.flags));
+        let is_read = self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.facts.flags));
         if is_read && (self.is_moving() || changed.elapsed() < STILL_AFTER) {
             context.request_repaint_after(STILL_AFTER);
             return;

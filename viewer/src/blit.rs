@@ -77,23 +77,13 @@ impl Blit {
     }
 
     /// Makes the bind group for drawing a texture.
-    pub(crate) fn group(
-        &self,
-        device: &wgpu::Device,
-        texture: &wgpu::TextureView,
-    ) -> wgpu::BindGroup {
+    pub(crate) fn group(&self, device: &wgpu::Device, texture: &wgpu::TextureView) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("picture in the window"),
             layout: &self.pipeline.get_bind_group_layout(0),
             entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(texture),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
-                },
+                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(texture) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
             ],
         })
     }

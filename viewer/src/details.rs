@@ -59,8 +59,7 @@ impl Details {
         }
         let of = |names: &[&str]| names.iter().find_map(|name| self.value(name));
         let kind = of(&["name", "atom", "species", "type"]);
-        let place =
-            ["residue", "residue_number", "chain"].into_iter().filter_map(|name| of(&[name]));
+        let place = ["residue", "residue_number", "chain"].into_iter().filter_map(|name| of(&[name]));
         let parts: Vec<&str> = kind.into_iter().chain(place).collect();
         if parts.is_empty() { format!("sphere {}", self.id) } else { parts.join(" ") }
     }
@@ -91,11 +90,7 @@ pub(crate) fn readable(number: f64) -> String {
         let before = number.abs().max(1.0).log10().floor();
         let digits = (6.0 - before).clamp(0.0, 8.0) as usize;
         let text = format!("{number:.digits$}");
-        let text = if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.')
-        } else {
-            &text
-        };
+        let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
         return text.to_owned();
     }
     format!("{number:.6e}")

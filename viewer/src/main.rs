@@ -94,9 +94,7 @@ fn explained(error: &eframe::Error, adapter: Option<&str>) -> ViewError {
 fn wgpu_options(name: Option<String>) -> egui_wgpu::WgpuConfiguration {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
-        let can_show = |adapter: &&wgpu::Adapter| {
-            surface.is_none_or(|surface| adapter.is_surface_supported(surface))
-        };
+        let can_show = |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
         let mut able: Vec<wgpu::Adapter> = adapters.iter().filter(can_show).cloned().collect();
         able.sort_by_key(|adapter| match adapter.get_info().device_type {
             wgpu::DeviceType::DiscreteGpu => 0,

@@ -14,20 +14,17 @@ impl App {
         if self.news.as_ref().is_some_and(|news| news.facts.time_line.is_some()) {
             egui::Panel::bottom("time").show(ui, |ui| self.time_row(ui));
         }
-        egui::Panel::right("controls").default_size(272.0).size_range(220.0..=420.0).show(
-            ui,
-            |ui| {
-                egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-                    self.heading(ui);
-                    section(ui, "View", |ui| self.view_section(ui));
-                    section(ui, "Style", |ui| self.style_section(ui));
-                    section(ui, "Color", |ui| self.color_section(ui));
-                    section(ui, "Selection, box and bonds", |ui| self.structure_section(ui));
-                    section(ui, "Picture file", |ui| self.file_section(ui));
-                    section(ui, "Other flags", |ui| self.others_section(ui));
-                });
-            },
-        );
+        egui::Panel::right("controls").default_size(272.0).size_range(220.0..=420.0).show(ui, |ui| {
+            egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+                self.heading(ui);
+                section(ui, "View", |ui| self.view_section(ui));
+                section(ui, "Style", |ui| self.style_section(ui));
+                section(ui, "Color", |ui| self.color_section(ui));
+                section(ui, "Selection, box and bonds", |ui| self.structure_section(ui));
+                section(ui, "Picture file", |ui| self.file_section(ui));
+                section(ui, "Other flags", |ui| self.others_section(ui));
+            });
+        });
         if self.picked.is_some() {
             self.picked_window(ui.ctx());
         }
@@ -43,25 +40,18 @@ impl App {
         let count = news.facts.scene.len() - news.facts.scene.added();
         let has_species = news.facts.columns.iter().any(|column| column.name == "species");
         let noun = if has_species { "atoms" } else { "spheres" };
-        let frames =
-            news.facts.time_line.as_ref().map(|line| format!(" · {} frames", grouped(line.count)));
-        ui.label(
-            RichText::new(format!("{} {noun}{}", grouped(count), frames.unwrap_or_default()))
-                .weak(),
-        );
+        let frames = news.facts.time_line.as_ref().map(|line| format!(" · {} frames", grouped(line.count)));
+        ui.label(RichText::new(format!("{} {noun}{}", grouped(count), frames.unwrap_or_default())).weak());
         if !news.facts.notes.is_empty() {
             let title = match news.facts.notes.len() {
                 1 => "1 note about the file".to_owned(),
                 notes => format!("{notes} notes about the file"),
             };
-            egui::CollapsingHeader::new(RichText::new(title).weak()).id_salt("notes").show(
-                ui,
-                |ui| {
-                    for note in &news.facts.notes {
-                        ui.label(RichText::new(note).small());
-                    }
-                },
-            );
+            egui::CollapsingHeader::new(RichText::new(title).weak()).id_salt("notes").show(ui, |ui| {
+                for note in &news.facts.notes {
+                    ui.label(RichText::new(note).small());
+                }
+            });
         }
     }
 
@@ -92,9 +82,7 @@ impl App {
                             ui.label(RichText::new(&value.name).weak());
                             ui.label(RichText::new(&value.value).monospace());
                             if let Some(expression) = &value.select {
-                                let only = ui
-                                    .small_button("only")
-                                    .on_hover_text(format!("--select '{expression}'"));
+                                let only = ui.small_button("only").on_hover_text(format!("--select '{expression}'"));
                                 if only.clicked() {
                                     select = Some(expression.clone());
                                 }
@@ -147,10 +135,7 @@ impl App {
         ui.add_space(2.0);
         ui.horizontal(|ui| {
             let copy = ui.button("Copy as command line");
-            if copy
-                .on_hover_text("The command that renders this picture, to the byte (Ctrl+C)")
-                .clicked()
-            {
+            if copy.on_hover_text("The command that renders this picture, to the byte (Ctrl+C)").clicked() {
                 self.copy(&ui.ctx().clone());
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -186,8 +171,7 @@ impl App {
                 (Some(_), Some(frame)) if self.player.plays => format!("reading frame {frame} …"),
                 _ => format!("loading {} …", self.state.flags.path()),
             };
-            let middle =
-                egui::Area::new(egui::Id::unique("loading")).order(egui::Order::Foreground);
+            let middle = egui::Area::new(egui::Id::unique("loading")).order(egui::Order::Foreground);
             middle.fixed_pos(rect.center_top() + egui::vec2(-110.0, 14.0)).show(ui.ctx(), |ui| {
                 egui::Frame::popup(ui.style()).show(ui, |ui| {
                     ui.horizontal(|ui| {
@@ -202,9 +186,9 @@ impl App {
         let Some(error) = self.error.clone() else { return };
         let area = egui::Area::new(egui::Id::unique("error")).order(egui::Order::Foreground);
         let width = (rect.width() - 60.0).clamp(120.0, 620.0);
-        area.fixed_pos(rect.left_bottom() + egui::vec2(14.0, -14.0))
-            .pivot(egui::Align2::LEFT_BOTTOM)
-            .show(ui.ctx(), |ui| {
+        area.fixed_pos(rect.left_bottom() + egui::vec2(14.0, -14.0)).pivot(egui::Align2::LEFT_BOTTOM).show(
+            ui.ctx(),
+            |ui| {
                 let frame = egui::Frame::popup(ui.style()).stroke(egui::Stroke::new(1.0, RED));
                 frame.show(ui, |ui| {
                     ui.set_max_width(width);
@@ -215,7 +199,8 @@ impl App {
                         ui.add(egui::Label::new(RichText::new(error).color(RED)).wrap());
                     });
                 });
-            });
+            },
+        );
     }
 }
 

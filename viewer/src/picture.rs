@@ -24,8 +24,7 @@ impl App {
     pub(crate) fn picture(&mut self, ui: &mut egui::Ui) {
         let pixels_per_point = ui.ctx().pixels_per_point();
         let rect = fitted(ui.available_rect_before_wrap(), self.state.size, pixels_per_point);
-        let window = [rect.width(), rect.height()]
-            .map(|side| ((side * pixels_per_point).round() as u32).max(1));
+        let window = [rect.width(), rect.height()].map(|side| ((side * pixels_per_point).round() as u32).max(1));
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
         if self.state.resize(window) {
             self.moved = Some(Instant::now());
@@ -50,9 +49,8 @@ impl App {
         let by = response.drag_delta();
         let parts = [f64::from(by.x) / height, f64::from(by.y) / height];
         let (shift, command) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
-        let is_pan = response.dragged_by(Secondary)
-            || response.dragged_by(Middle)
-            || response.dragged_by(Primary) && shift;
+        let is_pan =
+            response.dragged_by(Secondary) || response.dragged_by(Middle) || response.dragged_by(Primary) && shift;
         if by != egui::Vec2::ZERO {
             if is_pan {
                 let height = self.height_at_pivot();
@@ -177,9 +175,7 @@ impl App {
             let (x, y) = (0.5 + 0.5 * location.x, 0.5 - 0.5 * location.y);
             Some(rect.min + egui::vec2(x as f32 * rect.width(), y as f32 * rect.height()))
         };
-        let (Some(middle), Some(edge)) =
-            (at(details.center), at(details.center + details.radius * up))
-        else {
+        let (Some(middle), Some(edge)) = (at(details.center), at(details.center + details.radius * up)) else {
             return;
         };
         let radius = (edge - middle).length().max(4.0) + 2.0;

@@ -82,8 +82,7 @@ impl Times {
             return part;
         }
         let least = self.0.iter().flatten().min().copied().unwrap_or_default();
-        let is_near =
-            |time: &Option<Duration>| time.is_some_and(|time| time <= least.mul_f64(1.25));
+        let is_near = |time: &Option<Duration>| time.is_some_and(|time| time <= least.mul_f64(1.25));
         self.0.iter().position(is_near).unwrap_or(0)
     }
 
@@ -246,12 +245,7 @@ impl State {
         Ok(())
     }
 
-    fn see_with(
-        &mut self,
-        scene: &QuickScene,
-        sight: &Sight,
-        is_live: bool,
-    ) -> Result<(), Box<dyn std::error::Error>> {
+    fn see_with(&mut self, scene: &QuickScene, sight: &Sight, is_live: bool) -> Result<(), Box<dyn std::error::Error>> {
         let part = if sight.is_moving { self.times[usize::from(is_live)].part() } else { 0 };
         let size = sight.size.map(|side| ((f64::from(side) * PARTS[part]).round() as u32).max(1));
         let film = Film::new(size[0], size[1])?;
@@ -272,10 +266,7 @@ impl State {
             let targets = textures.targets();
             let source = match is_live {
                 true => {
-                    let live = LivePicture::new(
-                        renderer, device, queue, buffers, &view, &settings, &targets,
-                    )
-                    .wait();
+                    let live = LivePicture::new(renderer, device, queue, buffers, &view, &settings, &targets).wait();
                     Source::Live(Box::new(live?))
                 }
                 false => {
@@ -298,9 +289,7 @@ impl State {
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), String> {
-        let (Some(scene), Some(targets), Some(camera)) =
-            (&self.scene, &mut self.targets, &self.camera)
-        else {
+        let (Some(scene), Some(targets), Some(camera)) = (&self.scene, &mut self.targets, &self.camera) else {
             return Ok(());
         };
         if self.is_due {
@@ -363,12 +352,7 @@ impl CallbackTrait for Recording {
         Vec::new()
     }
 
-    fn paint(
-        &self,
-        _: egui::PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        _: &CallbackResources,
-    ) {
+    fn paint(&self, _: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
         let state = self.quick.state();
         if let Some(targets) = state.targets.as_ref().filter(|_| self.is_seen) {
             state.blit.draw(pass, &targets.group);

@@ -47,8 +47,7 @@ impl App {
                 let camera = orbit.camera.clone();
                 self.change(|flags| {
                     camera.write_fit_to(flags);
-                    let [direction, up] =
-                        ["direction", "up"].map(|name| flags.get(name).map(str::to_owned));
+                    let [direction, up] = ["direction", "up"].map(|name| flags.get(name).map(str::to_owned));
                     flags.remove_camera();
                     flags.set("camera", wanted);
                     for (name, value) in [("direction", direction), ("up", up)] {
@@ -75,12 +74,7 @@ impl App {
             Integrator::Path(_) => "path",
             _ => "studio",
         });
-        self.choice(
-            ui,
-            "integrator",
-            integrator.unwrap_or("studio"),
-            &["primary", "studio", "path"],
-        );
+        self.choice(ui, "integrator", integrator.unwrap_or("studio"), &["primary", "studio", "path"]);
         row(ui, "--samples", |ui| {
             let own = self.news.as_ref().map_or(1, |news| news.facts.settings.sampling.samples);
             let given = self.state.flags.get("samples").and_then(|text| text.parse().ok());
@@ -102,8 +96,7 @@ impl App {
     pub(crate) fn color_section(&mut self, ui: &mut egui::Ui) {
         let Some(news) = &self.news else { return };
         let own = news.facts.own_color_by.clone();
-        let mut columns: Vec<String> =
-            news.facts.columns.iter().map(|column| column.name.clone()).collect();
+        let mut columns: Vec<String> = news.facts.columns.iter().map(|column| column.name.clone()).collect();
         for built_in in BUILT_IN {
             if columns.iter().all(|column| column != built_in) {
                 columns.push(built_in.to_owned());
@@ -156,8 +149,7 @@ impl App {
                 });
             if is_own {
                 let (fields, range) = (&mut self.fields, 1..=32768);
-                changed |=
-                    ui.add(egui::DragValue::new(&mut fields.width).range(range.clone())).changed();
+                changed |= ui.add(egui::DragValue::new(&mut fields.width).range(range.clone())).changed();
                 ui.label("×");
                 changed |= ui.add(egui::DragValue::new(&mut fields.height).range(range)).changed();
             } else {
@@ -220,10 +212,7 @@ impl App {
             let shown = given.clone().unwrap_or_else(|| own.to_owned());
             let mut wanted = None;
             egui::ComboBox::from_id_salt(flag).selected_text(shown).show_ui(ui, |ui| {
-                if ui
-                    .selectable_label(given.is_none(), RichText::new("without the flag").weak())
-                    .clicked()
-                {
+                if ui.selectable_label(given.is_none(), RichText::new("without the flag").weak()).clicked() {
                     wanted = Some(String::new());
                 }
                 for value in values {
@@ -239,13 +228,7 @@ impl App {
     }
 
     /// A row with a text field for the value of a flag.
-    fn typed(
-        &mut self,
-        ui: &mut egui::Ui,
-        flag: &str,
-        hint: &str,
-        field: fn(&mut Fields) -> &mut String,
-    ) {
+    fn typed(&mut self, ui: &mut egui::Ui, flag: &str, hint: &str, field: fn(&mut Fields) -> &mut String) {
         row(ui, &format!("--{flag}"), |ui| {
             let edit = egui::TextEdit::singleline(field(&mut self.fields)).hint_text(hint);
             if ui.add(edit.desired_width(120.0)).lost_focus() {
@@ -258,8 +241,7 @@ impl App {
     /// A check box for a flag without a value.
     fn switch(&mut self, ui: &mut egui::Ui, flag: &str, text: &str) {
         let given = self.state.flags.get(flag);
-        let own = flag == "denoise"
-            && self.news.as_ref().is_some_and(|news| news.facts.settings.sampling.denoise);
+        let own = flag == "denoise" && self.news.as_ref().is_some_and(|news| news.facts.settings.sampling.denoise);
         let mut is_on = given.map_or(own, |value| value != "false");
         if ui.checkbox(&mut is_on, text).on_hover_text(format!("--{flag}")).changed() {
             self.change(|flags| match (is_on, flag) {
@@ -302,14 +284,10 @@ impl App {
 fn row(ui: &mut egui::Ui, name: &str, contents: impl FnOnce(&mut egui::Ui)) {
     ui.horizontal(|ui| {
         let label = egui::Label::new(RichText::new(name).monospace().size(11.0));
-        ui.allocate_ui_with_layout(
-            [92.0, 20.0].into(),
-            Layout::left_to_right(Align::Center),
-            |ui| {
-                ui.set_min_width(92.0);
-                ui.add(label);
-            },
-        );
+        ui.allocate_ui_with_layout([92.0, 20.0].into(), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(92.0);
+            ui.add(label);
+        });
         contents(ui);
     });
 }
@@ -317,9 +295,7 @@ fn row(ui: &mut egui::Ui, name: &str, contents: impl FnOnce(&mut egui::Ui)) {
 /// An example of an expression that selects some spheres.
 fn example(columns: &[Column]) -> String {
     let text = columns.iter().find_map(|column| match &column.values {
-        ColumnValues::Labels(labels) => {
-            Some(format!("{} == {}", column.name, labels.names.first()?))
-        }
+        ColumnValues::Labels(labels) => Some(format!("{} == {}", column.name, labels.names.first()?)),
         _ => None,
     });
     text.unwrap_or_else(|| "z > 0 and radius < 2".to_owned())

@@ -33,10 +33,7 @@ impl State {
     }
 
     /// Changes the flags if the result is valid. Returns whether something changed.
-    pub(crate) fn change(
-        &mut self,
-        change: impl FnOnce(&mut RenderFlags),
-    ) -> Result<bool, ViewError> {
+    pub(crate) fn change(&mut self, change: impl FnOnce(&mut RenderFlags)) -> Result<bool, ViewError> {
         let mut flags = self.flags.clone();
         change(&mut flags);
         if flags == self.flags {
@@ -125,14 +122,7 @@ mod tests {
 
     #[test]
     fn a_command_makes_the_same_state() {
-        let words = [
-            "4hhb.pdb.gz",
-            "--style=path",
-            "--eye=1,2,3.25",
-            "--look-at=0,0,0",
-            "--up=0,1,0",
-            "--size=90x60",
-        ];
+        let words = ["4hhb.pdb.gz", "--style=path", "--eye=1,2,3.25", "--look-at=0,0,0", "--up=0,1,0", "--size=90x60"];
         let first = state(&words);
         assert_eq!((first.saved_size(), first.output.as_str()), ([90, 60], "4hhb.png"));
         let again = State::new(RenderFlags::parse(first.saved().words()).unwrap());
@@ -154,13 +144,8 @@ mod tests {
     /// A picture with another aspect ratio shows the same height.
     #[test]
     fn a_view_plane_is_not_stretched() {
-        let mut state = state(&[
-            "a.pdb",
-            "--camera=orthographic",
-            "--eye=0,0,9",
-            "--look-at=0,0,0",
-            "--half-extent=4,3",
-        ]);
+        let mut state =
+            state(&["a.pdb", "--camera=orthographic", "--eye=0,0,9", "--look-at=0,0,0", "--half-extent=4,3"]);
         state.resize([100, 100]);
         assert_eq!(state.request(true).flags.get("half-extent"), Some("3,3"));
         state.size = Some([200, 100]);

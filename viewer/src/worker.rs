@@ -12,8 +12,7 @@ use pinhole_cli::viewing::{Facts, OpenView, RenderFlags, StillPicture, StillRend
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, View};
 use pinhole::gpu::{
-    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, TargetTextures,
-    Wait, wgpu,
+    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::render::{Integrator, RenderSettings};
 
@@ -256,17 +255,14 @@ impl Work {
             Some((_, renderer)) => renderer,
             None => {
                 let cameras = vec![camera];
-                let options =
-                    RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
+                let options = RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
                 Arc::new(LitRenderer::new(Renderer::new(device, &options).wait()?))
             }
         };
         self.renderer = Some((camera, Arc::clone(&renderer)));
         let buffers = match self.buffers.take() {
             Some(buffers) => buffers,
-            None => Arc::new(
-                SceneBuffers::new(renderer.renderer(), device, queue, shown.scene()).wait()?,
-            ),
+            None => Arc::new(SceneBuffers::new(renderer.renderer(), device, queue, shown.scene()).wait()?),
         };
         self.buffers = Some(Arc::clone(&buffers));
         let is_live = is_live(window, &renderer, &buffers, shown);
@@ -289,9 +285,7 @@ fn is_live(
     let settings = RenderSettings { is_transparent: false, ..shown.settings().clone() };
     let layers = TargetTextures::new(renderer.renderer(), device, [16, 16]).wait();
     let Ok(layers) = layers else { return false };
-    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets())
-        .wait()
-        .is_ok()
+    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets()).wait().is_ok()
 }
 
 fn error_of(error: &GpuError) -> ViewError {
@@ -306,11 +300,7 @@ pub(crate) struct Saving {
 }
 
 impl Saving {
-    pub(crate) fn start(
-        flags: RenderFlags,
-        output: String,
-        context: egui::Context,
-    ) -> std::io::Result<Self> {
+    pub(crate) fn start(flags: RenderFlags, output: String, context: egui::Context) -> std::io::Result<Self> {
         let (sender, result) = channel();
         std::thread::Builder::new().name("saving".to_owned()).spawn({
             let output = output.clone();

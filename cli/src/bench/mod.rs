@@ -20,8 +20,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::generate::{BYTES_PER_SPHERE, Standard};
 use pinhole::gpu::{
-    GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
-    UploadStep, Wait,
+    GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime, UploadStep, Wait,
 };
 use pinhole::image::LayerSet;
 use pinhole::image::color::LinearRgb;
@@ -35,9 +34,10 @@ pub(crate) mod args;
 mod report;
 
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
-    let size = args.size.as_deref().map(|text| {
-        size_of(text).map_err(|error| Failure::usage(format!("--size {text}: {error}")))
-    });
+    let size = args
+        .size
+        .as_deref()
+        .map(|text| size_of(text).map_err(|error| Failure::usage(format!("--size {text}: {error}"))));
     let size = size.transpose()?;
     let sources = if args.scenes.is_empty() {
         DEFAULT.into_iter().map(BenchSource::Standard).collect()
@@ -77,11 +77,7 @@ fn say(text: &str) -> Result<(), Failure> {
     Ok(answer(text.as_bytes())?)
 }
 
-fn measure_scene(
-    headless: &Headless,
-    scene: &BenchScene,
-    args: &BenchArgs,
-) -> Result<SceneReport, Failure> {
+fn measure_scene(headless: &Headless, scene: &BenchScene, args: &BenchArgs) -> Result<SceneReport, Failure> {
     let mut choices = args.accel.clone();
     if choices.is_empty() {
         let planned = headless.plan_accel(&scene.scene, AccelChoice::Auto).structure;
@@ -128,8 +124,7 @@ fn measure(
         memory::readable(plan.device_bytes),
         memory::readable(plan.host_bytes),
     ));
-    let mut times =
-        UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
+    let mut times = UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
     let uploaded = interrupt::on_device(|| {
         headless
             .upload_planned(spheres, &plan.structures(), &mut |progress| {
@@ -179,8 +174,7 @@ fn measure(
         submissions: times.iter().map(|time| time.submissions).max().unwrap_or(0),
         longest_submission_seconds: longest.as_secs_f64(),
         device_bytes,
-        device_bytes_per_sphere: (!spheres.is_empty())
-            .then(|| device_bytes as f64 / spheres.len() as f64),
+        device_bytes_per_sphere: (!spheres.is_empty()).then(|| device_bytes as f64 / spheres.len() as f64),
         peak_memory_bytes: memory::peak_bytes(),
     })
 }

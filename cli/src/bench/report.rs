@@ -80,10 +80,7 @@ impl Spread {
         let mut times: Vec<Duration> = times.collect::<Option<_>>()?;
         times.sort_unstable();
         let median = times.get(times.len() / 2)?;
-        Some(Self {
-            median_seconds: median.as_secs_f64(),
-            best_seconds: times.first()?.as_secs_f64(),
-        })
+        Some(Self { median_seconds: median.as_secs_f64(), best_seconds: times.first()?.as_secs_f64() })
     }
 }
 
@@ -96,10 +93,7 @@ impl BenchReport {
         } else {
             "; no device times, because the clock of a software device measures when work was queued, not when it ran"
         };
-        format!(
-            "pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {clock}{why}\n",
-            adapter.line(),
-        )
+        format!("pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {clock}{why}\n", adapter.line(),)
     }
 }
 
@@ -119,9 +113,7 @@ impl SceneReport {
 
     pub(crate) fn readable(&self) -> String {
         let Self { name, spheres, width, height, load_seconds, .. } = self;
-        let mut text = format!(
-            "\n{name}: {spheres} spheres, {width}x{height}, loaded in {load_seconds:.2} s\n"
-        );
+        let mut text = format!("\n{name}: {spheres} spheres, {width}x{height}, loaded in {load_seconds:.2} s\n");
         let rows: Vec<_> = self.runs.iter().map(RunReport::row).collect();
         text += &table(
             [
@@ -153,9 +145,7 @@ impl RunReport {
         let dash = || "-".to_owned();
         let milliseconds = |seconds: f64| format!("{:.1}", seconds * 1e3);
         let spread = |spread: Option<Spread>| {
-            spread.map_or([dash(), dash()], |spread| {
-                [spread.median_seconds, spread.best_seconds].map(milliseconds)
-            })
+            spread.map_or([dash(), dash()], |spread| [spread.median_seconds, spread.best_seconds].map(milliseconds))
         };
         let rate = |rate: Option<f64>| rate.map_or_else(dash, |rate| format!("{:.2}", rate / 1e6));
         let [wall, wall_best] = spread(self.trace_wall);

@@ -116,8 +116,7 @@ impl WholeBits {
         let bounds = extent(min, max)?;
         let [low, high] = self.spheres.map(corner);
         let [center_min, center_max] = self.centers.map(corner);
-        let ordered =
-            |low: Vec3, high: Vec3| low.is_finite() && high.is_finite() && low.cmple(high).all();
+        let ordered = |low: Vec3, high: Vec3| low.is_finite() && high.is_finite() && low.cmple(high).all();
         let [radius_min, radius_max] = self.radii.map(f32::from_bits);
         let is_whole = ordered(low, high) && ordered(center_min, center_max) && self.count > 0;
         is_whole.then_some(SceneExtent {
@@ -168,8 +167,7 @@ impl Header {
         let each = self.colors.sphere_bytes();
         let all = self.bricks.iter().all(|brick| follows(&brick.section, each));
         let all = all && follows(&self.outer, SPHERE);
-        let counts =
-            self.bricks.iter().try_fold(0_u64, |sum, brick| sum.checked_add(brick.section.count));
+        let counts = self.bricks.iter().try_fold(0_u64, |sum, brick| sum.checked_add(brick.section.count));
         let Some(whole) = self.whole.whole() else { return false };
         let is_inside = |brick: &Brick| {
             let [min, max] = [corner(brick.min), corner(brick.max)];

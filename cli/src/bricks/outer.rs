@@ -258,8 +258,7 @@ mod tests {
             for seed in 0..200 {
                 let n = [0, 1, 2].map(|axis| f64::from(random(seed, 10 + axis)) - 0.5);
                 let n = [DVec3::from(n), DVec3::AXES[seed as usize % 3]];
-                let [found, expected] =
-                    [&kept, &scene].map(|scene| scene.subject().supports(n).map(f64::to_bits));
+                let [found, expected] = [&kept, &scene].map(|scene| scene.subject().supports(n).map(f64::to_bits));
                 assert_eq!(found, expected, "{kind} {n:?}");
             }
         }

@@ -30,10 +30,7 @@ pub(crate) fn render(file: &BrickFile, shot: &Shot<'_>) -> Result<Vec<Image>, Fa
 }
 
 /// Refuses light, which needs all spheres at once.
-pub(crate) fn check_without_light(
-    file: &BrickFile,
-    settings: &RenderSettings,
-) -> Result<(), Failure> {
+pub(crate) fn check_without_light(file: &BrickFile, settings: &RenderSettings) -> Result<(), Failure> {
     if settings.integrator.is_primary() {
         return Ok(());
     }
@@ -57,9 +54,8 @@ pub(crate) fn nearest_of(
     let mut nearest: Vec<NearestPicture> = Vec::new();
     for (number, brick) in order.iter().enumerate() {
         let bounds = file.bounds(*brick).with_context(|| file.path.display().to_string())?;
-        let is_hidden = |(view, nearest): (&View<'_>, &NearestPicture)| {
-            nearest.hides(view, &file.whole().bounds, &bounds)
-        };
+        let is_hidden =
+            |(view, nearest): (&View<'_>, &NearestPicture)| nearest.hides(view, &file.whole().bounds, &bounds);
         if !nearest.is_empty() && views.iter().zip(&nearest).all(is_hidden) {
             continue;
         }
@@ -88,9 +84,8 @@ pub(crate) fn nearest_of(
 fn nearest_first(file: &BrickFile, bricks: Range<usize>, view: &View<'_>) -> Vec<usize> {
     let eye = view.camera.ray_in_world(DVec2::ZERO).origin;
     let distance = |brick: usize| {
-        file.bounds(brick).map_or(f64::INFINITY, |bounds| {
-            (eye - eye.clamp(bounds.min(), bounds.max())).length_squared()
-        })
+        file.bounds(brick)
+            .map_or(f64::INFINITY, |bounds| (eye - eye.clamp(bounds.min(), bounds.max())).length_squared())
     };
     let mut order: Vec<(f64, usize)> = bricks.map(|brick| (distance(brick), brick)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -11,8 +11,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::bricks::file::{
-    BEFORE, DIGEST, Header, LONGEST_HEADER, NAME, PLACE, START, Section, StoredColors, corner,
-    extent,
+    BEFORE, DIGEST, Header, LONGEST_HEADER, NAME, PLACE, START, Section, StoredColors, corner, extent,
 };
 use crate::terminal::memory::readable;
 use crate::terminal::text;
@@ -190,16 +189,15 @@ impl BrickFile {
     ) -> Result<Vec<T>> {
         let mut values = Vec::new();
         let count = usize::try_from(count).map_err(|_| self.damaged())?;
-        values.try_reserve_exact(count).with_context(|| {
-            format!("{}: there is not enough memory for {count} spheres", self.path.display())
-        })?;
+        values
+            .try_reserve_exact(count)
+            .with_context(|| format!("{}: there is not enough memory for {count} spheres", self.path.display()))?;
         let mut piece = vec![0; PIECE];
         let mut own = Sha256::new();
         let mut left = count * N;
         while left > 0 {
             let piece = &mut piece[..left.min(PIECE)];
-            file.read_exact(piece)
-                .with_context(|| format!("{}: cannot be read", self.path.display()))?;
+            file.read_exact(piece).with_context(|| format!("{}: cannot be read", self.path.display()))?;
             own.update(&*piece);
             values.extend(piece.as_chunks::<N>().0.iter().map(&value));
             left -= piece.len();

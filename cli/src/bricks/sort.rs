@@ -95,10 +95,7 @@ pub(crate) fn run(args: &SortArgs) -> Result<(), Failure> {
         )));
     }
     if count >= u64::from(u32::MAX) {
-        return Err(Failure::Job(anyhow!(
-            "{}: {count} spheres are too many; ids are u32",
-            args.path.display()
-        )));
+        return Err(Failure::Job(anyhow!("{}: {count} spheres are too many; ids are u32", args.path.display())));
     }
     let colors = stored_colors(&input.stream)?;
     let per_brick = (bytes.unwrap_or(BRICK_BYTES) / colors.sphere_bytes()).max(1);
@@ -137,9 +134,7 @@ fn parse_bytes(text: &str) -> Result<u64, Failure> {
     let (digits, shift) = unit.unwrap_or((text, 0));
     let number = digits.parse::<u64>().ok().and_then(|number| number.checked_mul(1 << shift));
     number.filter(|bytes| *bytes >= SPHERE + ID + COLOR).ok_or_else(|| {
-        Failure::usage(format!(
-            "--brick-bytes {text}: write a number of bytes such as 80M, at least 24"
-        ))
+        Failure::usage(format!("--brick-bytes {text}: write a number of bytes such as 80M, at least 24"))
     })
 }
 
@@ -180,9 +175,7 @@ fn stored_colors(stream: &Stream) -> Result<StoredColors, Failure> {
     match scene.appearance().colors() {
         Colors::One(color) if *color == default_color() => Ok(StoredColors::None),
         Colors::One(color) => Ok(StoredColors::One(bits(color))),
-        Colors::Palette { palette, .. } => {
-            Ok(StoredColors::Palette(palette.iter().map(bits).collect()))
-        }
+        Colors::Palette { palette, .. } => Ok(StoredColors::Palette(palette.iter().map(bits).collect())),
         Colors::Rgba8(_) => Ok(StoredColors::Rgba8),
         _ => Err(Failure::Job(anyhow!(
             "colors by numbers are not kept in bricks; remove them from the data, or give spheres colors of their own"
@@ -192,9 +185,7 @@ fn stored_colors(stream: &Stream) -> Result<StoredColors, Failure> {
 
 fn color_of(scene: Option<&Scene>, id: u32) -> Option<[u8; 4]> {
     match scene?.appearance().colors() {
-        Colors::Palette { indices, .. } => {
-            indices.get(id as usize).map(|index| index.to_le_bytes())
-        }
+        Colors::Palette { indices, .. } => indices.get(id as usize).map(|index| index.to_le_bytes()),
         Colors::Rgba8(colors) => colors.get(id as usize).copied(),
         _ => None,
     }
@@ -417,8 +408,7 @@ mod tests {
     #[test]
     fn bricks_have_about_equal_numbers_also_of_spheres_in_one_place() {
         let lattice = |i: u32| [(i % 64) as f32, (i / 64 % 64) as f32, (i / 4096) as f32, 0.5];
-        let kinds: [fn(u32) -> [f32; 4]; 3] =
-            [lattice, |_| [-3.0, 1e30, 0.0, 1.0], |i| [-(i as f32), 0.0, -0.0, 1.0]];
+        let kinds: [fn(u32) -> [f32; 4]; 3] = [lattice, |_| [-3.0, 1e30, 0.0, 1.0], |i| [-(i as f32), 0.0, -0.0, 1.0]];
         for kind in kinds {
             let spheres: Vec<[f32; 4]> = (0..200_000).map(kind).collect();
             for bricks in [1, 2, 7, 48] {

@@ -74,9 +74,7 @@ impl Stream {
                     Ok(true)
                 })
             }
-            Self::Scene(scene) => {
-                (0..).zip(scene.spheres()).try_for_each(|(id, sphere)| each(id, *sphere))
-            }
+            Self::Scene(scene) => (0..).zip(scene.spheres()).try_for_each(|(id, sphere)| each(id, *sphere)),
         }
     }
 }
@@ -128,9 +126,7 @@ impl Array {
         let mut file = File::open(path).ok()?;
         let length = file.metadata().ok()?.len();
         let array = match format.name {
-            "raw-f32x4" => {
-                Self { count: length / 16, offset: 0, columns: 4, is_wide: false, radius: 0.0 }
-            }
+            "raw-f32x4" => Self { count: length / 16, offset: 0, columns: 4, is_wide: false, radius: 0.0 },
             "npy" => Self::of_npy(&mut file, radius)?,
             _ => return None,
         };
@@ -164,13 +160,7 @@ impl Array {
         let (count, columns) = shape.split_once(',')?;
         let (count, columns) = (count.parse().ok()?, columns.trim_end_matches(',').parse().ok()?);
         let radius = radius.unwrap_or(0.0);
-        (3..=4).contains(&columns).then_some(Self {
-            count,
-            offset: before + length,
-            columns,
-            is_wide,
-            radius,
-        })
+        (3..=4).contains(&columns).then_some(Self { count, offset: before + length, columns, is_wide, radius })
     }
 
     fn row(&self) -> usize {
@@ -241,8 +231,7 @@ impl<'a, F: Write + Seek> Writer<'a, F> {
             let offset = end;
             let places = [offset, offset + SPHERE * count, offset + (SPHERE + ID) * count];
             end += (SPHERE + ID + color) * count;
-            let parts =
-                places.map(|place| Buffer { place, bytes: Vec::new(), digest: Sha256::new() });
+            let parts = places.map(|place| Buffer { place, bytes: Vec::new(), digest: Sha256::new() });
             Open { count: *count, added: 0, offset, min: Vec3::MAX, max: Vec3::MIN, parts }
         };
         let bricks: Vec<Open> = counts.iter().map(open).collect();
@@ -251,13 +240,7 @@ impl<'a, F: Write + Seek> Writer<'a, F> {
     }
 
     /// Adds a sphere to a brick. The ids of a brick must ascend.
-    pub(crate) fn add(
-        &mut self,
-        brick: usize,
-        id: u32,
-        sphere: [f32; 4],
-        color: Option<[u8; 4]>,
-    ) -> io::Result<()> {
+    pub(crate) fn add(&mut self, brick: usize, id: u32, sphere: [f32; 4], color: Option<[u8; 4]>) -> io::Result<()> {
         let Self { file, bricks, capacity, .. } = self;
         let brick = &mut bricks[brick];
         brick.added += 1;
@@ -315,11 +298,7 @@ impl Buffer {
 }
 
 /// Writes the outer spheres after the bricks.
-pub(crate) fn outer(
-    file: &mut (impl Write + Seek),
-    place: u64,
-    spheres: &[[f32; 4]],
-) -> io::Result<Section> {
+pub(crate) fn outer(file: &mut (impl Write + Seek), place: u64, spheres: &[[f32; 4]]) -> io::Result<Section> {
     let bytes: Vec<u8> = spheres.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
     file.seek(SeekFrom::Start(place))?;
     file.write_all(&bytes)?;
@@ -331,11 +310,7 @@ pub(crate) fn outer(
 }
 
 /// Writes the header at the end, and then the start of the file, which has the header's place.
-pub(crate) fn header(
-    file: &mut (impl Write + Seek),
-    place: u64,
-    header: &Header,
-) -> io::Result<()> {
+pub(crate) fn header(file: &mut (impl Write + Seek), place: u64, header: &Header) -> io::Result<()> {
     let text = serde_json::to_vec(header)?;
     let mut start = [0; BEFORE as usize];
     start[..START.len()].copy_from_slice(START);

@@ -283,8 +283,7 @@ pub(crate) fn readable(report: &Report) -> String {
     let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
     match &report.kind {
         Kind::Data(data) => {
-            let compressed =
-                if data.compressed == Some(true) { ", compressed with gzip" } else { "" };
+            let compressed = if data.compressed == Some(true) { ", compressed with gzip" } else { "" };
             line("format", format!("{} ({}){compressed}", data.format, data.about));
         }
         Kind::Scene(_) => line("format", "scene file".to_owned()),
@@ -302,8 +301,7 @@ pub(crate) fn readable(report: &Report) -> String {
             }
         }
         Kind::Scene(scene) => {
-            let SceneReport { width, height, camera, stereo, integrator, samples, lights, files } =
-                scene;
+            let SceneReport { width, height, camera, stereo, integrator, samples, lights, files } = scene;
             line("picture", format!("{width}x{height}"));
             line("camera", format!("{camera}{}", if *stereo { ", stereo" } else { "" }));
             line("integrator", (*integrator).to_owned());
@@ -320,8 +318,7 @@ pub(crate) fn readable(report: &Report) -> String {
         line("box", format!("{} to {}", corner(min), corner(max)));
     }
     if let (Some(min), Some(max)) = (report.radius_min, report.radius_max) {
-        let radii =
-            if min < max { format!("{} to {}", short(min), short(max)) } else { short(min) };
+        let radii = if min < max { format!("{} to {}", short(min), short(max)) } else { short(min) };
         line("radii", radii);
     }
     if let Kind::Data(data) = &report.kind {
@@ -356,10 +353,9 @@ fn row(ColumnReport { name, values }: &ColumnReport) -> [String; 3] {
     let name = one_line(name);
     match values {
         ValuesReport::Numbers { min, max, nan } => {
-            let range = min.zip(*max).map_or_else(
-                || "none".to_owned(),
-                |(min, max)| format!("{} to {}", short(min), short(max)),
-            );
+            let range = min
+                .zip(*max)
+                .map_or_else(|| "none".to_owned(), |(min, max)| format!("{} to {}", short(min), short(max)));
             let nan = if *nan > 0 { format!(", {nan} NaN") } else { String::new() };
             [name, "numbers".to_owned(), range + &nan]
         }

@@ -54,17 +54,16 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let count = args.count;
     check_count(count).map_err(|error| Failure::usage(format!("-n {count}: {error}")))?;
     let path: &Path = &args.output;
-    let write: fn(&[[f32; 4]], &mut NamedTempFile) -> std::io::Result<()> =
-        match extension(path).as_deref() {
-            Some("npy") => |spheres, file| write::npy(spheres, file),
-            Some("bin") => |spheres, file| write::raw(spheres, file),
-            _ => {
-                return Err(Failure::usage(format!(
-                    "{}: spheres are written as .npy or .bin; change the extension",
-                    path.display()
-                )));
-            }
-        };
+    let write: fn(&[[f32; 4]], &mut NamedTempFile) -> std::io::Result<()> = match extension(path).as_deref() {
+        Some("npy") => |spheres, file| write::npy(spheres, file),
+        Some("bin") => |spheres, file| write::raw(spheres, file),
+        _ => {
+            return Err(Failure::usage(format!(
+                "{}: spheres are written as .npy or .bin; change the extension",
+                path.display()
+            )));
+        }
+    };
     check_writable(path)?;
     let bytes = count * BYTES_PER_SPHERE;
     memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")?;

@@ -157,26 +157,11 @@ fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> ListedAdapter 
             ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
             ("max_buffer_size", limits.max_buffer_size),
             ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
-            (
-                "max_storage_buffers_per_shader_stage",
-                limits.max_storage_buffers_per_shader_stage.into(),
-            ),
-            (
-                "max_storage_textures_per_shader_stage",
-                limits.max_storage_textures_per_shader_stage.into(),
-            ),
-            (
-                "max_compute_workgroups_per_dimension",
-                limits.max_compute_workgroups_per_dimension.into(),
-            ),
-            (
-                "max_compute_invocations_per_workgroup",
-                limits.max_compute_invocations_per_workgroup.into(),
-            ),
-            (
-                "max_compute_workgroup_storage_size",
-                limits.max_compute_workgroup_storage_size.into(),
-            ),
+            ("max_storage_buffers_per_shader_stage", limits.max_storage_buffers_per_shader_stage.into()),
+            ("max_storage_textures_per_shader_stage", limits.max_storage_textures_per_shader_stage.into()),
+            ("max_compute_workgroups_per_dimension", limits.max_compute_workgroups_per_dimension.into()),
+            ("max_compute_invocations_per_workgroup", limits.max_compute_invocations_per_workgroup.into()),
+            ("max_compute_workgroup_storage_size", limits.max_compute_workgroup_storage_size.into()),
         ],
         features: [
             ("timestamp_query", Features::TIMESTAMP_QUERY),
@@ -202,9 +187,7 @@ fn readable(info: &Info) -> String {
     for ListedAdapter { adapter, chosen, limits, features } in &info.adapters {
         let AdapterReport { name, backend, device_type, driver, driver_info } = adapter;
         let mark = if *chosen { ", used by `render`" } else { "" };
-        text += &format!(
-            "\n{name} ({backend}, {device_type}{mark})\n  driver: {driver} {driver_info}\n  limits\n"
-        );
+        text += &format!("\n{name} ({backend}, {device_type}{mark})\n  driver: {driver} {driver_info}\n  limits\n");
         let mut limits = *limits;
         limits.sort_unstable();
         limits.iter().for_each(|(name, value)| text += &format!("    {name}: {value}\n"));

@@ -20,15 +20,13 @@ use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Layer, LayerSet};
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
+#[command(after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
     and the error is that of `render`; 2 wrong usage.\n\n\
     JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
     reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), \
     `buffers` (name, bytes, bytes_per_binding, bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, \
     `host_peak`, `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
-    `problem`. New versions may add keys, but do not change these."
-)]
+    `problem`. New versions may add keys, but do not change these.")]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) input: InputArgs,
@@ -116,18 +114,14 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     };
     let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
         let layer = name.parse::<Layer>();
-        layer
-            .map(|layer| layers.with(layer))
-            .map_err(|error| Failure::usage(format!("--layer {name}: {error}")))
+        layer.map(|layer| layers.with(layer)).map_err(|error| Failure::usage(format!("--layer {name}: {error}")))
     })?;
     let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.accel);
     threads::start()?;
     let mut input = source.load()?;
     if let Some(bricks) = input.bricks.clone() {
         let count = bricks.len();
-        input.notes.push(format!(
-            "this is the plan of the largest of {count} bricks, which are rendered one by one"
-        ));
+        input.notes.push(format!("this is the plan of the largest of {count} bricks, which are rendered one by one"));
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
     let note = progress::notes(false);
@@ -140,9 +134,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let choice = args.accel.accel.unwrap_or_default();
     let plan = render::plan(&headless, &input, &views_of(&input, input.film), layers, choice);
     let available = memory::available();
-    let verdict = plan
-        .check(&headless.device().limits(), available)
-        .map_err(|error| explained(&headless, &error));
+    let verdict = plan.check(&headless.device().limits(), available).map_err(|error| explained(&headless, &error));
     let problem = verdict.as_ref().err().map(Failure::message);
     let report = Report::new(&input, plan, &headless, available, problem);
     let text = if args.json { json(&report)? } else { report.readable() };
@@ -221,9 +213,8 @@ impl Report {
         );
         let rows: Vec<_> = self.buffers.iter().map(BufferReport::row).collect();
         text += &table(["name", "bytes", "bytes per binding", "bindings"], &rows);
-        let per_sphere = self
-            .device_bytes_per_sphere
-            .map_or_else(String::new, |bytes| format!("; {bytes:.1} bytes per sphere"));
+        let per_sphere =
+            self.device_bytes_per_sphere.map_or_else(String::new, |bytes| format!("; {bytes:.1} bytes per sphere"));
         text += &format!("\ndevice: {}{per_sphere}\n", in_words(self.device_bytes));
         let available = self.host_bytes_available.map_or("not known".to_owned(), in_words);
         text += &format!(
@@ -235,9 +226,7 @@ impl Report {
         text += &format!(
             "limits: max_storage_buffer_binding_size {}, max_buffer_size {}, \
              max_texture_dimension_2d {}\n",
-            limits.max_storage_buffer_binding_size,
-            limits.max_buffer_size,
-            limits.max_texture_dimension_2d
+            limits.max_storage_buffer_binding_size, limits.max_buffer_size, limits.max_texture_dimension_2d
         );
         text += if self.fits { "fits\n" } else { "does not fit\n" };
         text

@@ -35,9 +35,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
             ));
         }
         if args.certify {
-            return Err(Failure::usage(
-                "--certify: only single pictures are certified; render the frames one by one",
-            ));
+            return Err(Failure::usage("--certify: only single pictures are certified; render the frames one by one"));
         }
         let mut job = Job::new(args, wanted.picture())?;
         job.source = job.source.without_bricks("a series of pictures")?;

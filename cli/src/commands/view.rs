@@ -39,9 +39,7 @@ pub(crate) fn run(_: &ViewArguments) -> Result<(), Failure> {
     let mut command = Command::new(&viewer);
     command.args(std::env::args_os().skip(2));
     let error = started(&mut command);
-    Err(error)
-        .with_context(|| format!("{}: cannot be started", viewer.display()))
-        .map_err(Into::into)
+    Err(error).with_context(|| format!("{}: cannot be started", viewer.display())).map_err(Into::into)
 }
 
 /// Replaces this process by the viewer; returns only if that fails.
@@ -54,9 +52,7 @@ fn started(command: &mut Command) -> std::io::Error {
 #[cfg(not(unix))]
 fn started(command: &mut Command) -> std::io::Error {
     match command.status() {
-        Ok(status) => {
-            std::process::exit(status.code().unwrap_or(crate::terminal::failure::FAILED.into()))
-        }
+        Ok(status) => std::process::exit(status.code().unwrap_or(crate::terminal::failure::FAILED.into())),
         Err(error) => error,
     }
 }

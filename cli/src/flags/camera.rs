@@ -34,8 +34,7 @@ impl CameraTable {
     /// The parameters of the camera, or why it has none, in words.
     pub(crate) fn parameters(self) -> Result<CameraParameters, String> {
         let document = toml::Table::from_iter([(self.kind, toml::Value::Table(self.table))]);
-        CameraParameters::deserialize(toml::Value::Table(document))
-            .map_err(|error| error.message().to_owned())
+        CameraParameters::deserialize(toml::Value::Table(document)).map_err(|error| error.message().to_owned())
     }
 }
 

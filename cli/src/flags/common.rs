@@ -96,11 +96,7 @@ pub(crate) enum Backend {
 /// The ids of some arguments.
 pub(crate) fn ids<A: Args>() -> impl Iterator<Item = Id> {
     let command = A::augment_args(Command::new(""));
-    command
-        .get_arguments()
-        .map(|argument| argument.get_id().clone())
-        .collect::<Vec<_>>()
-        .into_iter()
+    command.get_arguments().map(|argument| argument.get_id().clone()).collect::<Vec<_>>().into_iter()
 }
 
 /// Arguments that describe the camera and the size of the picture.

@@ -15,11 +15,8 @@ pub(crate) const VIEW: u32 = Group::Input as u32 | Group::Camera as u32;
 pub(crate) const LOOK: u32 = Group::Look as u32;
 
 /// The groups of flags that say how a picture looks and how it is written.
-pub(crate) const PICTURE: u32 = LOOK
-    | Group::Structure as u32
-    | Group::Color as u32
-    | Group::Annotation as u32
-    | Group::Output as u32;
+pub(crate) const PICTURE: u32 =
+    LOOK | Group::Structure as u32 | Group::Color as u32 | Group::Annotation as u32 | Group::Output as u32;
 
 /// The flags of some groups that were given.
 #[derive(Clone, Debug, Default)]
@@ -125,15 +122,13 @@ fn argument(flag: &'static Flag) -> Arg {
             arg.value_parser(PossibleValuesParser::new(names().into_iter().map(name)))
         }
         // The kind of camera changes no value of another flag.
-        _ => {
-            arg.value_parser(move |text: &str| flag.layer(text, "pinhole").map(|_| text.to_owned()))
-        }
+        _ => arg.value_parser(move |text: &str| flag.layer(text, "pinhole").map(|_| text.to_owned())),
     };
     let arg = match flag.alone {
         Some(value) => arg.num_args(0..=1).require_equals(true).default_missing_value(value),
-        None => arg.allow_hyphen_values(
-            !matches!(flag.value, Value::Text | Value::OneOf(_)) || flag.name() == "select",
-        ),
+        None => {
+            arg.allow_hyphen_values(!matches!(flag.value, Value::Text | Value::OneOf(_)) || flag.name() == "select")
+        }
     };
     let exclusive = EXCLUSIVE.iter().filter(|(name, _)| *name == flag.flag);
     let excluded = exclusive.flat_map(|(_, others)| others.iter());
@@ -201,8 +196,7 @@ pub(crate) fn arranged(arg: Arg) -> Arg {
     if !BRIEF.contains(&id.as_str()) {
         return arg.hide_short_help(true);
     }
-    let ends =
-        [": ", "; ", " [", ", such as", " (", ", or "].iter().filter_map(|end| help.find(end));
+    let ends = [": ", "; ", " [", ", such as", " (", ", or "].iter().filter_map(|end| help.find(end));
     let brief = help[..ends.min().unwrap_or(help.len())].to_owned();
     let arg = if arg.get_long_help().is_some() { arg } else { arg.long_help(help) };
     arg.help(brief)

@@ -131,10 +131,7 @@ impl FrameRange {
             next = next.saturating_add(step);
         }
         if frames.is_empty() {
-            return Err(format!(
-                "no frame lies in this range; the file has {count} frame{plural}, 0 to {}",
-                count - 1
-            ));
+            return Err(format!("no frame lies in this range; the file has {count} frame{plural}, 0 to {}", count - 1));
         }
         Ok(frames)
     }
@@ -158,10 +155,7 @@ pub(crate) fn has_sign(path: &Path) -> bool {
 impl Pattern {
     pub(crate) fn new(path: &Path) -> Result<Self, String> {
         let wanted = |problem: &str| {
-            format!(
-                "{}: {problem}; write one %d or %04d into the name, such as f%04d.png",
-                path.display()
-            )
+            format!("{}: {problem}; write one %d or %04d into the name, such as f%04d.png", path.display())
         };
         let name = path.file_name().and_then(|name| name.to_str());
         let name = name.ok_or_else(|| wanted("this is not the name of a file in UTF-8"))?;
@@ -247,9 +241,8 @@ mod tests {
 
     #[test]
     fn numbers_have_digits() {
-        let name = |pattern: &str, number| {
-            Pattern::new(Path::new(pattern)).unwrap().path(number).to_str().unwrap().to_owned()
-        };
+        let name =
+            |pattern: &str, number| Pattern::new(Path::new(pattern)).unwrap().path(number).to_str().unwrap().to_owned();
         assert_eq!(name("f%d.png", 7), "f7.png");
         assert_eq!(name("out/f%04d.png", 7), "out/f0007.png");
         assert_eq!(name("/a/%03d-b.exr", 12345), "/a/12345-b.exr");

@@ -58,11 +58,7 @@ impl SeriesRequest {
                      choose a name without %"
                 )));
             }
-            let given = [
-                ("--camera-from", camera_from.is_some()),
-                ("--fps", fps.is_some()),
-                ("--resume", resume),
-            ];
+            let given = [("--camera-from", camera_from.is_some()), ("--fps", fps.is_some()), ("--resume", resume)];
             return match given.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => Err(Failure::usage(format!(
                     "{flag} applies only to several pictures; add --frames RANGE (: for all) or --turntable N"
@@ -86,9 +82,7 @@ impl SeriesRequest {
             ));
         }
         if args.stop_rule.keep_partial {
-            return Err(Failure::usage(
-                "--keep-partial applies to one picture, but several are asked for; remove it",
-            ));
+            return Err(Failure::usage("--keep-partial applies to one picture, but several are asked for; remove it"));
         }
         let pictures = match turntable {
             Some(count) => Pictures::Turntable { count },

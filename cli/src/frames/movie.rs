@@ -96,11 +96,7 @@ impl Sink<'_> {
 }
 
 /// Writes an APNG that repeats endlessly.
-pub(crate) fn write_apng(
-    sink: &Sink<'_>,
-    samples: &Samples<'_>,
-    file: impl Write,
-) -> io::Result<()> {
+pub(crate) fn write_apng(sink: &Sink<'_>, samples: &Samples<'_>, file: impl Write) -> io::Result<()> {
     let failed = |error: png::EncodingError| match error {
         png::EncodingError::IoError(error) => error,
         error => io::Error::other(error),
@@ -132,11 +128,7 @@ pub(crate) fn write_apng(
 const SPEED: i32 = 10;
 
 /// Writes a GIF that repeats endlessly.
-pub(crate) fn write_gif(
-    sink: &Sink<'_>,
-    samples: &Samples<'_>,
-    file: impl Write,
-) -> io::Result<()> {
+pub(crate) fn write_gif(sink: &Sink<'_>, samples: &Samples<'_>, file: impl Write) -> io::Result<()> {
     let failed = |error: gif::EncodingError| match error {
         gif::EncodingError::Io(error) => error,
         error => io::Error::other(error),
@@ -175,12 +167,7 @@ impl Drop for Running {
 }
 
 /// Writes a movie to an existing file. `container` is the name that ffmpeg has for its format.
-pub(crate) fn write_video(
-    sink: &Sink<'_>,
-    samples: &Samples<'_>,
-    container: &str,
-    path: &Path,
-) -> io::Result<()> {
+pub(crate) fn write_video(sink: &Sink<'_>, samples: &Samples<'_>, container: &str, path: &Path) -> io::Result<()> {
     let size = sink.size;
     // Compressed colours have half the resolution, so sides must have even lengths.
     let even = size.map(|side| side + side % 2);
@@ -246,8 +233,7 @@ fn with_even_sides(rgb: Vec<u8>, [width, height]: [u32; 2]) -> Vec<u8> {
     let row = 3 * width as usize;
     let mut even = rgb;
     if width % 2 == 1 {
-        even =
-            even.chunks_exact(row).flat_map(|row| [row, &row[row.len() - 3..]].concat()).collect();
+        even = even.chunks_exact(row).flat_map(|row| [row, &row[row.len() - 3..]].concat()).collect();
     }
     if height % 2 == 1 {
         let row = 3 * (width + width % 2) as usize;
@@ -316,8 +302,7 @@ mod tests {
     #[test]
     fn a_second_takes_a_second() {
         for per_second in [1, 7, 24, 25, 30, 60, 240] {
-            let sum: u32 =
-                (0..u64::from(per_second)).map(|i| u32::from(delay(i, per_second))).sum();
+            let sum: u32 = (0..u64::from(per_second)).map(|i| u32::from(delay(i, per_second))).sum();
             assert_eq!(sum, 100, "{per_second}");
         }
         assert_eq!(delay(5, 25), 4);
@@ -329,10 +314,7 @@ mod tests {
         let row = [1, 2, 3, 4, 5, 6, 7, 8, 9, 7, 8, 9];
         assert_eq!(with_even_sides(rgb.clone(), [3, 1]), [row, row].concat());
         assert_eq!(with_even_sides(rgb[..6].to_vec(), [2, 1]), [&rgb[..6], &rgb[..6]].concat());
-        assert_eq!(
-            with_even_sides(rgb[..6].to_vec(), [1, 2]),
-            [1, 2, 3, 1, 2, 3, 4, 5, 6, 4, 5, 6]
-        );
+        assert_eq!(with_even_sides(rgb[..6].to_vec(), [1, 2]), [1, 2, 3, 1, 2, 3, 4, 5, 6, 4, 5, 6]);
         let even = vec![0; 12];
         assert_eq!(with_even_sides(even.clone(), [2, 2]), even);
     }

@@ -10,9 +10,7 @@ use crate::flags::camera::{CameraTable, list};
 use crate::frames::union::around;
 use crate::input::{FramedScene, Look, Source, read};
 use crate::terminal::failure::Failure;
-use pinhole::camera::{
-    CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
-};
+use pinhole::camera::{CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath};
 use pinhole::glam::{DQuat, DVec3};
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
@@ -31,9 +29,8 @@ pub(crate) struct PathRequest {
 impl PathRequest {
     pub(crate) fn read(file: &Path) -> Result<Self, Failure> {
         let name = || file.display().to_string();
-        let text = String::from_utf8(read(file)?).map_err(|_| {
-            anyhow::anyhow!("{}: this is not UTF-8 text; a camera path is TOML text", name())
-        })?;
+        let text = String::from_utf8(read(file)?)
+            .map_err(|_| anyhow::anyhow!("{}: this is not UTF-8 text; a camera path is TOML text", name()))?;
         let path = parse_camera_path(&text).with_context(name)?;
         Ok(Self { path, file: file.to_path_buf() })
     }
@@ -114,28 +111,20 @@ impl MovingCamera {
 
     /// Makes the camera and the light of one picture. It shows the frame `number`, and is the picture `index` of the
     /// movie.
-    pub(crate) fn view(
-        &self,
-        source: &Source,
-        number: usize,
-        index: usize,
-    ) -> Result<Look, Failure> {
+    pub(crate) fn view(&self, source: &Source, number: usize, index: usize) -> Result<Look, Failure> {
         let Stage { framed, key, file, sky } = &self.stage;
         let look = |moved: &dyn Fn(&CameraParameters) -> Result<CameraParameters>| {
             source.look(file, FramedScene::new(framed, key.as_ref()), sky.clone(), Some(moved))
         };
         match &self.course {
-            Course::Turn { count, axis } => {
-                look(&|camera| turned(camera, *axis, number as f64 / *count as f64))
-            }
+            Course::Turn { count, axis } => look(&|camera| turned(camera, *axis, number as f64 / *count as f64)),
             Course::Path { motion, clock, frames_per_second, base, center, distance } => {
                 let on_path = motion.at(match clock {
                     PathClock::Frames => number as f64,
                     PathClock::Seconds => index as f64 / frames_per_second,
                 });
                 let moved = |_: &CameraParameters| {
-                    moved(base, &on_path, *center, *distance)
-                        .context("the camera cannot follow its path")
+                    moved(base, &on_path, *center, *distance).context("the camera cannot follow its path")
                 };
                 let look = look(&moved).map_err(|failure| in_frame(failure, number))?;
                 // No flag would give this view.
@@ -153,12 +142,7 @@ pub(crate) fn in_frame(failure: Failure, number: usize) -> Failure {
     }
 }
 
-fn moved(
-    camera: &CameraParameters,
-    on_path: &CameraOnPath,
-    center: DVec3,
-    distance: f64,
-) -> Result<CameraParameters> {
+fn moved(camera: &CameraParameters, on_path: &CameraOnPath, center: DVec3, distance: f64) -> Result<CameraParameters> {
     let (eye, look_at, up) = match on_path.place {
         PlaceOnPath::Point { eye, look_at, up } => (eye, look_at, up),
         PlaceOnPath::View { direction, up } => (center - distance * direction, center, up),
@@ -199,9 +183,7 @@ pub(crate) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result
             camera.set(key, list((center + turn * (vector - center)).to_array()));
         }
     }
-    camera
-        .parameters()
-        .map_err(|message| anyhow::anyhow!("this camera cannot be turned: {message}"))
+    camera.parameters().map_err(|message| anyhow::anyhow!("this camera cannot be turned: {message}"))
 }
 
 /// The direction that is up for a camera that has a position.
@@ -215,8 +197,7 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_moves_the_eye_from_z_to_x() {
-        let table =
-            "[pinhole]\neye = [1.0, 2.0, 5.0]\ndirection = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]";
+        let table = "[pinhole]\neye = [1.0, 2.0, 5.0]\ndirection = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]";
         let camera: CameraParameters = toml::from_str(table).unwrap();
         let axis = Axis { direction: DVec3::Y, center: DVec3::new(1.0, 0.0, 0.0) };
         let turned = turned(&camera, axis, 0.25).unwrap();

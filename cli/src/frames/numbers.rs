@@ -71,9 +71,7 @@ pub(crate) fn numbers(
     };
     let still_of = |path: &PathRequest| {
         if camera_from.is_some() {
-            return Err(Failure::usage(
-                "--camera-from applies only to several frames of a file; remove it",
-            ));
+            return Err(Failure::usage("--camera-from applies only to several frames of a file; remove it"));
         }
         let all = in_range(range, path.count(wanted.fps)?, "--frames")?;
         Ok(Numbers { framed: None, all, is_still: true })
@@ -96,11 +94,7 @@ pub(crate) fn numbers(
 }
 
 /// Finds the frames of the file; `None` if it has none and the camera moves.
-fn open_frames(
-    source: &mut Source,
-    wanted: &SeriesRequest,
-    moves: bool,
-) -> Result<Option<FoundFrames>, Failure> {
+fn open_frames(source: &mut Source, wanted: &SeriesRequest, moves: bool) -> Result<Option<FoundFrames>, Failure> {
     let name = source.name();
     if source.has_frame() {
         return Err(Failure::usage(format!(
@@ -144,12 +138,7 @@ pub(crate) struct Overview {
 
 impl Overview {
     /// Restores facts that were stored. The colours by kind are read again from their frame.
-    pub(crate) fn stored(
-        spheres: Vec<[f64; 4]>,
-        added: usize,
-        colors: JoinedKeys,
-        kinds_from: Option<usize>,
-    ) -> Self {
+    pub(crate) fn stored(spheres: Vec<[f64; 4]>, added: usize, colors: JoinedKeys, kinds_from: Option<usize>) -> Self {
         Self { spheres, added, colors, kinds_from, kinds: None }
     }
 

@@ -130,8 +130,7 @@ fn left(
     let left: Vec<usize> = all.iter().copied().filter(|number| !is_done(*number)).collect();
     if left.len() < all.len() {
         let (done, total) = (all.len() - left.len(), all.len());
-        notes
-            .tell(format!("{done} of {total} frames are there already and are not rendered again"));
+        notes.tell(format!("{done} of {total} frames are there already and are not rendered again"));
     }
     left
 }

@@ -45,12 +45,7 @@ pub(super) fn movie_of(path: &Path) -> Option<Movie> {
 
 impl Target {
     /// Checks the name of the output and the layers beside it.
-    pub(super) fn new(
-        output: &Path,
-        movie: Option<Movie>,
-        is_raw: bool,
-        layers: &[String],
-    ) -> Result<Self, Failure> {
+    pub(super) fn new(output: &Path, movie: Option<Movie>, is_raw: bool, layers: &[String]) -> Result<Self, Failure> {
         let name = output.display();
         let is_standard_output = output == Path::new("-");
         if let (true, Some(layer)) = (movie.is_some() || is_raw, layers.first()) {
@@ -60,15 +55,13 @@ impl Target {
             )));
         }
         match (movie, is_raw) {
-            (_, true) if !is_standard_output => Err(Failure::usage(format!(
-                "--raw y4m writes to standard output; replace -o {name} by -o -"
-            ))),
+            (_, true) if !is_standard_output => {
+                Err(Failure::usage(format!("--raw y4m writes to standard output; replace -o {name} by -o -")))
+            }
             (_, true) => Ok(Self::Raw),
             (Some(kind), _) => {
                 if has_sign(output) {
-                    return Err(Failure::usage(format!(
-                        "{name}: a movie is one file; choose a name without %"
-                    )));
+                    return Err(Failure::usage(format!("{name}: a movie is one file; choose a name without %")));
                 }
                 check_writable(output)?;
                 if matches!(kind, Movie::Video(_)) {

@@ -88,8 +88,7 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
     const PROFILE: usize = 64;
     /// Number of steps of a full turn.
     const STEPS: usize = 72;
-    let spheres: Vec<[f64; 4]> =
-        scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
+    let spheres: Vec<[f64; 4]> = scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
     let farthest = |index: usize| {
         let (sine, cosine) = (PI * (index as f64 / (PROFILE - 1) as f64 - 0.5)).sin_cos();
         let reach = |&[x, y, z, radius]: &[f64; 4]| {
@@ -112,10 +111,7 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
 }
 
 /// A scene of spheres on a surface, with some of the data's own for the mean radius.
-fn body(
-    of_data: &[[f64; 4]],
-    on_surface: impl Iterator<Item = [f64; 4]>,
-) -> Result<Scene, SceneError> {
+fn body(of_data: &[[f64; 4]], on_surface: impl Iterator<Item = [f64; 4]>) -> Result<Scene, SceneError> {
     let mut all: Vec<[f64; 4]> = sample(of_data).collect();
     let before = all.len();
     all.extend(on_surface);
@@ -126,8 +122,7 @@ fn body(
 /// The ball around a scene, as a scene: spheres on the ball's surface, and some of the scene's own for the mean radius.
 pub(super) fn around(scene: &Scene) -> Result<Scene, SceneError> {
     let center = scene.bounds_to_frame().center();
-    let spheres: Vec<[f64; 4]> =
-        scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
+    let spheres: Vec<[f64; 4]> = scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
     let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
     let Some(farthest) = spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
         return Scene::from_f64(&[], LinearRgb::WHITE);
@@ -157,8 +152,7 @@ mod tests {
     fn supports(scene: &Scene) -> [f64; 6] {
         let axes = DVec3::AXES;
         let middle = scene.bounds_to_frame().center();
-        let reach =
-            scene.subject().supports([axes[0], axes[1], axes[2], -axes[0], -axes[1], -axes[2]]);
+        let reach = scene.subject().supports([axes[0], axes[1], axes[2], -axes[0], -axes[1], -axes[2]]);
         let middle = [middle.x, middle.y, middle.z, -middle.x, -middle.y, -middle.z];
         std::array::from_fn(|i| reach[i] + middle[i])
     }
@@ -169,8 +163,7 @@ mod tests {
         let mut union = Union::default();
         union.add(&at(-3.0));
         union.add(&at(5.0));
-        let reach =
-            supports(&union.scene().unwrap()).into_iter().zip([6.0, 1.0, 1.0, 4.0, 1.0, 1.0]);
+        let reach = supports(&union.scene().unwrap()).into_iter().zip([6.0, 1.0, 1.0, 4.0, 1.0, 1.0]);
         for (found, expected) in reach {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }

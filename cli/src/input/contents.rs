@@ -103,9 +103,7 @@ impl Source {
 
     /// Returns the text of the scene file.
     pub(crate) fn text(&self) -> Result<String, Failure> {
-        let not_text = |_| {
-            anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", self.path.display())
-        };
+        let not_text = |_| anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", self.path.display());
         Ok(String::from_utf8(read(&self.path)?).map_err(not_text)?)
     }
 
@@ -171,8 +169,7 @@ impl Source {
         let in_scene = || self.in_scene();
         let read = self.read_data(&place);
         let is_data = matches!(self.format, Format::Data(_));
-        let mut loaded =
-            if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
+        let mut loaded = if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
         let mut data = place.data;
         let has_atoms = loaded.labels("species").is_some();
         let mut kinds = None;
@@ -184,12 +181,8 @@ impl Source {
         }
         let own: Vec<Sphere> = file.spheres().collect();
         let made = data.scene(loaded, &own).map_err(|error| match error {
-            DataError::Scene(error) if !is_data => {
-                Error::new(file.at_sphere(&error)).context(file_name())
-            }
-            DataError::Select(error) if is_data => {
-                Error::new(error).context("--select").context(file_name())
-            }
+            DataError::Scene(error) if !is_data => Error::new(file.at_sphere(&error)).context(file_name()),
+            DataError::Select(error) if is_data => Error::new(error).context("--select").context(file_name()),
             error => Error::new(error).context(in_scene()),
         });
         let DataScene { scene, color_key, columns, notes, kept, bonds, .. } = made?;

@@ -10,9 +10,7 @@ use crate::input::read_file::read as read_bytes;
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole::LinearRgb;
-use pinhole_data::load::{
-    Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
-};
+use pinhole_data::load::{Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory};
 use pinhole_figure::scene_file::SceneFile;
 
 /// The options for a data file, from flags or from a scene file.
@@ -96,11 +94,7 @@ fn complete_notes(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
 }
 
 /// Reads the frame that the options name from a file whose frames were found, if there is memory for it.
-pub(crate) fn read_frame_of(
-    path: &Path,
-    file: &mut Trajectory,
-    options: &DataOptions,
-) -> Result<Dataset> {
+pub(crate) fn read_frame_of(path: &Path, file: &mut Trajectory, options: &DataOptions) -> Result<Dataset> {
     let frame = options.frame.unwrap_or_default();
     check_frame(path, file, frame)?;
     let mut loaded = file.frame(frame).map_err(|error| named(path, error))?;
@@ -118,11 +112,7 @@ fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Re
 }
 
 /// Finds all frames of a file, and checks that there is memory for the one that is asked for.
-pub(crate) fn trajectory(
-    path: &Path,
-    format: &'static Format,
-    options: &DataOptions,
-) -> Result<Trajectory> {
+pub(crate) fn trajectory(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Trajectory> {
     let all = options.to_read().with_format(format);
     let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
     check_frame(path, &found, options.frame.unwrap_or_default())?;
@@ -158,9 +148,7 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dat
 /// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
 pub(crate) fn as_usage(error: anyhow::Error) -> Failure {
     match error.downcast_ref::<LoadError>().map(|error| error.kind) {
-        Some(LoadErrorKind::NoTopology) => {
-            Failure::usage(format!("{error:#} (add --topology FILE)"))
-        }
+        Some(LoadErrorKind::NoTopology) => Failure::usage(format!("{error:#} (add --topology FILE)")),
         Some(LoadErrorKind::TwoRadii) => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }

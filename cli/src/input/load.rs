@@ -59,10 +59,7 @@ impl Source {
         };
         if !format.has_frames() {
             let with_frames = load::Format::extensions_of(load::Format::has_frames);
-            return Ok(Err(format!(
-                "files of the format {} have no frames; those of {with_frames} have",
-                format.name
-            )));
+            return Ok(Err(format!("files of the format {} have no frames; those of {with_frames} have", format.name)));
         }
         if path.exists() && !path.is_file() || path.as_os_str() == "-" {
             return Ok(Err("frames are read one by one, which needs a regular file".to_owned()));
@@ -70,9 +67,8 @@ impl Source {
         let options = DataOptions { frame: None, ..options };
         let file = data::trajectory(&path, format, &options).map_err(as_usage)?;
         let count = file.len();
-        let note = file.problem().map(|problem| {
-            format!("{}: after the {count} complete frames: {problem}", path.display())
-        });
+        let note =
+            file.problem().map(|problem| format!("{}: after the {count} complete frames: {problem}", path.display()));
         self.frames = Some(Arc::new(OpenFrames { path, file: Mutex::new(file) }));
         Ok(Ok(FoundFrames { count, note }))
     }

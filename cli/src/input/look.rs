@@ -94,9 +94,7 @@ impl Source {
         let aspect = file.film.aspect();
         // A scene file says where its camera stands.
         let facing = self.is_data().then(|| {
-            subject
-                .flat_axis()
-                .map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
+            subject.flat_axis().map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
         });
         let asked = file.camera_parameters();
         let made = |parameters: CameraParameters| {
@@ -144,9 +142,7 @@ impl Source {
             _ => false,
         };
         match checked {
-            Err(error) if !(is_framed && is_open(&error)) => {
-                Err(self.failure(file.at_camera(&error)))
-            }
+            Err(error) if !(is_framed && is_open(&error)) => Err(self.failure(file.at_camera(&error))),
             _ => Ok(()),
         }
     }
@@ -168,25 +164,11 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, details } = contents;
-        let Details {
-            notes,
-            files,
-            sky_image,
-            color_key,
-            kinds,
-            has_atoms,
-            size_from,
-            kept,
-            bonds,
-            color,
-            ..
-        } = details;
+        let Details { notes, files, sky_image, color_key, kinds, has_atoms, size_from, kept, bonds, color, .. } =
+            details;
         let report = Report {
             path: self.path.display().to_string(),
-            spheres: self
-                .bricks
-                .as_ref()
-                .map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
+            spheres: self.bricks.as_ref().map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
             selected_from: kept.map(|kept| kept.of),
             bonds,
             has_atoms,

@@ -53,14 +53,13 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     let what = format!("{}: reading {size} bytes needs", path.display());
     memory::check_reading(&what, size)?;
     let mut bytes = Vec::new();
-    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
-        || format!("{}: there is not enough memory for {size} bytes", path.display()),
-    )?;
+    usize::try_from(size)
+        .ok()
+        .and_then(|size| bytes.try_reserve_exact(size).ok())
+        .with_context(|| format!("{}: there is not enough memory for {size} bytes", path.display()))?;
     // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
     let mut piece = size.saturating_add(1).max(FIRST_PIECE);
-    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
-        == piece
-    {
+    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64 == piece {
         piece = bytes.len() as u64;
         let what = format!("{}: reading more than {piece} bytes needs", path.display());
         memory::check_reading(&what, 2 * piece)?;

@@ -64,11 +64,7 @@ impl Source {
 
     /// Makes a source for a picture with light. `open_end` is the flag that leaves the number of samples open, if there
     /// is one.
-    pub(crate) fn lit(
-        path: &Path,
-        given: &Given,
-        open_end: Option<&'static str>,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn lit(path: &Path, given: &Given, open_end: Option<&'static str>) -> Result<Self, Failure> {
         let source = Self::new(path, given)?;
         let style = match given.get("integrator") {
             Some("primary") => Style::Fast,
@@ -79,8 +75,7 @@ impl Source {
             None => Style::Default,
         };
         // Any number of samples, unless a flag limits it.
-        let open_end =
-            open_end.map(|flag| Layer { flag, text: format!("sampling.samples = {}", 1 << 24) });
+        let open_end = open_end.map(|flag| Layer { flag, text: format!("sampling.samples = {}", 1 << 24) });
         let layers = open_end.into_iter().chain(source.layers.iter().cloned()).collect();
         Ok(Self { layers, style, ..source })
     }
@@ -112,9 +107,7 @@ impl Source {
     /// Returns this source with a size, if it is a data file, and no flag gives its size.
     pub(crate) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Result<Self, Failure> {
         match (self.format, self.given.get("size")) {
-            (Format::Data(_) | Format::Bricks, None) => {
-                self.with_size(Some(&format!("{width}x{height}")))
-            }
+            (Format::Data(_) | Format::Bricks, None) => self.with_size(Some(&format!("{width}x{height}"))),
             _ => Ok(self),
         }
     }

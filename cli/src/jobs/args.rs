@@ -145,9 +145,7 @@ pub(crate) fn split_args(arguments: &[String]) -> Result<SplitArgs, Failure> {
     let parsed = JobLine::try_parse_from(arguments).ok().map(|parsed| parsed.command);
     match parsed {
         Some(OnlyJob::Job(JobArgs { command: JobCommand::Split(args) })) => Ok(*args),
-        _ => Err(Failure::Job(anyhow!(
-            "the job has arguments that this program does not know; split it again"
-        ))),
+        _ => Err(Failure::Job(anyhow!("the job has arguments that this program does not know; split it again"))),
     }
 }
 
@@ -162,11 +160,7 @@ pub(crate) struct Recipe {
 impl Recipe {
     /// Makes the pictures without a destination. `folder` must exist, and it must be possible to create files in
     /// it.
-    pub(crate) fn of_parts(
-        arguments: &[String],
-        folder: &Path,
-        quiet: bool,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn of_parts(arguments: &[String], folder: &Path, quiet: bool) -> Result<Self, Failure> {
         let SplitArgs { mut render, exr, .. } = split_args(arguments)?;
         let extension = if exr { "exr" } else { "png" };
         let number = if render.frames.asks_for_several() { "%d" } else { "" };
@@ -191,15 +185,10 @@ impl Recipe {
 }
 
 /// Refuses input that would make other pictures than those that were split.
-pub(crate) fn check_same(
-    manifest: &Manifest,
-    numbers: Option<&[usize]>,
-    input: &Input,
-) -> Result<(), Failure> {
+pub(crate) fn check_same(manifest: &Manifest, numbers: Option<&[usize]>, input: &Input) -> Result<(), Failure> {
     let size = [input.film.width(), input.film.height()];
     let eyes = if input.eyes.is_some() { 2 } else { 1 };
-    let is_same =
-        manifest.pictures.as_deref() == numbers && manifest.size == size && manifest.eyes == eyes;
+    let is_same = manifest.pictures.as_deref() == numbers && manifest.size == size && manifest.eyes == eyes;
     let changed = "the input makes other pictures than those that were split; split the job again";
     Ok(is_same.then_some(()).context(changed)?)
 }

@@ -29,8 +29,8 @@ const LEFT: Duration = Duration::from_secs(3600);
 
 impl Folder {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
-        let absolute = std::path::absolute(path)
-            .with_context(|| format!("{}: this path has no meaning", path.display()))?;
+        let absolute =
+            std::path::absolute(path).with_context(|| format!("{}: this path has no meaning", path.display()))?;
         let manifest = Manifest::read(&path.join(NAME))?;
         Ok(Self { path: absolute, manifest })
     }
@@ -97,8 +97,8 @@ impl Folder {
     pub(super) fn overview(&self) -> Result<Option<Overview>, Failure> {
         let Some(stored) = &self.manifest.overview else { return Ok(None) };
         let path = self.path.join(OVERVIEW);
-        let bytes = files::read(&path)
-            .with_context(|| format!("{}: cannot be read; split the job again", path.display()))?;
+        let bytes =
+            files::read(&path).with_context(|| format!("{}: cannot be read; split the job again", path.display()))?;
         let overview = (files::hex(&bytes) == stored.sha256).then(|| unpacked(stored, &bytes));
         let damaged = || anyhow!("{}: this file is damaged; split the job again", path.display());
         Ok(Some(overview.flatten().ok_or_else(damaged)?))
@@ -124,8 +124,7 @@ pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
 
 fn unpacked(stored: &StoredOverview, bytes: &[u8]) -> Option<Overview> {
     let (words, rest) = bytes.as_chunks::<8>();
-    let numbers: Vec<f64> =
-        words.iter().map(|word| f64::from_bits(u64::from_le_bytes(*word))).collect();
+    let numbers: Vec<f64> = words.iter().map(|word| f64::from_bits(u64::from_le_bytes(*word))).collect();
     let (range, numbers) = match stored.has_range {
         true => numbers.split_first_chunk::<2>().map(|(range, rest)| (Some(*range), rest))?,
         false => (None, &numbers[..]),

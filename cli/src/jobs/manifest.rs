@@ -98,8 +98,8 @@ impl Manifest {
 
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
-        let text = files::read_to_string(path)
-            .with_context(|| format!("{}: this is not the folder of a job", place()))?;
+        let text =
+            files::read_to_string(path).with_context(|| format!("{}: this is not the folder of a job", place()))?;
         Self::parse(&text).with_context(place)
     }
 
@@ -136,8 +136,7 @@ impl Manifest {
             return follows && are_some && is_one && self.groups.len() == self.units;
         }
         let pictures = self.pictures.as_ref().map_or(1, Vec::len);
-        let has_tiles = self.groups.is_empty()
-            && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
+        let has_tiles = self.groups.is_empty() && (0..2).all(|axis| (1..=self.size[axis]).contains(&self.tiles[axis]));
         let units = units_of_tiles(pictures, self.tiles);
         has_tiles && units == Some(self.units) && self.units > 0
     }
@@ -206,13 +205,11 @@ pub(crate) fn tile(size: [u32; 2], tiles: [u32; 2], number: usize) -> Rectangle 
 
 /// Reads columns and rows of tiles, such as `4x4`, for a picture of `size` pixels.
 pub(crate) fn parse_tiles(text: &str, size: [u32; 2]) -> Result<[u32; 2], Failure> {
-    let sides = text.split_once('x').and_then(|(columns, rows)| {
-        Some([columns.trim().parse::<u32>().ok()?, rows.trim().parse::<u32>().ok()?])
-    });
+    let sides = text
+        .split_once('x')
+        .and_then(|(columns, rows)| Some([columns.trim().parse::<u32>().ok()?, rows.trim().parse::<u32>().ok()?]));
     let Some(tiles) = sides.filter(|sides| !sides.contains(&0)) else {
-        return Err(Failure::usage(format!(
-            "--tiles {text}: write columns and rows that are at least 1, such as 4x4"
-        )));
+        return Err(Failure::usage(format!("--tiles {text}: write columns and rows that are at least 1, such as 4x4")));
     };
     if tiles[0] > size[0] || tiles[1] > size[1] {
         return Err(Failure::usage(format!(
@@ -225,11 +222,7 @@ pub(crate) fn parse_tiles(text: &str, size: [u32; 2]) -> Result<[u32; 2], Failur
 
 /// Reads indices and ranges of indices below `count`, such as `0-15,20`.
 pub(crate) fn parse_list(text: &str, count: usize) -> Result<Vec<usize>, Failure> {
-    let wrong = || {
-        Failure::usage(format!(
-            "INDEX {text}: write an index, or indices and ranges such as 0-15,20"
-        ))
-    };
+    let wrong = || Failure::usage(format!("INDEX {text}: write an index, or indices and ranges such as 0-15,20"));
     let mut all = Vec::new();
     for range in text.split(',') {
         let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
@@ -276,16 +269,13 @@ mod tests {
 
     #[test]
     fn tiles_cover_every_pixel_once() {
-        for (size, tiles) in
-            [([7, 5], [3, 2]), ([1, 1], [1, 1]), ([100, 3], [100, 3]), ([64, 48], [4, 4])]
-        {
+        for (size, tiles) in [([7, 5], [3, 2]), ([1, 1], [1, 1]), ([100, 3], [100, 3]), ([64, 48], [4, 4])] {
             let mut covered = vec![0; (size[0] * size[1]) as usize];
             for number in 0..(tiles[0] * tiles[1]) as usize {
                 let ([x, y], [width, height]) = tile(size, tiles, number);
                 assert!(width > 0 && height > 0);
                 for row in y..y + height {
-                    (x..x + width)
-                        .for_each(|column| covered[(row * size[0] + column) as usize] += 1);
+                    (x..x + width).for_each(|column| covered[(row * size[0] + column) as usize] += 1);
                 }
             }
             assert!(covered.iter().all(|times| *times == 1), "{size:?} {tiles:?}");
@@ -304,9 +294,7 @@ mod tests {
         }
         assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2,5,7-8");
         assert_eq!(parse_list("3, 1-2 ,1", 4).unwrap(), [1, 2, 3]);
-        for wrong in
-            ["", "a", "-1", "2-1", "1,", "1-", "4", "0-4", "1:2", "99999999999999999999999"]
-        {
+        for wrong in ["", "a", "-1", "2-1", "1,", "1-", "4", "0-4", "1:2", "99999999999999999999999"] {
             assert!(parse_list(wrong, 4).is_err(), "{wrong}");
         }
     }

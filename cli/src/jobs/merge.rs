@@ -36,17 +36,12 @@ struct Devices {
 
 pub(super) fn run(args: &MergeArgs) -> Result<(), Failure> {
     let started = Instant::now();
-    let wait = Duration::try_from_secs_f64(args.wait).map_err(|_| {
-        Failure::usage(format!(
-            "--wait {}: write a number of seconds that is at least 0",
-            args.wait
-        ))
-    })?;
+    let wait = Duration::try_from_secs_f64(args.wait)
+        .map_err(|_| Failure::usage(format!("--wait {}: write a number of seconds that is at least 0", args.wait)))?;
     let folder = Folder::open(&args.job)?;
     let SplitArgs { mut render, exr, .. } = split_args(&folder.manifest.arguments)?;
     render.output = Some(absolute(&args.output)?);
-    render.layers =
-        args.layers.iter().map(|text| absolute_layer(text)).collect::<Result<_, _>>()?;
+    render.layers = args.layers.iter().map(|text| absolute_layer(text)).collect::<Result<_, _>>()?;
     render.report.quiet = args.quiet;
     (render.frames.fps, render.frames.raw) = (args.fps.or(render.frames.fps), args.raw);
     if folder.manifest.pictures.is_none() && is_movie(&args.output) {
@@ -108,8 +103,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         return Ok(1);
     };
     let options = ReadyOptions { overview: folder.overview()?, only: None };
-    let Some(Ready { series, opened, writing, all, .. }) = ready(&args, &wanted, job, options)?
-    else {
+    let Some(Ready { series, opened, writing, all, .. }) = ready(&args, &wanted, job, options)? else {
         return Ok(0);
     };
     devices.check(&opened)?;
@@ -205,8 +199,7 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
         devices.entry(&header.device).or_default().push(header.unit);
     }
     if devices.len() > 1 && !allows_mixed {
-        let words: Vec<String> =
-            devices.iter().map(|(device, units)| format!("{device} {}", ranges(units))).collect();
+        let words: Vec<String> = devices.iter().map(|(device, units)| format!("{device} {}", ranges(units))).collect();
         return Err(Failure::Job(anyhow!(
             "parts were rendered by different devices, whose pixels may differ in the last bits: {}; render some of them \
              again, or add --allow-mixed-adapters",
@@ -284,8 +277,8 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
         return Ok(path.to_path_buf());
     }
     let ends_with_separator = path.as_os_str().as_encoded_bytes().last() == Some(&b'/');
-    let absolute = std::path::absolute(path)
-        .with_context(|| format!("{}: this path has no meaning", path.display()))?;
+    let absolute =
+        std::path::absolute(path).with_context(|| format!("{}: this path has no meaning", path.display()))?;
     Ok(if ends_with_separator { absolute.join("") } else { absolute })
 }
 

@@ -24,8 +24,7 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::threads;
 
 /// The message if the program is stopped.
-const STOPPED: &str =
-    "stopped; the parts that were written are complete, and the others can be rendered again";
+const STOPPED: &str = "stopped; the parts that were written are complete, and the others can be rendered again";
 
 /// The units of a job to render now.
 struct Work<'a> {
@@ -41,13 +40,10 @@ pub(super) fn run(args: &PartArgs) -> Result<(), Failure> {
     let asked = parse_list(&args.units, folder.manifest.units)?;
     let limit = args.timeout.map(|seconds| {
         let limit = Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
-        limit.ok_or_else(|| {
-            Failure::usage(format!("--timeout {seconds}: write a number of seconds greater than 0"))
-        })
+        limit.ok_or_else(|| Failure::usage(format!("--timeout {seconds}: write a number of seconds greater than 0")))
     });
     let limit = limit.transpose()?;
-    let is_missing =
-        |unit: &usize| part_file::check(&folder.part(*unit), &folder.manifest, *unit).is_err();
+    let is_missing = |unit: &usize| part_file::check(&folder.part(*unit), &folder.manifest, *unit).is_err();
     let units: Vec<usize> = asked.iter().copied().filter(is_missing).collect();
     if units.is_empty() {
         return Ok(());
@@ -82,8 +78,7 @@ impl Work<'_> {
             check_same(manifest, None, &input)?;
             return self.units.iter().try_for_each(|unit| self.render(*unit, &mut input, &opened));
         };
-        let mut numbers: Vec<usize> =
-            self.units.iter().filter_map(|unit| manifest.number(*unit)).collect();
+        let mut numbers: Vec<usize> = self.units.iter().filter_map(|unit| manifest.number(*unit)).collect();
         numbers.dedup();
         let options = ReadyOptions { overview: self.folder.overview()?, only: Some(&numbers) };
         let Some(Ready { series, opened, all, .. }) = ready(&args, &wanted, job, options)? else {

@@ -155,11 +155,7 @@ pub(super) fn check(path: &Path, manifest: &Manifest, unit: usize) -> Result<Hea
     checked(path, manifest, unit, skip)
 }
 
-pub(super) fn read(
-    path: &Path,
-    manifest: &Manifest,
-    unit: usize,
-) -> Result<(Header, Pictures), Problem> {
+pub(super) fn read(path: &Path, manifest: &Manifest, unit: usize) -> Result<(Header, Pictures), Problem> {
     let (mut rest, payload) = (Vec::new(), payload(manifest, unit));
     // A file that is too long is not read to its end.
     let keep = |contents: &mut dyn Read| contents.take(payload).read_to_end(&mut rest).map(drop);
@@ -171,8 +167,7 @@ pub(super) fn read(
     // A file with the right length and digest was written in this way, so only memory can be missing.
     let no_memory = Problem::Unreadable(io::ErrorKind::OutOfMemory);
     let pictures = if manifest.is_by_depth() {
-        let nearest =
-            |bytes: &[u8]| NearestPicture::from_le_bytes(size, layers, bytes).ok_or(no_memory);
+        let nearest = |bytes: &[u8]| NearestPicture::from_le_bytes(size, layers, bytes).ok_or(no_memory);
         Pictures::Depth(eyes.map(nearest).collect::<Result<_, _>>()?)
     } else {
         let image = |bytes: &[u8]| Image::from_le_bytes(size, layers, bytes).ok_or(no_memory);

@@ -11,9 +11,7 @@ use crate::flags::common::Stereo;
 use crate::frames::{Overview, Ready, ReadyOptions, ready};
 use crate::input::Input;
 use crate::jobs::args::{Recipe, SplitArgs};
-use crate::jobs::manifest::{
-    MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, parse_tiles, units_of_tiles,
-};
+use crate::jobs::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, parse_tiles, units_of_tiles};
 use crate::output::files::{name_all, unnamed};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
@@ -37,15 +35,14 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let job: PathBuf = job.components().collect();
     let above = check_new(&job)?;
     let arguments = std::env::args_os().map(|word| {
-        word.into_string().map_err(|word| {
-            Failure::usage(format!("{}: this is not UTF-8 text", word.to_string_lossy()))
-        })
+        word.into_string().map_err(|word| Failure::usage(format!("{}: this is not UTF-8 text", word.to_string_lossy())))
     });
     let arguments = arguments.collect::<Result<Vec<String>, _>>()?;
     let folder = std::env::current_dir().context("the current folder is not known")?;
-    let folder = folder.into_os_string().into_string().map_err(|folder| {
-        Failure::usage(format!("{}: this folder has no name in UTF-8", folder.to_string_lossy()))
-    })?;
+    let folder = folder
+        .into_os_string()
+        .into_string()
+        .map_err(|folder| Failure::usage(format!("{}: this folder has no name in UTF-8", folder.to_string_lossy())))?;
     let recipe = Recipe::of_parts(&arguments, &above, args.render.report.quiet)?.without_device();
     threads::start()?;
     let JobInput { input, layers, pictures, overview } = job_input(recipe)?;
@@ -63,9 +60,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
         count => Some(count),
     };
     let Some(units) = units else {
-        return Err(Failure::usage(format!(
-            "these are more than {MOST_UNITS} units; choose fewer tiles or frames"
-        )));
+        return Err(Failure::usage(format!("these are more than {MOST_UNITS} units; choose fewer tiles or frames")));
     };
     let manifest = Manifest {
         pinhole_job: 1,
@@ -111,17 +106,13 @@ fn refuse(args: &SplitArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("{flag} belongs to `pinhole job merge`; remove it")));
     }
     if render.stereo == Some(Stereo::TwoFiles) {
-        return Err(Failure::usage(
-            "--stereo two-files: parts are merged into one picture; remove it",
-        ));
+        return Err(Failure::usage("--stereo two-files: parts are merged into one picture; remove it"));
     }
     if render.certify {
         return Err(Failure::usage("--certify: merged pictures carry no certificate; remove it"));
     }
     if render.report.print_scene || render.report.save_scene.is_some() {
-        return Err(Failure::usage(
-            "--print-scene and --save-scene belong to `pinhole render`; remove them",
-        ));
+        return Err(Failure::usage("--print-scene and --save-scene belong to `pinhole render`; remove them"));
     }
     if render.input.path == Path::new("-") {
         return Err(Failure::usage("-: parts cannot read standard input again; name a file"));
@@ -141,10 +132,7 @@ fn asked_layers(texts: &[String]) -> Result<LayerSet, Failure> {
 /// Refuses a folder that exists, and returns its parent.
 fn check_new(job: &Path) -> Result<PathBuf, Failure> {
     if job.symlink_metadata().is_ok() {
-        return Err(Failure::usage(format!(
-            "{}: this exists already; name a new folder for the job",
-            job.display()
-        )));
+        return Err(Failure::usage(format!("{}: this exists already; name a new folder for the job", job.display())));
     }
     match job.parent() {
         None => Err(Failure::usage("-o: name a new folder for the job")),
@@ -174,20 +162,14 @@ fn job_input(recipe: Recipe) -> Result<JobInput, Failure> {
 }
 
 /// The bricks of each unit; empty if units are tiles.
-fn groups(
-    by_depth: Option<u32>,
-    input: &Input,
-    are_several: bool,
-) -> Result<Vec<[usize; 2]>, Failure> {
+fn groups(by_depth: Option<u32>, input: &Input, are_several: bool) -> Result<Vec<[usize; 2]>, Failure> {
     let Some(groups) = by_depth else { return Ok(Vec::new()) };
     let refused = |why: String| Err(Failure::usage(format!("--by-depth {groups}: {why}")));
     let Some(bricks) = &input.bricks else {
         return refused("this divides files of bricks; make one with `pinhole sort`".to_owned());
     };
     if are_several {
-        return refused(
-            "a file of bricks makes one picture; remove the flags of frames".to_owned(),
-        );
+        return refused("a file of bricks makes one picture; remove the flags of frames".to_owned());
     }
     if !input.settings.integrator.is_primary() {
         return refused(

@@ -39,9 +39,7 @@ pub(crate) fn for_input(
         return Ok(Annotations::default());
     }
     if format == PictureFormat::Exr {
-        note(
-            &"an EXR picture stores the light unchanged, so annotations are not drawn; write a .png for them",
-        );
+        note(&"an EXR picture stores the light unchanged, so annotations are not drawn; write a .png for them");
         return Ok(Annotations::default());
     }
     let middle = input.scene.bounds_to_frame();

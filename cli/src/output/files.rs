@@ -12,9 +12,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::{interrupt, profile};
 
 /// Refuses to use one file for two outputs.
-pub(crate) fn check_distinct<'a>(
-    outputs: impl Iterator<Item = &'a PathBuf>,
-) -> Result<(), Failure> {
+pub(crate) fn check_distinct<'a>(outputs: impl Iterator<Item = &'a PathBuf>) -> Result<(), Failure> {
     let mut seen = HashSet::new();
     for path in outputs {
         if !seen.insert(canonical(path)) {
@@ -35,10 +33,9 @@ pub(crate) fn check_not_inputs<'a>(
     let inputs: Vec<PathBuf> = inputs.iter().map(|path| canonical(path)).collect();
     match outputs.find(|path| inputs.contains(&canonical(path))) {
         None => Ok(()),
-        Some(path) => Err(Failure::usage(format!(
-            "{}: this output is also an input; give it another name",
-            path.display()
-        ))),
+        Some(path) => {
+            Err(Failure::usage(format!("{}: this output is also an input; give it another name", path.display())))
+        }
     }
 }
 
@@ -54,10 +51,7 @@ impl NewFolder {
         if path.is_dir() {
             check_writable(&path.join(file))?;
         } else if path.exists() {
-            return Err(Failure::usage(format!(
-                "{}: this is a file; name a folder",
-                path.display()
-            )));
+            return Err(Failure::usage(format!("{}: this is a file; name a folder", path.display())));
         } else {
             check_writable(&path)?;
         }
@@ -68,8 +62,7 @@ impl NewFolder {
     pub(crate) fn with<T>(&self, write: impl FnOnce() -> Result<T>) -> Result<T> {
         let is_new = !self.0.is_dir();
         if is_new {
-            std::fs::create_dir(&self.0)
-                .with_context(|| format!("{}: cannot be created", self.0.display()))?;
+            std::fs::create_dir(&self.0).with_context(|| format!("{}: cannot be created", self.0.display()))?;
         }
         write().inspect_err(|_| {
             if is_new {
@@ -141,8 +134,7 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
                 // A file that cannot be removed is still a complete file.
                 let _ = std::fs::remove_file(path);
             }
-            return Err(error.error)
-                .with_context(|| format!("{}: cannot be written", path.display()));
+            return Err(error.error).with_context(|| format!("{}: cannot be written", path.display()));
         }
         if !existed {
             new.push(path);
@@ -168,11 +160,8 @@ fn canonical(path: &Path) -> PathBuf {
 /// Refuses a path at which no file can be written: a folder, or a file in a folder that does not exist or is not
 /// writable.
 pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
-    let ends_with_separator = path
-        .as_os_str()
-        .as_encoded_bytes()
-        .last()
-        .is_some_and(|b| std::path::is_separator(*b as char));
+    let ends_with_separator =
+        path.as_os_str().as_encoded_bytes().last().is_some_and(|b| std::path::is_separator(*b as char));
     if path.is_dir() || ends_with_separator {
         return Err(Failure::usage(format!("{}: this is a folder; name a file", path.display())));
     }

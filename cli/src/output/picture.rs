@@ -6,9 +6,7 @@ use anyhow::Result;
 use tempfile::NamedTempFile;
 
 use crate::input::extension;
-use crate::output::files::{
-    check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
-};
+use crate::output::files::{check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use crate::terminal::{interrupt, profile};
@@ -105,11 +103,8 @@ impl Outputs {
 
     pub(crate) fn layers(&self, encoding: &Encoding) -> LayerSet {
         // The exposure and the tone curve of a PNG need the layers that separate the background from the rest.
-        let encoded = if self.format == PictureFormat::Png || encoding.transparent {
-            encoding.layers()
-        } else {
-            LayerSet::COLOR
-        };
+        let encoded =
+            if self.format == PictureFormat::Png || encoding.transparent { encoding.layers() } else { LayerSet::COLOR };
         let asked = self.layers.iter().map(|(layer, _)| *layer);
         asked.chain(self.inside.iter()).chain(encoded.iter()).collect()
     }
@@ -179,9 +174,7 @@ impl Outputs {
     /// Returns the outputs for the left and the right eye. Their names are made from the user's names.
     pub(crate) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
         if self.picture.is_none() {
-            return Err(Failure::usage(
-                "--stereo two-files: standard output can take only one picture; name a file",
-            ));
+            return Err(Failure::usage("--stereo two-files: standard output can take only one picture; name a file"));
         }
         let outputs = ["left", "right"].map(|eye| self.renamed(|path| with_eye(path, eye)));
         let paths = || outputs.iter().flat_map(Self::paths);

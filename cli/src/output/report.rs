@@ -65,14 +65,11 @@ impl Report {
             Some(all) => format!("kept {} of {}", grouped(self.spheres), grouped(all)),
             None => grouped(self.spheres),
         };
-        let bonds = self.bonds.map_or(String::new(), |bonds| {
-            format!(", {} bond{}", grouped(bonds), if bonds == 1 { "" } else { "s" })
-        });
+        let bonds = self
+            .bonds
+            .map_or(String::new(), |bonds| format!(", {} bond{}", grouped(bonds), if bonds == 1 { "" } else { "s" }));
         let path = &self.path;
-        format!(
-            "{path}: {start}{count} {noun}{plural}{bonds}{flags}; {:.1} s",
-            elapsed.as_secs_f64()
-        )
+        format!("{path}: {start}{count} {noun}{plural}{bonds}{flags}; {:.1} s", elapsed.as_secs_f64())
     }
 }
 

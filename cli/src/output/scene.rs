@@ -58,10 +58,7 @@ fn named(path: &Path) -> Result<String> {
         return Err(anyhow!("-: a scene file cannot name standard input; save the data to a file"));
     }
     let text = path.to_str().ok_or_else(|| {
-        anyhow!(
-            "{}: a scene file cannot name this path, because it is not UTF-8; rename it",
-            path.display()
-        )
+        anyhow!("{}: a scene file cannot name this path, because it is not UTF-8; rename it", path.display())
     })?;
     Ok(text.to_owned())
 }
@@ -76,8 +73,7 @@ fn relative(path: &Path, folder: &Path) -> Result<PathBuf> {
         folder.canonicalize().with_context(|| folder.display().to_string())
     };
     let from = whole(folder)?;
-    let to =
-        whole(path.parent().unwrap_or(Path::new("")))?.join(path.file_name().unwrap_or_default());
+    let to = whole(path.parent().unwrap_or(Path::new("")))?.join(path.file_name().unwrap_or_default());
     let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let up = from.components().skip(shared).map(|_| Component::ParentDir);
     Ok(up.chain(to.components().skip(shared)).collect())

@@ -15,9 +15,7 @@ use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::means::{Estimates, Means};
-use pinhole::verify::picture_certificate::{
-    JudgedBy, PictureCertificate, samples_digest, scene_digest,
-};
+use pinhole::verify::picture_certificate::{JudgedBy, PictureCertificate, samples_digest, scene_digest};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome, Verdict};
 use pinhole_figure::read::picture::FileSamples;
@@ -63,12 +61,7 @@ pub(crate) enum Judgement {
 
 impl FilePicture {
     /// Returns the samples of an image as a writer would store them.
-    pub(crate) fn of(
-        image: &Image,
-        encoding: &Encoding,
-        is_png: bool,
-        per_pixel: u32,
-    ) -> Result<Self> {
+    pub(crate) fn of(image: &Image, encoding: &Encoding, is_png: bool, per_pixel: u32) -> Result<Self> {
         let size = [image.width(), image.height()];
         let samples = if is_png {
             FileSamples::Encoded {
@@ -78,9 +71,7 @@ impl FilePicture {
             }
         } else {
             let alpha = image.alpha().filter(|_| encoding.transparent);
-            let with_alpha = |(i, [r, g, b]): (usize, &[f32; 3])| {
-                [*r, *g, *b, alpha.map_or(1.0, |alpha| alpha[i])]
-            };
+            let with_alpha = |(i, [r, g, b]): (usize, &[f32; 3])| [*r, *g, *b, alpha.map_or(1.0, |alpha| alpha[i])];
             FileSamples::Linear(image.color().iter().enumerate().map(with_alpha).collect())
         };
         Ok(Self { size, samples, per_pixel })
@@ -90,8 +81,7 @@ impl FilePicture {
         match &self.samples {
             FileSamples::Encoded { bytes, .. } => samples_digest(self.size, bytes),
             FileSamples::Linear(pixels) => {
-                let bytes: Vec<u8> =
-                    pixels.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+                let bytes: Vec<u8> = pixels.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
                 samples_digest(self.size, &bytes)
             }
         }
@@ -149,15 +139,9 @@ pub(crate) fn judge(
 }
 
 /// Judges the light of a picture before denoising and other finishing.
-pub(crate) fn means_of_light(
-    input: &mut Input,
-    image: &Image,
-    layers: LayerSet,
-) -> Result<Means, Failure> {
+pub(crate) fn means_of_light(input: &mut Input, image: &Image, layers: LayerSet) -> Result<Means, Failure> {
     progress::stage("checking");
-    let colors = |image: &Image| -> Vec<[f64; 3]> {
-        image.color().iter().map(|rgb| rgb.map(f64::from)).collect()
-    };
+    let colors = |image: &Image| -> Vec<[f64; 3]> { image.color().iter().map(|rgb| rgb.map(f64::from)).collect() };
     let per_pixel = image.samples().and_then(|samples| samples.first().copied()).unwrap_or(1);
     let reference = other_estimate(input, per_pixel, |input| {
         let film = input.film;
@@ -218,8 +202,9 @@ impl Judgement {
                 certificate.undecided() as u64,
                 certificate.count(Verdict::Violation) as u64,
             ],
-            Self::Means(means, _) => [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
-                .map(|outcome| means.count(outcome) as u64),
+            Self::Means(means, _) => {
+                [Outcome::Proved, Outcome::Undecided, Outcome::Violated].map(|outcome| means.count(outcome) as u64)
+            }
         }
     }
 
@@ -306,9 +291,7 @@ pub(crate) fn check_samples(certificate: &PictureCertificate, written: &FilePict
     if certificate.samples == written.digest() {
         return Ok(());
     }
-    Err(anyhow!(
-        "the certificate is of other samples; the picture was changed after it was certified"
-    ))
+    Err(anyhow!("the certificate is of other samples; the picture was changed after it was certified"))
 }
 
 /// Refuses a certificate that belongs to another scene.
@@ -389,8 +372,7 @@ mod tests {
             assert!(!words.iter().any(|word| word.contains(absent)), "{words:?}");
         }
         let again = ["pinhole", "render", "a.csv", "-o", "-"].into_iter().map(str::to_owned);
-        let matches =
-            command.clone().try_get_matches_from(again.chain(words.iter().cloned())).unwrap();
+        let matches = command.clone().try_get_matches_from(again.chain(words.iter().cloned())).unwrap();
         let matches = matches.subcommand_matches("render").unwrap();
         assert_eq!(picture_arguments(&command, matches).unwrap(), words);
     }

@@ -18,9 +18,7 @@ use crate::terminal::text::json;
 use crate::terminal::threads;
 use pinhole::geometry::ray::Ray;
 use pinhole::image::NO_ID;
-use pinhole::verify::conformance::{
-    Answers, Conformance, ConformanceError, DepthKind, Field, Finding, Rays,
-};
+use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Field, Finding, Rays};
 use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 use pinhole_data::load::LoadError;
@@ -152,10 +150,7 @@ fn check(args: &CertifyArgs) -> Result<(), Failure> {
     args.json.as_deref().map_or(Ok(()), check_writable)
 }
 
-fn array<T>(
-    path: &Path,
-    decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, LoadError>,
-) -> Result<Pixels<T>, Failure> {
+fn array<T>(path: &Path, decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, LoadError>) -> Result<Pixels<T>, Failure> {
     progress::stage(format!("reading {}", path.display()));
     let bytes = read(path)?;
     Ok(decode(&bytes).with_context(|| path.display().to_string())?)
@@ -180,9 +175,7 @@ fn certified(
         )));
     }
     if rays.is_none() && input.eyes.is_some() {
-        tell(
-            "note: the camera has two eyes; the picture is taken for that of the middle between them",
-        );
+        tell("note: the camera has two eyes; the picture is taken for that of the middle between them");
     }
     progress::stage("checking");
     let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
@@ -296,28 +289,18 @@ impl From<&Finding> for PixelReport {
 }
 
 impl Report {
-    pub(crate) fn new(
-        input: &Input,
-        answers: &Answers<'_>,
-        has_rays: bool,
-        found: &Conformance,
-    ) -> Self {
+    pub(crate) fn new(input: &Input, answers: &Answers<'_>, has_rays: bool, found: &Conformance) -> Self {
         let [width, height] = found.size;
         let depth = match answers.depth_kind {
             DepthKind::Distance => "depth as t",
             DepthKind::AlongAxis => "depth as z",
         };
-        let checked =
-            [Some("id"), answers.depths.map(|_| depth), answers.normals.map(|_| "normal")];
+        let checked = [Some("id"), answers.depths.map(|_| depth), answers.normals.map(|_| "normal")];
         let count = |outcome: &Outcome| (outcome.name(), found.count(*outcome));
         Self {
             version: env!("CARGO_PKG_VERSION"),
             scene: Scene { spheres: input.scene.len(), sha256: scene_sha256(&input.scene) },
-            picture: Picture {
-                width,
-                height,
-                camera: (!has_rays).then(|| input.camera.kind().name()),
-            },
+            picture: Picture { width, height, camera: (!has_rays).then(|| input.camera.kind().name()) },
             checked: checked.into_iter().flatten().collect(),
             at_most: found.at_most,
             counts: Outcome::ALL.iter().map(count).collect(),

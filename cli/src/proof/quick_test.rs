@@ -15,9 +15,7 @@ pub(crate) fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> 
 /// Returns an error if the device was lost or does not answer, which means that it cannot render either.
 pub(crate) fn quick_warning(headless: &Headless) -> Result<Option<String>, Failure> {
     match headless.self_test(SelfTestExtent::Quick).wait() {
-        Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => {
-            Err(explained_alone(headless, &error))
-        }
+        Err(error @ (GpuError::DeviceLost { .. } | GpuError::Timeout { .. })) => Err(explained_alone(headless, &error)),
         tested => Ok(warning(&headless.adapter_info().name, tested)),
     }
 }
@@ -40,12 +38,7 @@ mod tests {
     fn a_warning_names_adapter_and_property() {
         let report = |outcome| {
             let words = "the words".to_owned();
-            SelfTestReport::new(vec![TestedProperty {
-                name: "fence",
-                outcome,
-                words,
-                figures: vec![],
-            }])
+            SelfTestReport::new(vec![TestedProperty { name: "fence", outcome, words, figures: vec![] }])
         };
         for good in [PropertyOutcome::Passed, PropertyOutcome::Noted] {
             assert_eq!(warning("some", Ok(report(good))), None);

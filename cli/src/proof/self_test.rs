@@ -12,10 +12,7 @@ use crate::render::device::{AdapterReport, WantedAdapter, explained_alone};
 use crate::terminal::failure::Failure;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{self, answer};
-use pinhole::gpu::{
-    Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty, Wait,
-    composed_kernels,
-};
+use pinhole::gpu::{Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty, Wait, composed_kernels};
 
 /// The results of the self-test of an adapter.
 #[derive(Serialize)]
@@ -121,13 +118,10 @@ pub(crate) fn dump(folder: &Path) -> Result<(), Failure> {
     );
     kernels.push((folder.join(PIPELINES), pipelines));
     let first = kernels.first().map(|(path, _)| path.clone()).unwrap_or_default();
-    NewFolder::new(folder, &first.file_name().unwrap_or_default().to_string_lossy())?.with(
-        || {
-            let files =
-                kernels.iter().map(|(path, source)| Ok((path, unnamed(path, source.as_bytes())?)));
-            name_all(files.collect::<anyhow::Result<Vec<_>>>()?)
-        },
-    )?;
+    NewFolder::new(folder, &first.file_name().unwrap_or_default().to_string_lossy())?.with(|| {
+        let files = kernels.iter().map(|(path, source)| Ok((path, unnamed(path, source.as_bytes())?)));
+        name_all(files.collect::<anyhow::Result<Vec<_>>>()?)
+    })?;
     Ok(answer(text.as_bytes())?)
 }
 
@@ -142,13 +136,8 @@ mod tests {
 
     fn tested(failure: Option<&str>) -> SelfTestResults {
         let text = || "some".to_owned();
-        let adapter = AdapterReport {
-            name: text(),
-            backend: text(),
-            device_type: text(),
-            driver: text(),
-            driver_info: text(),
-        };
+        let adapter =
+            AdapterReport { name: text(), backend: text(), device_type: text(), driver: text(), driver_info: text() };
         let property = PropertyReport {
             name: "fence",
             passed: failure.is_none(),
@@ -166,10 +155,7 @@ mod tests {
         assert!(failed.readable().contains("\n  FAILED  fence: the words\n"));
         match failed.verdict() {
             Err(failure @ Failure::CheckFailed(_)) => {
-                assert_eq!(
-                    failure.to_string(),
-                    "error: some fails the self-test (fence: the words)"
-                );
+                assert_eq!(failure.to_string(), "error: some fails the self-test (fence: the words)");
                 assert_eq!(failure.exit_code(), crate::terminal::failure::CHECK_FAILED.into());
             }
             other => panic!("{other:?}"),

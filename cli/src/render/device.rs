@@ -44,17 +44,13 @@ pub(crate) struct WantedAdapter {
 impl Device {
     pub(crate) fn new(args: &DeviceArgs, accel: Option<AccelChoice>) -> Result<Self, Failure> {
         let AdapterArgs { adapter, limits } = &args.adapter;
-        let given = [
-            ("--adapter", adapter.is_some()),
-            ("--accel", accel.is_some()),
-            ("--limits", limits.is_some()),
-        ];
+        let given = [("--adapter", adapter.is_some()), ("--accel", accel.is_some()), ("--limits", limits.is_some())];
         let given = given.into_iter().find(|(_, is_given)| *is_given);
         match (args.backend, given) {
             (Backend::Cpu, None) => Ok(Self::Cpu),
-            (Backend::Cpu, Some((flag, _))) => Err(Failure::usage(format!(
-                "{flag} and --backend cpu exclude each other; remove one of them"
-            ))),
+            (Backend::Cpu, Some((flag, _))) => {
+                Err(Failure::usage(format!("{flag} and --backend cpu exclude each other; remove one of them")))
+            }
             (backend, given) => Ok(Self::Adapter {
                 wanted: WantedAdapter::new(&args.adapter).for_structures(accel),
                 choice: accel.unwrap_or_default(),
@@ -96,37 +92,30 @@ impl Device {
         match self {
             Self::Cpu => Ok(OpenDevice::Cpu),
             #[cfg(feature = "gpu")]
-            Self::Adapter { wanted, choice, or_cpu } => {
-                match interrupt::opening(|| wanted.tested())? {
-                    Ok((headless, warning)) => {
-                        let (headless, choice) = (Box::new(headless), *choice);
-                        Ok(OpenDevice::Device { headless, choice, warning })
-                    }
-                    Err(_) if *or_cpu => Ok(OpenDevice::CpuInstead),
-                    Err(error) => Err(Failure::Job(error.into())),
+            Self::Adapter { wanted, choice, or_cpu } => match interrupt::opening(|| wanted.tested())? {
+                Ok((headless, warning)) => {
+                    let (headless, choice) = (Box::new(headless), *choice);
+                    Ok(OpenDevice::Device { headless, choice, warning })
                 }
-            }
+                Err(_) if *or_cpu => Ok(OpenDevice::CpuInstead),
+                Err(error) => Err(Failure::Job(error.into())),
+            },
             #[cfg(not(feature = "gpu"))]
             Self::Adapter { or_cpu: true, .. } => Ok(OpenDevice::Cpu),
             #[cfg(not(feature = "gpu"))]
-            Self::Adapter { or_cpu: false, .. } => Err(Failure::usage(
-                "this program was built without the feature `gpu`; use --backend cpu",
-            )),
+            Self::Adapter { or_cpu: false, .. } => {
+                Err(Failure::usage("this program was built without the feature `gpu`; use --backend cpu"))
+            }
         }
     }
 
     /// Opens the device while `work` runs. If both fail, the failure is that of `work`.
-    pub(crate) fn open_beside<T>(
-        &self,
-        work: impl FnOnce() -> Result<T, Failure>,
-    ) -> Result<(T, OpenDevice), Failure> {
+    pub(crate) fn open_beside<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<(T, OpenDevice), Failure> {
         thread::scope(|scope| {
             let opening = match self {
                 Self::Cpu => None,
                 // If no other thread can be started, the device is opened after the work.
-                Self::Adapter { .. } => {
-                    thread::Builder::new().spawn_scoped(scope, || self.open()).ok()
-                }
+                Self::Adapter { .. } => thread::Builder::new().spawn_scoped(scope, || self.open()).ok(),
             };
             let done = work()?;
             let opened = match opening.map(ScopedJoinHandle::join) {

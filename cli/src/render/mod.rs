@@ -178,12 +178,7 @@ pub(crate) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
         #[cfg(feature = "gpu")]
         OpenDevice::CpuInstead => {
             check_on_cpu(shot)?;
-            tell_once(|| {
-                format!(
-                    "note: rendering on the CPU reference, which is slower: {}",
-                    GpuError::NoAdapter
-                )
-            });
+            tell_once(|| format!("note: rendering on the CPU reference, which is slower: {}", GpuError::NoAdapter));
             Ok(())
         }
         #[cfg(feature = "gpu")]
@@ -227,8 +222,7 @@ fn on_cpu(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
         pictures.collect::<Result<Vec<_>, cpu::RenderError>>()
     };
     // If nothing would be kept, a signal may end the program at any time.
-    let (done, is_stopped) =
-        if stop_rule.keeps_partial() { interrupt::keeping(render) } else { (render(), false) };
+    let (done, is_stopped) = if stop_rule.keeps_partial() { interrupt::keeping(render) } else { (render(), false) };
     if let Some(failure) = too_short {
         return Err(failure);
     }
@@ -246,11 +240,7 @@ fn judged(pictures: Vec<(Picture, Watching)>, total: u32, is_stopped: bool) -> V
 }
 
 #[cfg(feature = "gpu")]
-fn on_gpu(
-    headless: &Headless,
-    shot: &Shot<'_>,
-    choice: AccelChoice,
-) -> Result<Vec<Image>, Failure> {
+fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<Vec<Image>, Failure> {
     let Shot { input, views, layers, stop_rule, .. } = *shot;
     let Input { scene, settings, .. } = input;
     let is_lit = !settings.integrator.is_primary();
@@ -265,8 +255,7 @@ fn on_gpu(
                 let upload_watch = &mut |progress: &_| watch_upload(name, progress);
                 let watch = &mut |progress: &_| watching.decide(progress);
                 let request = PictureRequest::new(scene, view, settings, layers);
-                let picture =
-                    headless.render_planned(&request, plan, upload_watch, watch).wait()?;
+                let picture = headless.render_planned(&request, plan, upload_watch, watch).wait()?;
                 return Ok(vec![(picture, watching)]);
             }
             let buffers = upload(headless, scene, plan)?;
@@ -274,8 +263,7 @@ fn on_gpu(
             let pictures = views.iter().map(|view| {
                 let watching = Watching::new(stop_rule, views.len(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture =
-                    headless.render_uploaded(&buffers, view, settings, layers, watch).wait();
+                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch).wait();
                 too_short = watching.too_short();
                 Ok((picture?, watching))
             });

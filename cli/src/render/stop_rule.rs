@@ -54,9 +54,7 @@ impl StopRule {
         if let Some(noise) = noise
             && !(noise.is_finite() && noise > 0.0)
         {
-            return Err(Failure::usage(format!(
-                "--noise {noise}: it must be finite and greater than 0, such as 0.01"
-            )));
+            return Err(Failure::usage(format!("--noise {noise}: it must be finite and greater than 0, such as 0.01")));
         }
         let time = time.as_deref().map(parse_time).transpose()?;
         Ok(Self { time, noise, keep_partial })
@@ -86,11 +84,8 @@ impl StopRule {
 
 /// Parses a time in seconds, minutes or hours.
 fn parse_time(text: &str) -> Result<Duration, Failure> {
-    let wrong = || {
-        Failure::usage(format!(
-            "--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h"
-        ))
-    };
+    let wrong =
+        || Failure::usage(format!("--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h"));
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match &text[number.len()..] {
         "" | "s" => 1.0,
@@ -184,9 +179,7 @@ impl Watching {
             return;
         }
         if is_interrupted {
-            tell(
-                "note: stopping when every pixel has its first sample; press Ctrl-C again to end without a picture",
-            );
+            tell("note: stopping when every pixel has its first sample; press Ctrl-C again to end without a picture");
         } else {
             tell(
                 "note: the time is up; the picture will be written when every pixel has its first sample; \
@@ -209,13 +202,9 @@ impl Watching {
             .map_or(0.0, |(most, noise)| (most / noise.max(f64::MIN_POSITIVE)).powi(2));
         let part = progress.part.max(by_time).max(by_noise).clamp(0.0, 1.0);
         let taken = progress.part * f64::from(progress.total) * self.pixels as f64;
-        let noise =
-            progress.noise.map_or(String::new(), |noise| format!(", noise {:.2}%", 100.0 * noise));
-        let of_total = if self.stop_rule.open_end().is_some() {
-            String::new()
-        } else {
-            format!(" of {}", progress.total)
-        };
+        let noise = progress.noise.map_or(String::new(), |noise| format!(", noise {:.2}%", 100.0 * noise));
+        let of_total =
+            if self.stop_rule.open_end().is_some() { String::new() } else { format!(" of {}", progress.total) };
         let message = format!(
             "{}{of_total} samples{noise}, {:.1} million per second",
             progress.samples,
@@ -225,13 +214,7 @@ impl Watching {
     }
 
     /// Returns a line about a picture that stopped early or has more noise than wanted.
-    pub(crate) fn verdict(
-        &self,
-        samples: u32,
-        total: u32,
-        noise: Option<f64>,
-        is_stopped: bool,
-    ) -> Option<String> {
+    pub(crate) fn verdict(&self, samples: u32, total: u32, noise: Option<f64>, is_stopped: bool) -> Option<String> {
         if is_stopped && samples < total {
             return Some(format!("stopped; the picture has {samples} samples per pixel"));
         }
@@ -251,15 +234,11 @@ mod tests {
     #[test]
     fn times() {
         let time = |text| parse_time(text).map_err(|failure| failure.message());
-        for (text, seconds) in
-            [("20", 20.0), ("20s", 20.0), ("1.5m", 90.0), ("2min", 120.0), ("0.5h", 1800.0)]
-        {
+        for (text, seconds) in [("20", 20.0), ("20s", 20.0), ("1.5m", 90.0), ("2min", 120.0), ("0.5h", 1800.0)] {
             assert_eq!(time(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
         }
         for text in ["", "s", "0s", "-1s", "1d", "infs", "NaNs", "1e300h", "20 s", "1m30s"] {
-            let wrong = format!(
-                "--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h"
-            );
+            let wrong = format!("--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h");
             assert_eq!(time(text), Err(wrong), "{text}");
         }
     }

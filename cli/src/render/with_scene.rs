@@ -5,8 +5,7 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, profile};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::gpu::{
-    Decision, GpuError, Headless, RenderPlan, Retry, SceneBuffers, UploadProgress, UploadStep,
-    Wait, with_retries,
+    Decision, GpuError, Headless, RenderPlan, Retry, SceneBuffers, UploadProgress, UploadStep, Wait, with_retries,
 };
 use pinhole::scene::Scene;
 
@@ -41,22 +40,15 @@ pub(crate) fn with_structures<T>(
 }
 
 /// Builds the planned structures of a scene brick by brick, and copies each brick to the device.
-pub(crate) fn upload(
-    headless: &Headless,
-    scene: &Scene,
-    plan: &RenderPlan,
-) -> Result<SceneBuffers, GpuError> {
+pub(crate) fn upload(headless: &Headless, scene: &Scene, plan: &RenderPlan) -> Result<SceneBuffers, GpuError> {
     let name = plan.accel.structure.name();
-    headless
-        .upload_planned(scene, &plan.structures(), &mut |progress| watch_upload(name, progress))
-        .wait()
+    headless.upload_planned(scene, &plan.structures(), &mut |progress| watch_upload(name, progress)).wait()
 }
 
 /// Shows a step of the upload of a structure. While a brick is built, a signal ends the program at once.
 pub(crate) fn watch_upload(name: &str, progress: &UploadProgress) -> Decision {
     let UploadProgress { step, brick, bricks, .. } = *progress;
-    let place =
-        if bricks > 1 { format!(", brick {} of {bricks}", brick + 1) } else { String::new() };
+    let place = if bricks > 1 { format!(", brick {} of {bricks}", brick + 1) } else { String::new() };
     let is_building = step == UploadStep::Building;
     interrupt::driver_rests(is_building);
     if is_building {

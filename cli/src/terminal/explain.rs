@@ -61,8 +61,7 @@ const REMOVED: &[(&str, &str)] = &[
 /// Returns the message about a flag or a command that was removed. `arguments` are those of the program, without its
 /// name. `None` if the error has another cause.
 pub(crate) fn removed_message(error: &clap::Error, arguments: &[String]) -> Option<String> {
-    let kinds =
-        [ContextKind::InvalidArg, ContextKind::InvalidSubcommand, ContextKind::InvalidValue];
+    let kinds = [ContextKind::InvalidArg, ContextKind::InvalidSubcommand, ContextKind::InvalidValue];
     let names = kinds.into_iter().filter_map(|kind| match error.get(kind) {
         // clap names a flag with a value as `--accel <ACCEL>`.
         Some(ContextValue::String(name)) => name.split(' ').next(),

@@ -20,12 +20,8 @@ use crate::terminal::progress::{self, tell};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::Decision;
 
-static STATE: Mutex<State> = Mutex::new(State {
-    phase: Phase::Free,
-    is_requested: false,
-    temporaries: Vec::new(),
-    message: NOTHING_WRITTEN,
-});
+static STATE: Mutex<State> =
+    Mutex::new(State { phase: Phase::Free, is_requested: false, temporaries: Vec::new(), message: NOTHING_WRITTEN });
 
 struct State {
     phase: Phase,
@@ -137,10 +133,7 @@ pub(crate) fn decide() -> Decision {
 }
 
 /// Creates a temporary file that is removed if the program is stopped.
-pub(crate) fn creating<F, E>(
-    create: impl FnOnce() -> Result<F, E>,
-    path: impl FnOnce(&F) -> PathBuf,
-) -> Result<F, E> {
+pub(crate) fn creating<F, E>(create: impl FnOnce() -> Result<F, E>, path: impl FnOnce(&F) -> PathBuf) -> Result<F, E> {
     let mut state = state();
     let file = create()?;
     state.temporaries.push(path(&file));
@@ -177,9 +170,7 @@ impl Deadline {
             }
         };
         if let Err(error) = std::thread::Builder::new().spawn(watch) {
-            tell(format_args!(
-                "note: --timeout has no effect, because a thread cannot be started: {error}"
-            ));
+            tell(format_args!("note: --timeout has no effect, because a thread cannot be started: {error}"));
         }
         Self { _ended: ended }
     }

@@ -17,12 +17,7 @@ pub(crate) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 /// Refuses a picture of the CPU reference for which the machine, or the program's control group, has not enough memory.
 /// Each pixel needs `extra_bytes_per_pixel` in addition to the layers. The plan of an adapter has the memory that it
 /// needs.
-pub(crate) fn check(
-    film: &Film,
-    size_from: &str,
-    layers: LayerSet,
-    extra_bytes_per_pixel: u64,
-) -> Result<(), Failure> {
+pub(crate) fn check(film: &Film, size_from: &str, layers: LayerSet, extra_bytes_per_pixel: u64) -> Result<(), Failure> {
     let per_pixel = layers.bytes_per_pixel() + extra_bytes_per_pixel;
     let needed = film.pixel_count().saturating_mul(per_pixel);
     let (width, height) = (film.width(), film.height());
@@ -35,11 +30,7 @@ pub(crate) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<()> 
     if let Some(available) = available()
         && needed > available
     {
-        bail!(
-            "{what} {} of memory, but only {} are free; choose {instead}",
-            readable(needed),
-            readable(available)
-        );
+        bail!("{what} {} of memory, but only {} are free; choose {instead}", readable(needed), readable(available));
     }
     Ok(())
 }
@@ -98,9 +89,7 @@ fn free_of_line(root: &Path, line: &str) -> Option<u64> {
     let (controllers, path) = (fields.next()?, fields.next()?);
     let (root, files) = match controllers {
         "" => (root.to_path_buf(), &VERSION_2),
-        _ if controllers.split(',').any(|controller| controller == "memory") => {
-            (root.join("memory"), &VERSION_1)
-        }
+        _ if controllers.split(',').any(|controller| controller == "memory") => (root.join("memory"), &VERSION_1),
         _ => return None,
     };
     let own = root.join(path.trim_start_matches('/'));
@@ -114,8 +103,7 @@ struct Files {
     used: [&'static str; 2],
 }
 
-const VERSION_1: Files =
-    Files { limit: "memory.limit_in_bytes", used: ["total_rss", "total_shmem"] };
+const VERSION_1: Files = Files { limit: "memory.limit_in_bytes", used: ["total_rss", "total_shmem"] };
 
 const VERSION_2: Files = Files { limit: "memory.max", used: ["anon", "shmem"] };
 

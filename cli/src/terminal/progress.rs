@@ -97,8 +97,7 @@ pub(crate) fn close() {
     line().is_closed = true;
 }
 
-static LINE: Mutex<Line> =
-    Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
+static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
 
 /// The time between two lines if standard error is not a terminal.
 const PLAIN: Duration = Duration::from_secs(10);
@@ -127,12 +126,7 @@ impl Plain {
     }
 
     /// Returns the line about the progress of a picture, if one is due.
-    pub(crate) fn line(
-        &mut self,
-        now: Instant,
-        part: f64,
-        message: Option<&str>,
-    ) -> Option<String> {
+    pub(crate) fn line(&mut self, now: Instant, part: f64, message: Option<&str>) -> Option<String> {
         if now < self.next {
             return None;
         }
@@ -150,12 +144,7 @@ pub(crate) fn line() -> MutexGuard<'static, Line> {
 
 impl Line {
     /// Shows another bar in place of the current one.
-    pub(crate) fn show(
-        &mut self,
-        bar: ProgressBar,
-        template: &str,
-        total: Option<u64>,
-    ) -> &ProgressBar {
+    pub(crate) fn show(&mut self, bar: ProgressBar, template: &str, total: Option<u64>) -> &ProgressBar {
         if let Some(old) = self.bar.take() {
             old.finish_and_clear();
         }
@@ -222,9 +211,8 @@ mod tests {
         let start = Instant::now();
         let after = |seconds| start + Duration::from_secs(seconds);
         let mut plain = Plain::new(start);
-        let lines: Vec<_> = (0..35)
-            .filter_map(|second| plain.line(after(second), second as f64 / 40.0, Some("more")))
-            .collect();
+        let lines: Vec<_> =
+            (0..35).filter_map(|second| plain.line(after(second), second as f64 / 40.0, Some("more"))).collect();
         let wanted = [(25, 10), (50, 20), (75, 30)];
         let wanted = wanted.map(|(part, time)| format!("rendering: {part}% after {time} s; more"));
         assert_eq!(lines, wanted);

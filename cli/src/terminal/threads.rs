@@ -33,9 +33,7 @@ pub(crate) fn start() -> Result<(), Failure> {
         builder.build_global().map_err(|error| error.to_string())
     });
     started.clone().map_err(|error| {
-        Failure::Job(anyhow::anyhow!(
-            "threads cannot be started; set {VARIABLE} to a smaller number: {error}"
-        ))
+        Failure::Job(anyhow::anyhow!("threads cannot be started; set {VARIABLE} to a smaller number: {error}"))
     })
 }
 

@@ -80,8 +80,7 @@ impl ViewCamera {
     pub fn set_aspect(&mut self, aspect: f64) {
         let plane = self.0.table.get("half_extent").and_then(Value::as_array);
         if let Some(height) = plane.and_then(|plane| plane.get(1)).and_then(Value::as_float) {
-            let [width, height] =
-                [height * aspect, height].map(|side| rounded(side, 1e-6 * height));
+            let [width, height] = [height * aspect, height].map(|side| rounded(side, 1e-6 * height));
             self.0.set("half_extent", list([width, height]));
         }
     }
@@ -117,12 +116,9 @@ impl ViewCamera {
             let key = key.trim_start_matches("camera.*.");
             let value = match key.split_once('.') {
                 None => self.0.table.get(key),
-                Some((table, key)) => self
-                    .0
-                    .table
-                    .get(table)
-                    .and_then(Value::as_table)
-                    .and_then(|inner| inner.get(key)),
+                Some((table, key)) => {
+                    self.0.table.get(table).and_then(Value::as_table).and_then(|inner| inner.get(key))
+                }
             };
             if let Some(value) = value.and_then(text) {
                 flags.set(flag.trim_start_matches('-'), &value);
@@ -150,8 +146,7 @@ impl RenderFlags {
             return Ok(None);
         }
         let layers = self.render_args("-")?.input.view.given.layers()?;
-        let layers: Vec<Layer> =
-            layers.into_iter().filter(|l| l.text.starts_with("camera.")).collect();
+        let layers: Vec<Layer> = layers.into_iter().filter(|l| l.text.starts_with("camera.")).collect();
         let file = SceneFile::read(&Sources { flags: &layers, ..Sources::default() });
         let file = file.map_err(|error| ViewError::usage(error.to_string()))?;
         let parameters = file.camera_parameters();
@@ -167,9 +162,7 @@ fn text(value: &Value) -> Option<String> {
     match value {
         Value::Float(number) => Some(number.to_string()),
         Value::Integer(number) => Some(number.to_string()),
-        Value::Array(numbers) => {
-            Some(numbers.iter().map(text).collect::<Option<Vec<_>>>()?.join(","))
-        }
+        Value::Array(numbers) => Some(numbers.iter().map(text).collect::<Option<Vec<_>>>()?.join(",")),
         _ => None,
     }
 }
@@ -209,17 +202,10 @@ mod tests {
             "[pinhole]\neye = [0.0, 0.0, 50.0]\ndirection = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]",
         ))
         .unwrap();
-        camera.set_place(
-            DVec3::new(100.0 / 3.0, -1e-9, 7.0),
-            DVec3::new(0.1, 0.2, 0.3),
-            DVec3::new(0.0, 3.0, 0.0),
-        );
+        camera.set_place(DVec3::new(100.0 / 3.0, -1e-9, 7.0), DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.0, 3.0, 0.0));
         let mut flags = RenderFlags::parse(["a.pdb"]).unwrap();
         camera.write_to(&mut flags);
-        assert_eq!(
-            flags.words()[1..],
-            ["--eye=33.33333,0,7", "--look-at=0.1,0.2,0.3", "--up=0,1,0"]
-        );
+        assert_eq!(flags.words()[1..], ["--eye=33.33333,0,7", "--look-at=0.1,0.2,0.3", "--up=0,1,0"]);
         camera.write_fit_to(&mut flags);
         assert_eq!(flags.get("eye"), None);
         assert!(flags.get("direction").is_some() && flags.check().is_ok());

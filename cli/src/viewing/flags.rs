@@ -68,9 +68,7 @@ impl RenderFlags {
         let start = ["pinhole", "view"].map(OsString::from);
         let words: Vec<OsString> = start.into_iter().chain(words).collect();
         let matches = program.clone().try_get_matches_from(&words).map_err(Refusal::Clap)?;
-        let (Some(matches), Some(view)) =
-            (matches.subcommand_matches("view"), program.find_subcommand("view"))
-        else {
+        let (Some(matches), Some(view)) = (matches.subcommand_matches("view"), program.find_subcommand("view")) else {
             return Err(Refusal::Other(ViewError::usage("there is nothing to show; name a file")));
         };
         let mut found = Self { path: String::new(), flags: Vec::new() };
@@ -80,8 +78,7 @@ impl RenderFlags {
                 continue;
             }
             let raw = matches.get_raw(id).into_iter().flatten();
-            let values: Vec<String> =
-                raw.map(text).collect::<Result<_, _>>().map_err(Refusal::Other)?;
+            let values: Vec<String> = raw.map(text).collect::<Result<_, _>>().map_err(Refusal::Other)?;
             let Some(name) = argument.get_long() else {
                 found.path = values.into_iter().next().unwrap_or_default();
                 continue;
@@ -142,8 +139,7 @@ impl RenderFlags {
                 Decides::Light => is_scene,
                 Decides::Camera | Decides::Picture => false,
             };
-            let mut kept: Vec<_> =
-                flags.flags.iter().filter(|(n, _)| is_kept(n)).cloned().collect();
+            let mut kept: Vec<_> = flags.flags.iter().filter(|(n, _)| is_kept(n)).cloned().collect();
             kept.sort();
             kept
         };
@@ -158,8 +154,7 @@ impl RenderFlags {
 
     /// The words after `pinhole render`, without the output.
     pub fn words(&self) -> Vec<String> {
-        let path =
-            if self.path.starts_with('-') { format!("./{}", self.path) } else { self.path.clone() };
+        let path = if self.path.starts_with('-') { format!("./{}", self.path) } else { self.path.clone() };
         let flag = |(name, value): &(String, String)| match value.as_str() {
             "" => format!("--{name}"),
             value => format!("--{name}={value}"),
@@ -170,16 +165,14 @@ impl RenderFlags {
     /// The command that renders this view, for a shell.
     pub fn command_line(&self, output: &str) -> String {
         let end = ["-o".to_owned(), output.to_owned()];
-        let words: Vec<String> =
-            self.words().iter().chain(&end).map(|word| in_quotes(word)).collect();
+        let words: Vec<String> = self.words().iter().chain(&end).map(|word| in_quotes(word)).collect();
         format!("pinhole render {}", words.join(" "))
     }
 
     /// Renders and writes the picture, as `pinhole render` does with the same flags.
     pub fn save(&self, output: &str) -> Result<(), ViewError> {
         // A name that starts with a dash is a file here, and `-` is not standard output.
-        let output =
-            if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
+        let output = if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
         Ok(render::run(&*self.render_args(&output)?)?)
     }
 
@@ -291,13 +284,7 @@ mod tests {
 
     #[test]
     fn a_shell_reads_the_words_back() {
-        let flags = parsed(&[
-            "my file.pdb",
-            "--select",
-            "name == 'C1' or name == $x",
-            "--label",
-            "50% \"a\"",
-        ]);
+        let flags = parsed(&["my file.pdb", "--select", "name == 'C1' or name == $x", "--label", "50% \"a\""]);
         let line = flags.command_line("out put.png");
         let expected = r#"pinhole render 'my file.pdb' '--select=name == '\''C1'\'' or name == $x' '--label=50% "a"' -o 'out put.png'"#;
         assert!(cfg!(windows) || line == expected, "{line}");
@@ -306,21 +293,11 @@ mod tests {
     #[test]
     fn only_some_flags_change_the_spheres() {
         let plain = parsed(&["a.pdb"]);
-        for flag in [
-            "--style=path",
-            "--view=iso",
-            "--size=9x9",
-            "--legend-title=a",
-            "--bits=16",
-            "--samples=2",
-        ] {
+        for flag in ["--style=path", "--view=iso", "--size=9x9", "--legend-title=a", "--bits=16", "--samples=2"] {
             assert!(parsed(&["a.pdb", flag]).has_data_of(&plain), "{flag}");
         }
         for flag in ["--select=x > 1", "--bonds", "--color-by=x", "--frame=1", "--radius=1"] {
-            assert!(
-                !RenderFlags { flags: parsed(&["a.xyz", flag]).flags, ..plain.clone() }
-                    .has_data_of(&plain)
-            );
+            assert!(!RenderFlags { flags: parsed(&["a.xyz", flag]).flags, ..plain.clone() }.has_data_of(&plain));
         }
         let scene = parsed(&["a.toml"]);
         assert!(!parsed(&["a.toml", "--style=path"]).has_data_of(&scene));
@@ -340,10 +317,7 @@ mod tests {
             &[],
         ] {
             let error = RenderFlags::parse(words).unwrap_err();
-            assert!(
-                !error.to_string().contains('\n') && error.exit_code() == USAGE.into(),
-                "{error}"
-            );
+            assert!(!error.to_string().contains('\n') && error.exit_code() == USAGE.into(), "{error}");
         }
     }
 }

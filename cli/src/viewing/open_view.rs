@@ -99,8 +99,7 @@ impl OpenView {
         let sky = input.sky_image.clone().zip(sky);
         let (encoding, annotations) = (Encoding::default(), Annotations::default());
         let flags = flags.clone();
-        let mut shown =
-            Self { flags, input, text, sky, encoding, annotations, columns, frames, notes };
+        let mut shown = Self { flags, input, text, sky, encoding, annotations, columns, frames, notes };
         let flags = shown.flags.clone();
         shown.see(&flags)?;
         Ok(shown)

@@ -58,9 +58,7 @@ impl StillRenderer {
     pub fn warning(&self) -> Option<&str> {
         match &self.opened {
             OpenDevice::Device { warning, .. } => warning.as_deref(),
-            OpenDevice::CpuInstead => {
-                Some("still pictures are rendered by the CPU reference, which is slower")
-            }
+            OpenDevice::CpuInstead => Some("still pictures are rendered by the CPU reference, which is slower"),
             OpenDevice::Cpu => None,
         }
     }
@@ -111,10 +109,8 @@ impl StillRenderer {
             let view = shown.input.view();
             headless.render_uploaded(buffers, &view, settings, layers, &mut |_| watch()).wait()
         };
-        let (scene, integrator) =
-            (&shown.input.scene, std::mem::discriminant(&settings.integrator));
-        let is_of_scene =
-            |up: &DeviceScene| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
+        let (scene, integrator) = (&shown.input.scene, std::mem::discriminant(&settings.integrator));
+        let is_of_scene = |up: &DeviceScene| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
         let uploaded = self.uploaded.as_ref().filter(|uploaded| is_of_scene(uploaded));
         let rendered = uploaded.map(|uploaded| render(&uploaded.buffers));
         let rendered = match rendered {
@@ -165,15 +161,12 @@ fn on_cpu(
     layers: LayerSet,
     is_wanted: &dyn Fn() -> bool,
 ) -> Result<Option<Image>, Failure> {
-    let structure =
-        SearchStructure::new(&shown.input.scene).context("the structure cannot be built")?;
+    let structure = SearchStructure::new(&shown.input.scene).context("the structure cannot be built")?;
     let watch = &mut |_: &_| if is_wanted() { Decision::GoOn } else { Decision::Stop };
     match cpu::render_watched(&structure, &shown.input.view(), settings, layers, watch) {
         Ok(picture) => Ok(Some(picture.image)),
         Err(RenderError::Stopped) => Ok(None),
-        Err(error) => {
-            Err(anyhow::Error::new(error).context("the CPU cannot render this picture").into())
-        }
+        Err(error) => Err(anyhow::Error::new(error).context("the CPU cannot render this picture").into()),
     }
 }
 

@@ -17,10 +17,7 @@ use crate::{command, command_on, succeed};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
-        trial_of_vulkan(
-            "faults::a_part_whose_device_is_lost_ends_and_is_rendered_again",
-            lost_part,
-        ),
+        trial_of_vulkan("faults::a_part_whose_device_is_lost_ends_and_is_rendered_again", lost_part),
         trial_of_vulkan("faults::a_picture_whose_device_is_lost_is_not_written", lost_picture),
         trial_of_vulkan("faults::with_little_memory_nothing_is_written", little_memory),
         trial_of_vulkan("faults::a_driver_that_hangs_ends_in_time", hangs),
@@ -60,11 +57,7 @@ fn prepared(headless: &Headless) -> TempDir {
 /// Places the layer between a program and its driver.
 fn with_fault(command: &mut Command, fault: &str) -> TempDir {
     let program = std::env::current_exe().unwrap();
-    let name = format!(
-        "{}pinhole_test_faults{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
+    let name = format!("{}pinhole_test_faults{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let library = program.with_file_name(name);
     assert!(library.exists(), "{}", library.display());
     let layers = tempfile::tempdir().unwrap();
@@ -106,8 +99,7 @@ fn assert_fails(output: &Output, code: i32, fault: &str, line: &str) {
 
 fn names(folder: impl AsRef<Path>) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -248,8 +240,7 @@ pub(crate) fn is_child() -> bool {
         return false;
     };
     let timeout = Duration::from_secs(1);
-    let headless =
-        Headless::open(&HeadlessOptions { timeout, ..Default::default() }).wait().unwrap();
+    let headless = Headless::open(&HeadlessOptions { timeout, ..Default::default() }).wait().unwrap();
     let tested = match form.as_str() {
         "blocking" => headless.self_test(SelfTestExtent::Quick).wait(),
         _ => pollster::block_on(headless.self_test(SelfTestExtent::Quick)),

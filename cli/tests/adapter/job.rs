@@ -39,10 +39,7 @@ fn assert_same(headless: &Headless, scene: &str, flags: &str, layers: &[&str]) {
     let read = |name: String| fs::read(folder.path().join(name)).unwrap();
     assert!(read("m-p.png".to_owned()) == read("r-p.png".to_owned()), "{flags}");
     for layer in layers {
-        assert!(
-            read(format!("m-{layer}.npy")) == read(format!("r-{layer}.npy")),
-            "{flags}: {layer}"
-        );
+        assert!(read(format!("m-{layer}.npy")) == read(format!("r-{layer}.npy")), "{flags}: {layer}");
     }
 }
 
@@ -111,8 +108,7 @@ fn pictures_of_bricks(headless: &'static Headless) {
             render("a.bricks", "parts");
             let names = LAYERS.map(|layer| format!("-{layer}.npy"));
             for name in names.iter().map(String::as_str).chain([".png"]) {
-                let read =
-                    |out: &str| fs::read(folder.path().join(format!("{out}{name}"))).unwrap();
+                let read = |out: &str| fs::read(folder.path().join(format!("{out}{name}"))).unwrap();
                 assert!(read("whole") == read("parts"), "{count} in {bricks}, {flags}: {name}");
             }
         }
@@ -137,11 +133,9 @@ fn by_depth(headless: &'static Headless) {
     succeed(&mut command_on(headless, &folder, &split));
     succeed(&mut command(&folder, "job part job 2-3 -q"));
     succeed(&mut command(&folder, "job part job 0-1 -q"));
-    let outputs =
-        |out: &str| format!("-o {out}.png --layer id={out}-id.npy --layer normal={out}-n.npy -q");
+    let outputs = |out: &str| format!("-o {out}.png --layer id={out}-id.npy --layer normal={out}-n.npy -q");
     succeed(&mut command(&folder, &format!("job merge job {}", outputs("merged"))));
-    let render =
-        format!("render a.bin --format raw-f32x4 --style fast --size 123x77 {}", outputs("whole"));
+    let render = format!("render a.bin --format raw-f32x4 --style fast --size 123x77 {}", outputs("whole"));
     succeed(&mut command_on(headless, &folder, &render));
     for name in [".png", "-id.npy", "-n.npy"] {
         let read = |out: &str| fs::read(folder.path().join(format!("{out}{name}"))).unwrap();

@@ -57,8 +57,7 @@ fn main() {
         return;
     }
     harness::run(|| {
-        let groups =
-            [faults::trials(), job::trials(), plan::trials(), render::trials(), verify::trials()];
+        let groups = [faults::trials(), job::trials(), plan::trials(), render::trials(), verify::trials()];
         groups.into_iter().flatten().collect()
     });
 }

@@ -71,8 +71,7 @@ fn without_free_bytes(stderr: &[u8]) -> String {
 fn refused(_: &'static Headless) {
     let folder = folder_with(100);
     let view = "a.npy --size 4000000x4000000";
-    let (plan, json) =
-        (run(&folder, &format!("plan {view}")), run(&folder, &format!("plan {view} --json")));
+    let (plan, json) = (run(&folder, &format!("plan {view}")), run(&folder, &format!("plan {view} --json")));
     let render = run(&folder, &format!("render {view} -o out.png --backend gpu"));
     for output in [&plan, &json, &render] {
         assert_eq!(output.status.code(), Some(1));
@@ -123,7 +122,8 @@ fn bench(headless: &'static Headless) {
 /// Each of 16 million rays tests 30,000 spheres. The eye is among the spheres, so no ray ends early.
 fn stopped(_: &'static Headless) {
     let folder = folder_with(30_000);
-    let render = "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
+    let render =
+        "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
     for delay in [100, 300, 1000] {
         let mut command = command(&folder, render);
         let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
@@ -217,8 +217,7 @@ fn light(_: &'static Headless) {
     let plan = |flags: &str| {
         let report = stdout(&folder, &format!("plan scene.toml --json {flags}"));
         let report: serde_json::Value = serde_json::from_str(&report).unwrap();
-        let paths =
-            report["buffers"].as_array().unwrap().iter().find(|buffer| buffer["name"] == "paths");
+        let paths = report["buffers"].as_array().unwrap().iter().find(|buffer| buffer["name"] == "paths");
         paths.map(|paths| paths["bytes"].as_u64().unwrap())
     };
     // The scene has a ground, so it is lit.
@@ -234,25 +233,17 @@ fn light(_: &'static Headless) {
 /// Every second of 80 spheres casts no shadow in a studio.
 fn shadows(_: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
-    let mut scene =
-        "[studio]\n[sampling]\nsamples = 2\n[film]\nwidth = 16\nheight = 12\n".to_owned();
+    let mut scene = "[studio]\n[sampling]\nsamples = 2\n[film]\nwidth = 16\nheight = 12\n".to_owned();
     for i in 0..80 {
         let (x, y, opacity) = (i % 10, i / 10, 1.0 - 0.5 * f64::from(i % 2));
-        scene +=
-            &format!("[[spheres]]\ncenter = [{x}, {y}, 0]\nradius = 0.4\nopacity = {opacity}\n");
+        scene += &format!("[[spheres]]\ncenter = [{x}, {y}, 0]\nradius = 0.4\nopacity = {opacity}\n");
     }
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let counts = |flags: &str| {
         let report = stdout(&folder, &format!("plan scene.toml --json {flags}"));
         let report: serde_json::Value = serde_json::from_str(&report).unwrap();
-        let names: Vec<_> = report["buffers"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|buffer| buffer["name"].clone())
-            .collect();
-        ["nodes", "cells"]
-            .map(|name| names.iter().filter(|found| found.as_str().unwrap().contains(name)).count())
+        let names: Vec<_> = report["buffers"].as_array().unwrap().iter().map(|buffer| buffer["name"].clone()).collect();
+        ["nodes", "cells"].map(|name| names.iter().filter(|found| found.as_str().unwrap().contains(name)).count())
     };
     assert_eq!(counts("--accel tree"), [2, 0]);
     assert_eq!(counts("--accel grid"), [0, 2]);

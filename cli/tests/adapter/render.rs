@@ -51,8 +51,7 @@ fn exr(headless: &'static Headless) {
     succeed(&mut command);
 
     let view = View::three_spheres();
-    let image =
-        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).wait().unwrap();
+    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).wait().unwrap();
     let mut expected = Cursor::new(Vec::new());
     let encoding = Encoding::default();
     let remarks = Remarks { adapter: Some(adapter), ..Remarks::default() };
@@ -68,10 +67,7 @@ fn self_test(headless: &'static Headless) {
     let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(!info["adapters"].as_array().unwrap().is_empty());
     let tested = &info["self_test"];
-    assert_eq!(
-        (&tested["adapter"]["name"], &tested["passed"]),
-        (&name.as_str().into(), &true.into())
-    );
+    assert_eq!((&tested["adapter"]["name"], &tested["passed"]), (&name.as_str().into(), &true.into()));
     let properties = tested["properties"].as_array().unwrap();
     assert_eq!(properties.len(), 10);
     let output = succeed(&mut command(&folder, "info --self-test"));
@@ -80,8 +76,7 @@ fn self_test(headless: &'static Headless) {
     for property in properties {
         assert_eq!(property["passed"], true);
         assert!(property["figures"]["tested"].as_f64().unwrap() > 0.0, "{property}");
-        let [outcome, name, words] =
-            ["outcome", "name", "words"].map(|key| property[key].as_str().unwrap());
+        let [outcome, name, words] = ["outcome", "name", "words"].map(|key| property[key].as_str().unwrap());
         assert!(outcome == "ok" || outcome == "note", "{outcome}");
         assert!(text.contains(&format!("  {outcome:<6}  {name}: {words}\n")), "{text}");
     }
@@ -109,8 +104,7 @@ fn info(headless: &'static Headless) {
 /// `--profile` changes no picture, and its table has the passes of the device.
 fn table_of_a_profile(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("scene.toml"), include_str!("../../../examples/studio.toml"))
-        .unwrap();
+    std::fs::write(folder.path().join("scene.toml"), include_str!("../../../examples/studio.toml")).unwrap();
     let picture = |arguments: &str| {
         let arguments = format!("render scene.toml -o out.png --samples 2 --size 90x60{arguments}");
         let run = succeed(&mut command_on(headless, &folder, &arguments));

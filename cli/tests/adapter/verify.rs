@@ -147,15 +147,10 @@ fn saved_light(_: &'static Headless) {
     let denoised = PATHS.replace("[film]", "[sampling]\nsamples = 4\ndenoise = true\n[film]");
     std::fs::write(folder.path().join("paths.toml"), denoised).unwrap();
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-    for (scene, words) in [
-        ("studio", "\n2400 samples, "),
-        ("paths", "\n2400 paths, "),
-        ("paths", "\ndenoiser: 1200 pixels: "),
-    ] {
-        let found = table(
-            &folder,
-            &format!("verify {scene}.toml --paths 2 --save run --json a.json --report page"),
-        );
+    for (scene, words) in
+        [("studio", "\n2400 samples, "), ("paths", "\n2400 paths, "), ("paths", "\ndenoiser: 1200 pixels: ")]
+    {
+        let found = table(&folder, &format!("verify {scene}.toml --paths 2 --save run --json a.json --report page"));
         assert!(found.contains(words), "{found}");
         let again = replayed(&folder, "verify --replay run --json b.json --report again", 0);
         assert_eq!(String::from_utf8(again.stdout).unwrap(), found);
@@ -202,8 +197,7 @@ fn another_part(_: &'static Headless) {
     let seed = note.trim().rsplit(' ').next().unwrap();
     assert!(note.contains(" to check the same again, add --tile-seed "), "{note}");
     assert_eq!(run(&format!("--tile-seed {seed}")).0, first);
-    let others: std::collections::BTreeSet<_> =
-        (0..4).map(|seed| run(&format!("--tile-seed {seed}")).0).collect();
+    let others: std::collections::BTreeSet<_> = (0..4).map(|seed| run(&format!("--tile-seed {seed}")).0).collect();
     assert!(others.len() > 1, "{others:?}");
     replayed(&folder, "verify --replay run --report again", 0);
     let page = page_of(&folder, "page");

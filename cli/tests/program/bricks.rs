@@ -45,15 +45,13 @@ fn assert_same(folder: &Folder, name: &str, flags: &str) {
     let layers = ["depth", "normal", "position", "albedo", "id", "alpha", "samples"];
     let render = |input: &str, out: &str| {
         let layers = layers.map(|layer| format!("--layer {layer}={out}-{layer}.npy")).join(" ");
-        let run =
-            folder.run(&format!("render {input} -o {out}.png {layers} --backend cpu {flags}"));
+        let run = folder.run(&format!("render {input} -o {out}.png {layers} --backend cpu {flags}"));
         let run = run.succeeded();
         assert_eq!(run.stderr, "", "{flags}");
         run.said.unwrap()
     };
     let said = [render(name, "whole"), render("a.bricks", "parts")];
-    let spheres =
-        |said: &str| said.split(": ").nth(1).unwrap().split(';').next().unwrap().to_owned();
+    let spheres = |said: &str| said.split(": ").nth(1).unwrap().split(';').next().unwrap().to_owned();
     assert_eq!(spheres(&said[0]), spheres(&said[1]));
     for file in layers.map(|layer| format!("-{layer}.npy")).iter().chain([&".png".to_owned()]) {
         let [whole, parts] = ["whole", "parts"].map(|name| folder.read(&format!("{name}{file}")));
@@ -108,19 +106,11 @@ fn few_spheres_make_few_bricks_and_a_color_may_be_chosen() {
     let rows: Vec<u8> = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0_f32].map(f32::to_le_bytes).concat();
     let folder = sorted("a.npy", &npy("<f4", false, "(2, 3)", &rows), "--radius 0.1");
     let render = |input: &str, out: &str| {
-        folder
-            .run(&format!("render {input} -o {out} --style fast --backend cpu --size 30x20"))
-            .succeeded();
+        folder.run(&format!("render {input} -o {out} --style fast --backend cpu --size 30x20")).succeeded();
         folder.read(out)
     };
     assert_eq!(render("a.npy --radius 0.1", "a.png"), render("a.bricks", "b.png"));
-    assert!(
-        folder
-            .run("info a.bricks")
-            .succeeded()
-            .stdout
-            .starts_with(b"file: a.bricks\nformat: bricks")
-    );
+    assert!(folder.run("info a.bricks").succeeded().stdout.starts_with(b"file: a.bricks\nformat: bricks"));
 }
 
 /// Checks for this exit code, one line with these words, and no file.

@@ -49,8 +49,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
     ] {
         let flags = format!("{flags} --backend cpu --quiet");
         folder.run(&format!("render {scene} -o {picture} --certify {flags}")).succeeded();
-        let run =
-            folder.run(&format!("verify {picture} --scene {scene} --json a.json")).succeeded();
+        let run = folder.run(&format!("verify {picture} --scene {scene} --json a.json")).succeeded();
         assert!(line(&run, "judged by").ends_with("intervals"), "{picture}");
         assert!(line(&run, "violated").contains(" 0 "), "{picture}");
         let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
@@ -101,8 +100,7 @@ fn forged(text: &str, argument: &str) -> String {
 #[test]
 fn what_was_changed_is_refused() {
     let folder = folder();
-    let run =
-        |flags: &str| folder.run(&format!("render {flags} --backend cpu --quiet")).succeeded();
+    let run = |flags: &str| folder.run(&format!("render {flags} --backend cpu --quiet")).succeeded();
     run("scene.toml -o a.png --certify");
     run("scene.toml -o b.png --certify --exposure 0.4");
     run("scene.toml -o plain.png");
@@ -113,15 +111,11 @@ fn what_was_changed_is_refused() {
     };
     let other = with_text(&a, |_| certificate(&b));
     let edited = with_text(&a, |text| text.replace("outcome proved", "outcome Proved"));
-    let newer =
-        with_text(&a, |text| text.replace("pinhole-certificate 1", "pinhole-certificate 9"));
+    let newer = with_text(&a, |text| text.replace("pinhole-certificate 1", "pinhole-certificate 9"));
     let unknown = with_text(&b, |text| forged(text, "--exposure=0.4"));
-    for (name, bytes) in [
-        ("other.png", other),
-        ("edited.png", edited),
-        ("newer.png", newer),
-        ("cut.png", a[..a.len() / 2].to_vec()),
-    ] {
+    for (name, bytes) in
+        [("other.png", other), ("edited.png", edited), ("newer.png", newer), ("cut.png", a[..a.len() / 2].to_vec())]
+    {
         std::fs::write(folder.path(name), bytes).unwrap();
     }
     let changed = SCENE.replace("radius = 0.5", "radius = 0.51");

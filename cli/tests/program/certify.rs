@@ -52,8 +52,7 @@ fn the_reference_is_proved() {
     assert_eq!(json["picture"]["camera"], "pinhole");
     assert_eq!(json["checked"], serde_json::json!(["id", "depth as t", "normal"]));
     assert_eq!((&json["counts"]["violated"], &json["at_most"]), (&0.into(), &48.0.into()));
-    let counted: u64 =
-        json["histogram"].as_array().unwrap().iter().map(|b| b["count"].as_u64().unwrap()).sum();
+    let counted: u64 = json["histogram"].as_array().unwrap().iter().map(|b| b["count"].as_u64().unwrap()).sum();
     assert_eq!(counted, 1200);
 }
 
@@ -67,8 +66,7 @@ fn arrays_may_be_of_several_types() {
     let bytes_i4: Vec<u8> = ids.iter().flat_map(|id| (signed(id) as i32).to_le_bytes()).collect();
     let largest = |id: &u32| if *id == u32::MAX { u64::MAX } else { u64::from(*id) };
     let bytes_u8: Vec<u8> = ids.iter().flat_map(|id| largest(id).to_le_bytes()).collect();
-    let bytes_f8: Vec<u8> =
-        depths.iter().flat_map(|depth| f64::from(*depth).to_be_bytes()).collect();
+    let bytes_f8: Vec<u8> = depths.iter().flat_map(|depth| f64::from(*depth).to_be_bytes()).collect();
     write(&folder, "depth8.npy", ">f8", &bytes_f8);
     for (dtype, bytes) in [(">i8", bytes_i8), ("<i4", bytes_i4), ("<u8", bytes_u8)] {
         write(&folder, "other.npy", dtype, &bytes);
@@ -126,15 +124,11 @@ fn rays_may_be_given() {
     let archive = zip(&[("directions.npy", &directions), ("origins.npy", &origins)], true);
     std::fs::write(folder.path("rays.npz"), archive).unwrap();
     let hit = |i: usize| i == 15 * 40 + 20;
-    let ids: Vec<u8> =
-        (0..1200).flat_map(|i| if hit(i) { 0_i32 } else { -1 }.to_le_bytes()).collect();
+    let ids: Vec<u8> = (0..1200).flat_map(|i| if hit(i) { 0_i32 } else { -1 }.to_le_bytes()).collect();
     write(&folder, "few.npy", "<i4", &ids);
-    let depths: Vec<u8> =
-        (0..1200).flat_map(|i| if hit(i) { 4.4_f32 } else { 0.0 }.to_le_bytes()).collect();
+    let depths: Vec<u8> = (0..1200).flat_map(|i| if hit(i) { 4.4_f32 } else { 0.0 }.to_le_bytes()).collect();
     write(&folder, "few-depth.npy", "<f4", &depths);
-    let run = folder
-        .run("certify scene.toml --id few.npy --depth few-depth.npy --rays rays.npz")
-        .succeeded();
+    let run = folder.run("certify scene.toml --id few.npy --depth few-depth.npy --rays rays.npz").succeeded();
     let text = String::from_utf8(run.stdout).unwrap();
     assert!(text.contains("\npicture: 40x30, given rays\n") && text.contains(" of 24\n"), "{text}");
 }
@@ -144,8 +138,6 @@ fn the_size_of_data_files_is_that_of_the_ids() {
     let folder = folder();
     let sphere = [0_f32, 0.0, 0.0, 1.0].map(f32::to_le_bytes).concat();
     std::fs::write(folder.path("one.npy"), npy("<f4", false, "(1, 4)", &sphere)).unwrap();
-    folder
-        .run("render one.npy --size 12x9 -o a.png --backend cpu --layer id=one-id.npy")
-        .succeeded();
+    folder.run("render one.npy --size 12x9 -o a.png --backend cpu --layer id=one-id.npy").succeeded();
     folder.run("certify one.npy --id one-id.npy").succeeded();
 }

@@ -23,10 +23,7 @@ fn a_trajectory_is_described_by_one_of_its_frames() {
     let second = "2\nLattice=\"9 0 0 0 8 0 0 0 7\" Properties=species:S:1:pos:R:3:radius:R:1:charge:R:1\n\
                   O 0 0 0 1 -0.5\nXx 4 0 0 2 .25\n";
     let cut = "3\ncut off\nO 0 0 0\n";
-    let folder = Folder::with(&[
-        ("two.xyz", &[WATER, second].concat()),
-        ("cut.xyz", &[WATER, cut].concat()),
-    ]);
+    let folder = Folder::with(&[("two.xyz", &[WATER, second].concat()), ("cut.xyz", &[WATER, cut].concat())]);
     assert_eq!(
         text(&folder, "info two.xyz --frame 0"),
         "two.xyz\n  format     xyz (Text with one atom on each line (XYZ))\n  size       160 bytes\n  frames     2\n  \
@@ -44,14 +41,10 @@ fn a_trajectory_is_described_by_one_of_its_frames() {
     }
     assert_eq!(compressed, plain);
     assert_eq!(plain["cell"], json!([[9.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 7.0]]));
-    assert_eq!(
-        (&plain["min"], &plain["max"]),
-        (&json!([-1.0, -2.0, -2.0]), &json!([6.0, 2.0, 2.0]))
-    );
+    assert_eq!((&plain["min"], &plain["max"]), (&json!([-1.0, -2.0, -2.0]), &json!([6.0, 2.0, 2.0])));
     let charge = json!({ "name": "charge", "kind": "numbers", "min": -0.5, "max": 0.25, "nan": 0 });
     assert_eq!(plain["columns"][1], charge);
-    let species =
-        json!({ "name": "species", "kind": "text", "different": 2, "first": ["O", "Xx"] });
+    let species = json!({ "name": "species", "kind": "text", "different": 2, "first": ["O", "Xx"] });
     assert_eq!(plain["columns"][0], species);
     assert_eq!(plain["notes"].as_array().unwrap().len(), 1);
     let cut = json_of(&folder, "info cut.xyz --json");
@@ -69,10 +62,7 @@ fn points_without_frames_and_spheres_that_cannot_be_rendered() {
          q\nelement face 1\nproperty list uchar int i\nend_header\n0 0 0 1\n2 0 0 nan\n1 0\n",
     )]);
     let report = json_of(&folder, "info a.ply --json");
-    assert_eq!(
-        (&report["kind"], &report["format"], &report["frames"]),
-        (&json!("data"), &json!("ply"), &Value::Null)
-    );
+    assert_eq!((&report["kind"], &report["format"], &report["frames"]), (&json!("data"), &json!("ply"), &Value::Null));
     assert_eq!((&report["radius_min"], &report["radius_max"]), (&json!(1.0), &json!(1.0)));
     assert_eq!(report["notes"].as_array().unwrap().len(), 2, "{report}");
     let q = json!([{ "name": "q", "kind": "numbers", "min": 1.0, "max": 1.0, "nan": 1 }]);
@@ -88,8 +78,7 @@ fn points_without_frames_and_spheres_that_cannot_be_rendered() {
 
 #[test]
 fn a_scene_file_is_described_with_its_data() {
-    let scene =
-        format!("data = 'water.xyz'\nintegrator = 'path'\n[sampling]\nsamples = 8\n{SCENE}");
+    let scene = format!("data = 'water.xyz'\nintegrator = 'path'\n[sampling]\nsamples = 8\n{SCENE}");
     let folder = Folder::with(&[("scene.toml", &scene), ("water.xyz", WATER)]);
     let report = json_of(&folder, "info scene.toml --json");
     for (key, expected) in [
@@ -106,10 +95,7 @@ fn a_scene_file_is_described_with_its_data() {
         assert_eq!(report[key], expected, "{key}");
     }
     let text = text(&folder, "info scene.toml");
-    assert!(
-        text.contains("\n  picture    40x30\n  camera     pinhole\n  integrator path\n"),
-        "{text}"
-    );
+    assert!(text.contains("\n  picture    40x30\n  camera     pinhole\n  integrator path\n"), "{text}");
 }
 
 /// Four atoms in a row, each with a number, in a cell.
@@ -142,10 +128,7 @@ fn a_selection_decides_what_is_seen_and_counted() {
     assert!(line.starts_with("row.xyz: kept 2 of 4 atoms; --style fast"), "{line}");
     // The camera frames the kept spheres, so this is the picture of a file with no others.
     let kept = decode(&folder.read("out.png"));
-    let alone = Folder::with(&[(
-        "row.xyz",
-        "2\nProperties=species:S:1:pos:R:3:q:R:1\nC 4 0 0 0.5\nC 5.5 0 0 3\n",
-    )]);
+    let alone = Folder::with(&[("row.xyz", "2\nProperties=species:S:1:pos:R:3:q:R:1\nC 4 0 0 0.5\nC 5.5 0 0 3\n")]);
     said(&alone, "row.xyz; --color-by; q");
     assert!(kept == decode(&alone.read("out.png")));
     let (notes, line) = said(&folder, "scene.toml; --select; index != 0 and not species == Q");
@@ -166,16 +149,14 @@ fn bonds_and_boxes_come_after_the_spheres_of_the_file() {
         assert!(ids.contains(&atom), "{atom}");
     }
     assert!(ids.iter().any(|id| (4..u32::MAX).contains(id)));
-    let (_, line) =
-        said(&folder, "row.xyz; --bond-length; 3.5; --select; species == C or index == 1");
+    let (_, line) = said(&folder, "row.xyz; --bond-length; 3.5; --select; species == C or index == 1");
     assert!(line.starts_with("row.xyz: kept 3 of 4 atoms, 2 bonds"), "{line}");
 }
 
 #[test]
 fn printed_scenes_select_and_add_the_same() {
     let folder = folder();
-    let mut command =
-        folder.command("render row.xyz --print-scene --style fast --size 80x20 --box --bonds=1.1");
+    let mut command = folder.command("render row.xyz --print-scene --style fast --size 80x20 --box --bonds=1.1");
     let output = command.args(["--select", "q >= 0 and species != \"O\""]).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("select = 'q >= 0 and species != \"O\"'\n"), "{text}");
@@ -189,24 +170,17 @@ fn printed_scenes_select_and_add_the_same() {
 
 #[test]
 fn frames_are_selected_one_by_one() {
-    let frames: String = (0..3)
-        .map(|frame| format!("2\nLattice=\"9 0 0 0 2 0 0 0 2\"\nO {} 0 0\nO 8 0 0\n", 2 * frame))
-        .collect();
+    let frames: String =
+        (0..3).map(|frame| format!("2\nLattice=\"9 0 0 0 2 0 0 0 2\"\nO {} 0 0\nO 8 0 0\n", 2 * frame)).collect();
     let folder = Folder::with(&[("a.xyz", &frames)]);
     let flags = "--backend cpu --style fast --size 40x20 --view z";
-    let run = folder
-        .run(&format!("render a.xyz -o f%d.png --frames : --select x<7 --box {flags}"))
-        .succeeded();
+    let run = folder.run(&format!("render a.xyz -o f%d.png --frames : --select x<7 --box {flags}")).succeeded();
     assert_eq!(run.said.unwrap().split(';').next(), Some("a.xyz: 3 pictures of kept 1 of 2 atoms"));
     let pictures: Vec<_> = (0..3).map(|i| decode(&folder.read(&format!("f{i}.png")))).collect();
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
     // The cell keeps its place, because the camera does.
     let run = folder.run(&format!("render a.xyz -o f%d.png --frames : --select x<3 {flags}"));
-    assert!(
-        run.stderr.contains("frame 2: a.xyz: --select: `x<3` selects none of the 2 spheres"),
-        "{}",
-        run.stderr
-    );
+    assert!(run.stderr.contains("frame 2: a.xyz: --select: `x<3` selects none of the 2 spheres"), "{}", run.stderr);
     assert_eq!(run.code, 1);
 }
 
@@ -249,10 +223,7 @@ fn colors_of(arguments: &str) -> (Vec<[u8; 3]>, String) {
 fn columns_color_the_spheres() {
     let (colors, says) = colors_of("--color-by charge --cmap gray --range -1,1");
     assert_eq!(colors[1..], [[128; 3], [191; 3], [255; 3]]);
-    assert_eq!(
-        says,
-        "note: `charge` of 1 sphere lies outside the range -1 to 1 and has the color of its end\n"
-    );
+    assert_eq!(says, "note: `charge` of 1 sphere lies outside the range -1 to 1 and has the color of its end\n");
     let (colors, says) = colors_of("--color-by |v| --cmap gray_r");
     assert_eq!(colors[1..], [[204; 3], [153; 3], [255; 3]]);
     assert_eq!(says, "note: colors show `|v|` from 0 to 5\n");
@@ -273,11 +244,7 @@ fn cube() -> String {
     let head = "27\nProperties=species:S:1:pos:R:3:radius:R:1:v:R:1:kind:S:1\n".to_owned();
     (0..27).fold(head, |text, i| {
         let [x, y, z] = [i % 3, i / 3 % 3, i / 9];
-        text + &format!(
-            "C {x} {y} {z} 0.6 {}.5 {}\n",
-            i * i,
-            ["water", "sodium", "chloride"][i % 3]
-        )
+        text + &format!("C {x} {y} {z} 0.6 {}.5 {}\n", i * i, ["water", "sodium", "chloride"][i % 3])
     })
 }
 
@@ -299,9 +266,7 @@ fn pixels_of(folder: &Folder, size: &str, flags: &str) -> (usize, Vec<bool>, Vec
 /// The first and the last row and column of the pixels.
 fn extent(width: usize, pixels: &[bool]) -> [[usize; 2]; 2] {
     let found = || (0..pixels.len()).filter(|pixel| pixels[*pixel]);
-    let ends = |place: &dyn Fn(usize) -> usize| {
-        [found().map(place).min().unwrap(), found().map(place).max().unwrap()]
-    };
+    let ends = |place: &dyn Fn(usize) -> usize| [found().map(place).min().unwrap(), found().map(place).max().unwrap()];
     [ends(&|pixel| pixel % width), ends(&|pixel| pixel / width)]
 }
 

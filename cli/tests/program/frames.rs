@@ -19,9 +19,7 @@ fn columns(png: &[u8]) -> Vec<usize> {
     let (width, height, rgb) = decode(png);
     let background = &rgb[..3];
     let at = |column: usize, row: usize| &rgb[3 * (row * width as usize + column)..][..3];
-    (0..width as usize)
-        .filter(|&column| (0..height as usize).any(|row| at(column, row) != background))
-        .collect()
+    (0..width as usize).filter(|&column| (0..height as usize).any(|row| at(column, row) != background)).collect()
 }
 
 /// The first and the last of these columns.
@@ -41,8 +39,7 @@ fn frames_have_numbers_and_one_camera() {
     let folder = folder();
     folder.run(&format!("render a.xyz -o f%03d.png --frames 0::2 {SMALL}")).succeeded();
     assert_eq!(folder.files(), ["a.xyz", "f000.png", "f002.png", "f004.png"]);
-    let [first, middle, last] =
-        ["f000.png", "f002.png", "f004.png"].map(|name| columns(&folder.read(name)));
+    let [first, middle, last] = ["f000.png", "f002.png", "f004.png"].map(|name| columns(&folder.read(name)));
     // The camera does not move, so the sphere goes from the left margin through the middle to the right margin.
     let width = |columns: &[usize]| columns.len();
     assert!(width(&first).abs_diff(width(&middle)) <= 1, "{first:?} {middle:?}");
@@ -54,9 +51,7 @@ fn frames_have_numbers_and_one_camera() {
 #[test]
 fn one_frame_may_say_where_the_camera_stands() {
     let folder = folder();
-    folder
-        .run(&format!("render a.xyz -o f%d.png --frames 0:2 --camera-from -5 {SMALL}"))
-        .succeeded();
+    folder.run(&format!("render a.xyz -o f%d.png --frames 0:2 --camera-from -5 {SMALL}")).succeeded();
     folder.run(&format!("render a.xyz -o one.png --frame 0 {SMALL}")).succeeded();
     assert_same(&folder, ["f0.png", "one.png"]);
     assert!(decode(&folder.read("f1.png")) != decode(&folder.read("one.png")));
@@ -65,8 +60,7 @@ fn one_frame_may_say_where_the_camera_stands() {
 #[test]
 fn layers_have_names_of_their_own() {
     let folder = folder();
-    let command =
-        format!("render a.xyz -o f%d.exr --layer depth=d%02d.npy --layer id --frames :2 {SMALL}");
+    let command = format!("render a.xyz -o f%d.exr --layer depth=d%02d.npy --layer id --frames :2 {SMALL}");
     folder.run(&command).succeeded();
     assert_eq!(folder.files(), ["a.xyz", "d00.npy", "d01.npy", "f0.exr", "f1.exr"]);
 }
@@ -75,8 +69,7 @@ fn layers_have_names_of_their_own() {
 fn resume_leaves_out_what_is_there() {
     let folder = folder();
     std::fs::write(folder.path("f1.png"), "mine").unwrap();
-    let command =
-        format!("render a.xyz -o f%d.png --frames :3 --resume {SMALL}").replace(" -q", "");
+    let command = format!("render a.xyz -o f%d.png --frames :3 --resume {SMALL}").replace(" -q", "");
     let run = folder.run(&command).succeeded();
     assert_eq!(run.stderr, "note: 1 of 3 frames are there already and are not rendered again\n");
     assert_eq!(folder.read("f1.png"), b"mine");
@@ -104,8 +97,7 @@ fn an_animated_png_has_the_pictures_of_the_files() {
     let folder = folder();
     folder.run(&format!("render a.xyz -o m.apng --fps 10 {SMALL}")).succeeded();
     folder.run(&format!("render a.xyz -o f%d.png --frames : {SMALL}")).succeeded();
-    let mut reader =
-        png::Decoder::new(std::io::Cursor::new(folder.read("m.apng"))).read_info().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(folder.read("m.apng"))).read_info().unwrap();
     let control = *reader.info().animation_control().unwrap();
     assert_eq!((control.num_frames, control.num_plays), (5, 0));
     for frame in 0..5 {
@@ -140,9 +132,7 @@ fn a_gif_has_all_frames_with_their_times() {
 #[test]
 fn y4m_on_standard_output() {
     let folder = folder();
-    let run = folder
-        .run(&format!("render a.xyz -o - --raw y4m --frames 1:3 --fps 30 {SMALL}"))
-        .succeeded();
+    let run = folder.run(&format!("render a.xyz -o - --raw y4m --frames 1:3 --fps 30 {SMALL}")).succeeded();
     let header = b"YUV4MPEG2 W40 H20 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n";
     assert_eq!(&run.stdout[..header.len()], header);
     assert_eq!(run.stdout.len(), header.len() + 2 * (6 + 3 * 40 * 20));
@@ -166,7 +156,8 @@ fn a_turntable_goes_once_around() {
 
 #[test]
 fn frames_of_the_data_of_a_scene() {
-    let scene = "data = 'a.xyz'\n[film]\nwidth = 40\nheight = 20\n[camera.pinhole]\neye = [4, 0, 40]\nlook_at = [4, 0, 0]\n";
+    let scene =
+        "data = 'a.xyz'\n[film]\nwidth = 40\nheight = 20\n[camera.pinhole]\neye = [4, 0, 40]\nlook_at = [4, 0, 0]\n";
     let folder = Folder::with(&[("a.xyz", &moving()), ("s.toml", scene)]);
     folder.run("render s.toml -o f%d.png --frames 3: --backend cpu -q").succeeded();
     folder.run("render s.toml -o one.png --frame 4 --backend cpu -q").succeeded();
@@ -211,12 +202,10 @@ mod with_a_program {
     #[test]
     fn a_failure_of_ffmpeg_is_one_line_and_no_file() {
         let folder = folder();
-        let fails = "[ \"$1\" = -version ] && exit 0\nhead -c 100 > /dev/null\necho first >&2\necho no such codec >&2\nexit 3";
+        let fails =
+            "[ \"$1\" = -version ] && exit 0\nhead -c 100 > /dev/null\necho first >&2\necho no such codec >&2\nexit 3";
         let (code, stderr) = run_with(&folder, fails, &format!("render a.xyz -o m.mkv {SMALL}"));
-        assert_eq!(
-            (code, stderr.as_str()),
-            (1, "error: m.mkv: cannot be written: ffmpeg failed: no such codec\n")
-        );
+        assert_eq!((code, stderr.as_str()), (1, "error: m.mkv: cannot be written: ffmpeg failed: no such codec\n"));
         assert_eq!(folder.files(), ["a.xyz"]);
     }
 
@@ -227,10 +216,7 @@ mod with_a_program {
         let output = command.env("PATH", folder.path("")).output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{stderr}");
-        assert!(
-            stderr.contains("ffmpeg") && stderr.contains(".apng, .gif or f%04d.png"),
-            "{stderr}"
-        );
+        assert!(stderr.contains("ffmpeg") && stderr.contains(".apng, .gif or f%04d.png"), "{stderr}");
         assert_eq!(stderr.lines().count(), 1);
         assert_eq!(folder.files(), ["a.xyz"]);
     }
@@ -238,8 +224,7 @@ mod with_a_program {
     /// After Ctrl-C there are only whole files, and `--resume` makes the others.
     #[test]
     fn a_signal_keeps_the_frames_that_are_complete() {
-        let text: String =
-            (0..400).map(|i| format!("1\n\nO {} 0 0\n", f64::from(i) * 0.01)).collect();
+        let text: String = (0..400).map(|i| format!("1\n\nO {} 0 0\n", f64::from(i) * 0.01)).collect();
         let folder = Folder::with(&[("a.xyz", &text)]);
         let arguments = "render a.xyz -o f%03d.png --frames : --backend cpu --size 160x120 -q";
         let mut command = folder.command(arguments);
@@ -253,10 +238,7 @@ mod with_a_program {
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(130), "{stderr}");
-        assert_eq!(
-            stderr,
-            "stopped; the frames that were written are complete, and --resume goes on after them\n"
-        );
+        assert_eq!(stderr, "stopped; the frames that were written are complete, and --resume goes on after them\n");
         let files = folder.files();
         assert!(files.len() > 3 && files.len() < 401, "{}", files.len());
         for (number, name) in files.iter().skip(1).enumerate() {
@@ -289,9 +271,7 @@ fn one_scene_has_the_pictures_up_to_the_last_key() {
     folder.run(&format!("render s.toml -o one.png {flags} {MOVED}")).succeeded();
     assert!(decode(&folder.read("one.png")) == decode(&folder.read("f2.png")));
     // --frames chooses some pictures, which do not change.
-    folder
-        .run(&format!("render s.toml -o g%d.png --camera-path p.toml --frames 1: {MOVED}"))
-        .succeeded();
+    folder.run(&format!("render s.toml -o g%d.png --camera-path p.toml --frames 1: {MOVED}")).succeeded();
     assert!(decode(&folder.read("g1.png")) == decode(&folder.read("f1.png")));
     assert!(!folder.files().contains(&"g0.png".to_owned()));
 }
@@ -349,7 +329,8 @@ fn times_are_seconds_of_the_movie() {
 /// Two atoms at the ends of a rod. The rod is long from its side and short from its end, and it always fits.
 #[test]
 fn views_go_around_the_scene() {
-    let path = "[[keys]]\nframe = 0\nview = '0,0'\nzoom = 1\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
+    let path =
+        "[[keys]]\nframe = 0\nview = '0,0'\nzoom = 1\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
     let rod = "2\nrod\nO -4 0 0\nO 4 0 0\n";
     let folder = Folder::with(&[("rod.xyz", rod), ("p.toml", path)]);
     folder.run(&format!("render rod.xyz -o f%d.png --camera-path p.toml {MOVED}")).succeeded();
@@ -377,8 +358,7 @@ fn colors_of(kind: char, frames: &[&[&str]], flags: &str) -> (Vec<Vec<[u8; 3]>>,
     let text: String = frames.iter().map(|values| frame(kind, values)).collect();
     let folder = Folder::with(&[("a.xyz", &text), ("scene.toml", FLAT)]);
     let legend = "--legend=top --text-scale 0.5";
-    let frames_flag =
-        format!("-o f%d.png --frames : --color-by v -q --backend cpu {legend} {flags}");
+    let frames_flag = format!("-o f%d.png --frames : --color-by v -q --backend cpu {legend} {flags}");
     folder.run(&format!("render scene.toml {frames_flag}")).succeeded();
     let pictures = frames.iter().enumerate().map(|(number, values)| {
         let (_, _, rgb) = decode(&folder.read(&format!("f{number}.png")));

@@ -11,8 +11,7 @@ fn folder() -> Folder {
     let bytes = |columns: usize| -> Vec<u8> {
         ROWS.iter().flat_map(|row| row[..columns].to_vec()).flat_map(f32::to_le_bytes).collect()
     };
-    let wide: Vec<u8> =
-        ROWS.as_flattened().iter().flat_map(|x| f64::from(*x).to_be_bytes()).collect();
+    let wide: Vec<u8> = ROWS.as_flattened().iter().flat_map(|x| f64::from(*x).to_be_bytes()).collect();
     let whole = npy("<f4", false, "(2, 4)", &bytes(4));
     for (name, contents) in [
         ("a.npy", whole.clone()),
@@ -66,10 +65,7 @@ fn the_same_spheres_in_every_format() {
     }
     assert_ne!(picture(&folder, "a.npy --color red"), expected);
     let none = folder.run("render none.npy -o none.png --backend cpu --size 24x16").succeeded();
-    assert_eq!(
-        none.stderr,
-        "note: none.npy: the file has no spheres, so the picture shows only the background\n"
-    );
+    assert_eq!(none.stderr, "note: none.npy: the file has no spheres, so the picture shows only the background\n");
     let (_, _, rgb) = decode(&folder.read("none.png"));
     assert!(rgb.chunks(3).all(|rgb| rgb == [0xf3, 0xf4, 0xf6]));
     for (name, scene) in [
@@ -157,11 +153,7 @@ fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
     assert!(!folder.path("gpu.png").exists());
     let run = folder.run_without_drivers("demo --backend gpu");
     assert_eq!(run.code, 1);
-    assert_eq!(
-        folder.files(),
-        ["cpu.png", "out.png", "scene.toml"],
-        "a failed demo leaves nothing"
-    );
+    assert_eq!(folder.files(), ["cpu.png", "out.png", "scene.toml"], "a failed demo leaves nothing");
 
     let run = folder.run_without_drivers("info").succeeded();
     let text = String::from_utf8(run.stdout).unwrap();
@@ -190,9 +182,7 @@ fn frames_of_a_trajectory() {
     let scene = "style = 'default'\ndata = 'two.xyz'\nframe = 1\n[film]\nwidth = 32\nheight = 32\n";
     let folder = Folder::with(&[("two.xyz", &text), ("scene.toml", scene)]);
     let render = |arguments: &str| {
-        folder
-            .run(&format!("render {arguments} --size 32x32 --backend cpu --view iso"))
-            .succeeded();
+        folder.run(&format!("render {arguments} --size 32x32 --backend cpu --view iso")).succeeded();
     };
     render("two.xyz -o first.png");
     render("two.xyz -o second.png --frame 1");
@@ -281,10 +271,7 @@ fn the_content_shows_the_format_where_the_name_does_not() {
         ("water.xyz", WATER),
         ("water.dat", WATER),
         ("water", WATER),
-        (
-            "scene.toml",
-            "style = \"default\"\ndata = \"water.dat\"\n[camera.pinhole]\ndirection = [0, -1, 0]\n",
-        ),
+        ("scene.toml", "style = \"default\"\ndata = \"water.dat\"\n[camera.pinhole]\ndirection = [0, -1, 0]\n"),
     ]);
     folder.run("render water.xyz -o wanted.png --backend cpu --size 20x16").succeeded();
     for file in ["water.dat", "water", "scene.toml"] {
@@ -356,11 +343,7 @@ fn one_file_by_a_link() {
         if is_there {
             std::fs::write(folder.path("d.npy"), "old").unwrap();
         }
-        folder.refuses(
-            &format!("render scene.toml --backend cpu -o out.png {output}"),
-            2,
-            "two outputs",
-        );
+        folder.refuses(&format!("render scene.toml --backend cpu -o out.png {output}"), 2, "two outputs");
         assert_eq!(folder.path("d.npy").exists(), is_there);
     }
 }
@@ -370,10 +353,9 @@ fn inputs_are_not_overwritten() {
     let folder = Folder::with(&[("scene.toml", "data = 'in.npy'\n")]);
     folder.run("generate random -n 10 -o in.npy").succeeded();
     let spheres = folder.read("in.npy");
-    for arguments in [
-        "render in.npy -o out.png --layer depth=in.npy",
-        "render scene.toml -o out.png --layer id=./in.npy",
-    ] {
+    for arguments in
+        ["render in.npy -o out.png --layer depth=in.npy", "render scene.toml -o out.png --layer id=./in.npy"]
+    {
         let words = "in.npy: this output is also an input";
         folder.refuses(&format!("{arguments} --backend cpu"), 2, words);
         assert_eq!(folder.read("in.npy"), spheres);

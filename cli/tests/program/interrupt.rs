@@ -15,8 +15,7 @@ const LATER: Duration = Duration::from_millis(700);
 
 /// A command that takes the CPU reference hours.
 #[cfg(unix)]
-const LONG: &str =
-    "render many.npy -o out.png --layer id=id.npy --backend cpu --size 4000x4000 --samples 999";
+const LONG: &str = "render many.npy -o out.png --layer id=id.npy --backend cpu --size 4000x4000 --samples 999";
 
 #[cfg(unix)]
 fn start(folder: &Folder, arguments: &str) -> Child {
@@ -141,8 +140,7 @@ fn noise_decides_how_many_samples_there_are() {
 #[test]
 fn a_time_gives_at_least_one_sample() {
     let folder = folder();
-    for (flags, most) in [("--time 0.001s --keep-partial", u32::MAX), ("--time 1h --samples 3", 3)]
-    {
+    for (flags, most) in [("--time 0.001s --keep-partial", u32::MAX), ("--time 1h --samples 3", 3)] {
         let run = folder.run(&format!("{LIT_RENDER} {flags}"));
         assert_eq!(run.code, 0, "{}", run.stderr);
         let [least, found] = samples(&folder);
@@ -166,9 +164,7 @@ fn a_time_gives_at_least_one_sample() {
 #[test]
 fn two_eyes_share_the_time() {
     let folder = folder();
-    folder
-        .run(&format!("{LIT_RENDER} --stereo side-by-side --separation 0.1 --time 1s"))
-        .succeeded();
+    folder.run(&format!("{LIT_RENDER} --stereo side-by-side --separation 0.1 --time 1s")).succeeded();
     let [least, most] = samples(&folder);
     assert!(least > 1 && most < 1 << 24, "{least} to {most}");
 }

@@ -134,9 +134,7 @@ fn clocks_that_differ_do_no_harm() {
 fn a_part_that_hangs_ends_with_a_code_of_its_own() {
     let folder = folder();
     folder.run("generate random -n 20000 -o many.npy").succeeded();
-    folder
-        .run("job split many.npy --backend cpu --size 3000x3000 --samples 99 -o job -q")
-        .succeeded();
+    folder.run("job split many.npy --backend cpu --size 3000x3000 --samples 99 -o job -q").succeeded();
     let words = "error: unit 0 did not end within 0.5 s; the device may hang: try again\n";
     folder.refuses("job part job 0 --timeout 0.5 -q", 5, words);
     assert!(fs::read_dir(folder.path("job/parts")).unwrap().next().is_none());
@@ -146,9 +144,7 @@ fn a_part_that_hangs_ends_with_a_code_of_its_own() {
 fn a_signal_leaves_whole_parts_alone() {
     let folder = folder();
     folder.run("generate random -n 20000 -o many.npy").succeeded();
-    folder
-        .run("job split many.npy --backend cpu --size 2000x2000 --samples 99 -o job -q")
-        .succeeded();
+    folder.run("job split many.npy --backend cpu --size 2000x2000 --samples 99 -o job -q").succeeded();
     let child = folder.command("job part job 0").stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(700));
     send("-TERM", &child);
@@ -217,9 +213,7 @@ fn with_scripts() -> Folder {
     fs::create_dir(folder.path("bin")).unwrap();
     fs::write(folder.path("bin/sbatch"), SBATCH).unwrap();
     fs::set_permissions(folder.path("bin/sbatch"), fs::Permissions::from_mode(0o755)).unwrap();
-    folder
-        .run("job split a.xyz --frames : --tiles 2x1 --backend cpu --size 40x30 -o JOB -q")
-        .succeeded();
+    folder.run("job split a.xyz --frames : --tiles 2x1 --backend cpu --size 40x30 -o JOB -q").succeeded();
     fs::rename(folder.path("JOB"), folder.path("job")).unwrap();
     std::os::unix::fs::symlink("job", folder.path("JOB")).unwrap();
     folder

@@ -74,17 +74,10 @@ fn assert_same(flags: &str, tiles: &str, outputs: &str) {
         .split_whitespace()
         .filter_map(|word| word.split_once('=').map(|(layer, _)| layer).or(Some(word)))
         .collect();
-    let names: String = layers
-        .windows(2)
-        .filter(|pair| pair[0] == "--layer")
-        .map(|pair| format!(" --layer {}", pair[1]))
-        .collect();
+    let names: String =
+        layers.windows(2).filter(|pair| pair[0] == "--layer").map(|pair| format!(" --layer {}", pair[1])).collect();
     let exr = if outputs.contains(".exr") { "--exr" } else { "" };
-    let merged = through_parts(
-        &folder,
-        &format!("{flags} --tiles {tiles} {exr}{names}"),
-        &outputs.replace('@', "m"),
-    );
+    let merged = through_parts(&folder, &format!("{flags} --tiles {tiles} {exr}{names}"), &outputs.replace('@', "m"));
     assert_eq!(merged.stderr, "", "{flags}");
     let outputs = outputs.replace('@', "r");
     let rendered = folder.run(&format!("render {flags} {outputs} --backend cpu -q")).succeeded();
@@ -108,11 +101,7 @@ fn single_pictures_are_the_same_bytes() {
     assert_same("a.xyz --size 61x47 --samples 3", "4x4", "-o -");
     // Outlines, denoising, and layers that guide neither.
     let layers = "--layer depth=@-d.npy --layer id=@-i.npy --layer variance=@-v.npy";
-    assert_same(
-        "a.xyz --size 61x47 --samples 3 --outline 3",
-        "5x3",
-        &format!("-o @-.png {layers}"),
-    );
+    assert_same("a.xyz --size 61x47 --samples 3 --outline 3", "5x3", &format!("-o @-.png {layers}"));
     assert_same("path.toml", "3x4", &format!("-o @-.png {layers}"));
     assert_same("path.toml", "2x2", "-o @-.exr --layer normal --layer samples");
     assert_same("stereo.toml --samples 2", "3x2", "-o @-.png --layer position=@-p.npy");
@@ -269,11 +258,7 @@ fn missing_damaged_and_foreign_groups_are_named() {
 /// A complete job of four parts.
 fn complete() -> Folder {
     let folder = folder();
-    through_parts(
-        &folder,
-        "a.xyz --frames :2 --tiles 2x1 --size 40x30 --samples 2",
-        "-o good%d.png",
-    );
+    through_parts(&folder, "a.xyz --frames :2 --tiles 2x1 --size 40x30 --samples 2", "-o good%d.png");
     folder
 }
 
@@ -333,8 +318,7 @@ fn damaged_files_of_a_job_are_refused() {
 #[test]
 fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
     let folder = complete();
-    let good: Vec<Vec<u8>> =
-        (0..4).map(|unit| std::fs::read(part(&folder, unit)).unwrap()).collect();
+    let good: Vec<Vec<u8>> = (0..4).map(|unit| std::fs::read(part(&folder, unit)).unwrap()).collect();
     let put = |unit: usize, bytes: &[u8]| std::fs::write(part(&folder, unit), bytes).unwrap();
     let flipped = |at: usize| {
         let mut bytes = good[0].clone();
@@ -343,17 +327,12 @@ fn damaged_and_foreign_parts_are_refused_and_rendered_again() {
     };
     let end = good[0].len();
     // One byte is changed: of the start, the header's length, the header, the pixels, or the digest.
-    let mut damaged: Vec<Vec<u8>> =
-        [0, 16, 20, 60, 200, end / 2, end - 33, end - 32, end - 1].map(flipped).to_vec();
+    let mut damaged: Vec<Vec<u8>> = [0, 16, 20, 60, 200, end / 2, end - 33, end - 32, end - 1].map(flipped).to_vec();
     damaged.extend([vec![], good[0][..end / 2].to_vec(), good[0][..end - 1].to_vec()]);
     damaged.extend([[&good[0][..], b"x"].concat(), vec![0; end], b"pinhole part 1\n".to_vec()]);
     for bytes in damaged {
         put(0, &bytes);
-        folder.refuses(
-            "job merge job -o m%d.png",
-            1,
-            "damaged 0; render them again with --array=0",
-        );
+        folder.refuses("job merge job -o m%d.png", 1, "damaged 0; render them again with --array=0");
         assert_eq!(missing(&folder), [0]);
         folder.run("job part job 0 -q").succeeded();
         assert_eq!(missing(&folder), [0_usize; 0]);

@@ -81,8 +81,7 @@ fn a_full_disk_leaves_one_line_and_no_file() {
     let folder = folder();
     for output in ["out.exr", "out.png"] {
         // The limit is 4 KiB, so that the empty file can be created that is tried before the work.
-        let run =
-            folder.run_with_blocks(8, &format!("render three.toml -o {output} --backend cpu"));
+        let run = folder.run_with_blocks(8, &format!("render three.toml -o {output} --backend cpu"));
         run.refused(1, &format!("{output}: cannot be written: File too large"));
         assert_eq!(folder.files(), ["scene.toml", "three.toml"]);
     }
@@ -143,12 +142,8 @@ fn primary_rays_are_an_integrator() {
     let lit = scene("[studio]\n[studio.occlusion]\n[sampling]\nsamples = 3\n");
     let asked = scene("integrator = 'primary'\n");
     let clear = format!("{asked}opacity = 0.5\n");
-    let folder = Folder::with(&[
-        ("scene.toml", LIT),
-        ("lit.toml", &lit),
-        ("asked.toml", &asked),
-        ("clear.toml", &clear),
-    ]);
+    let folder =
+        Folder::with(&[("scene.toml", LIT), ("lit.toml", &lit), ("asked.toml", &asked), ("clear.toml", &clear)]);
     let render = |arguments: &str| {
         let run = folder.run(&format!("render {arguments} -o out.png --backend cpu")).succeeded();
         (folder.read("out.png"), run.stderr)
@@ -156,9 +151,7 @@ fn primary_rays_are_an_integrator() {
     for transparent in ["", " --transparent"] {
         let plain = render(&format!("scene.toml{transparent}"));
         assert_eq!(plain.1, "");
-        for view in
-            ["scene.toml --integrator primary", "lit.toml --integrator primary", "asked.toml"]
-        {
+        for view in ["scene.toml --integrator primary", "lit.toml --integrator primary", "asked.toml"] {
             assert!(render(&format!("{view}{transparent}")) == plain, "{view}{transparent}");
         }
         let (picture, said) = render(&format!("clear.toml{transparent}"));
@@ -175,8 +168,7 @@ fn notes_tell_what_is_not_drawn_as_asked() {
     let folder = Folder::with(&[("glass.toml", &text), ("water.xyz", "1\n\nO 0 0 0\n")]);
     let run = folder.run("render glass.toml -o out.png --backend cpu --samples 1").succeeded();
     assert!(run.stderr.starts_with("note: metal and glass are matt in a studio"), "{}", run.stderr);
-    let run =
-        folder.run("render glass.toml -o out.png --backend cpu --samples 1 --integrator path");
+    let run = folder.run("render glass.toml -o out.png --backend cpu --samples 1 --integrator path");
     assert_eq!(run.succeeded().stderr, "");
 
     let text = "data = 'water.xyz'\n[elements.O]\ncolor = 'blue'\n[elements.Fe]\nopacity = 0.5\n[film]\nwidth = 8\nheight = 8\n";
@@ -232,10 +224,7 @@ fn a_printed_scene_gives_the_same_bytes() {
         assert_eq!(run.stderr, "", "{arguments}");
         std::fs::write(folder.path("printed.toml"), &run.stdout).unwrap();
         let text = String::from_utf8(run.stdout).unwrap();
-        assert!(
-            picture(&folder, arguments) == picture(&folder, "printed.toml"),
-            "{arguments}\n{text}"
-        );
+        assert!(picture(&folder, arguments) == picture(&folder, "printed.toml"), "{arguments}\n{text}");
         // Printing a printed scene gives the same text again, apart from its name.
         let again = folder.run("render printed.toml --print-scene --quiet").succeeded();
         let again = String::from_utf8(again.stdout).unwrap();
@@ -248,8 +237,7 @@ fn a_printed_scene_gives_the_same_bytes() {
 fn the_line_about_a_picture_has_flags_to_use_again() {
     let folder = Folder::with(&DATA);
     let small = "-o out.png --backend cpu --size 20x15 --samples 1";
-    let said =
-        |arguments: &str| folder.run(&format!("render {arguments} {small}")).succeeded().said;
+    let said = |arguments: &str| folder.run(&format!("render {arguments} {small}")).succeeded().said;
     let start = |text: &str| said(text).unwrap().rsplit_once("; ").unwrap().0.to_owned();
     assert_eq!(start("water.xyz"), "water.xyz: 3 atoms; --style default --view y");
     assert_eq!(
@@ -257,10 +245,7 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
         "water.xyz: 3 atoms; --style flat --view 30,20 --turn 5"
     );
     assert_eq!(start("scene.toml"), "scene.toml: 1 sphere");
-    assert_eq!(
-        start("kinds.csv"),
-        "kinds.csv: 3 atoms; --style default --view z --color-by species"
-    );
+    assert_eq!(start("kinds.csv"), "kinds.csv: 3 atoms; --style default --view z --color-by species");
     assert_eq!(start("kinds.csv --color red"), "kinds.csv: 3 atoms; --style default --view z");
     assert_eq!(said("water.xyz --quiet"), None);
 }
@@ -270,8 +255,7 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
 fn the_background_survives_every_tone_curve() {
     let folder = Folder::with(&DATA);
     for style in ["default", "fast", "flat", "studio", "illustration", "path"] {
-        let small =
-            format!("water.xyz --size 24x18 --style {style} --background #808080 --zoom 0.5");
+        let small = format!("water.xyz --size 24x18 --style {style} --background #808080 --zoom 0.5");
         let small = if style == "fast" { small } else { format!("{small} --samples 1") };
         // With path tracing, the ground hides the background.
         let small = format!("{small} --view z");
@@ -302,7 +286,8 @@ fn kinds_are_colored_where_nothing_else_gives_colors() {
     let folder = Folder::with(&DATA);
     let small = "--size 30x20 --style flat --view z";
     let run = folder.run(&format!("render kinds.csv {small} -o a.png --backend cpu"));
-    let note = "note: kinds.csv: there are no colors; the spheres are colored by species; --color CSS gives all one color";
+    let note =
+        "note: kinds.csv: there are no colors; the spheres are colored by species; --color CSS gives all one color";
     assert!(run.stderr.lines().any(|line| line == note), "{}", run.stderr);
     let by = |flags: &str| picture(&folder, &format!("kinds.csv {small} {flags}"));
     let (default, explicit, one) = (by(""), by("--color-by species"), by("--color #123456"));

@@ -27,11 +27,7 @@ const UPDATE: &str = "PINHOLE_UPDATE_SNAPSHOTS";
 /// Compares the files in a folder that a test concerns with the results of `find` for their names and texts, or
 /// writes them.
 #[track_caller]
-fn compare(
-    folder: &str,
-    is_about: impl Fn(&str) -> bool,
-    find: impl Fn(&str, &str) -> String + Sync,
-) {
+fn compare(folder: &str, is_about: impl Fn(&str) -> bool, find: impl Fn(&str, &str) -> String + Sync) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let compared = |name: &str| {
         let file = folder.join(name).with_extension("txt");
@@ -51,8 +47,7 @@ fn compare(
     assert!(!names.is_empty(), "there is nothing to compare");
     let differences: String = std::thread::scope(|scope| {
         let compared = &compared;
-        let threads: Vec<_> =
-            names.iter().map(|name| scope.spawn(move || compared(name))).collect();
+        let threads: Vec<_> = names.iter().map(|name| scope.spawn(move || compared(name))).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
     assert!(
@@ -73,8 +68,7 @@ fn help() {
         SNAPSHOTS,
         |name| name.starts_with("help") || name == BRIEF,
         |name, _| {
-            let (start, flag) =
-                if name == BRIEF { (BRIEF, "render -h") } else { ("help", "--help") };
+            let (start, flag) = if name == BRIEF { (BRIEF, "render -h") } else { ("help", "--help") };
             let command = name[start.len()..].replace('-', " ");
             let run = folder.run(&format!("{command} {flag}")).succeeded();
             assert_eq!(run.stderr, "", "{command}");
@@ -83,8 +77,7 @@ fn help() {
                 return text;
             }
             // The flags that a command shares with `render` are in that file alone.
-            let is_own =
-                |part: &&str| part.starts_with("Usage") || !of_render.contains(part.trim_end());
+            let is_own = |part: &&str| part.starts_with("Usage") || !of_render.contains(part.trim_end());
             text.split("\n\n").filter(is_own).collect::<Vec<_>>().join("\n\n")
         },
     );
@@ -144,9 +137,7 @@ fn every_kernel_is_written() {
     let pipelines = String::from_utf8(folder.read("kernels/pipelines.txt")).unwrap();
     let text = String::from_utf8(run.stdout).unwrap();
     let (kernels, of) = (names.len() - 1, pipelines.lines().count());
-    let expected = format!(
-        "kernels: {kernels} kernels, and pipelines.txt with the constants of {of} pipelines\n"
-    );
+    let expected = format!("kernels: {kernels} kernels, and pipelines.txt with the constants of {of} pipelines\n");
     assert_eq!(text, expected);
     for name in names.into_iter().filter(|name| name != "pipelines.txt") {
         assert!(pipelines.lines().any(|line| line.split(' ').next() == Some(&name)), "{name}");

@@ -104,9 +104,7 @@ impl Run {
     fn new(output: Output) -> Self {
         let text = String::from_utf8(output.stderr).unwrap();
         let is_said = |line: &&str| {
-            !line.starts_with("note: ")
-                && line.ends_with(" s")
-                && (line.contains(" sphere") || line.contains(" atom"))
+            !line.starts_with("note: ") && line.ends_with(" s") && (line.contains(" sphere") || line.contains(" atom"))
         };
         let said = text.lines().last().filter(is_said).map(str::to_owned);
         let length = said.as_ref().map_or(0, |line| line.len() + 1);
@@ -144,7 +142,6 @@ pub(crate) fn send(signal: &str, to: &std::process::Child) {
 
 /// Width, height and RGB bytes of a PNG.
 pub(crate) fn decode(png: &[u8]) -> (u32, u32, Vec<u8>) {
-    let image =
-        image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap().to_rgb8();
+    let image = image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap().to_rgb8();
     (image.width(), image.height(), image.into_raw())
 }

@@ -31,10 +31,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
         },
         film,
         primary: settings.primary().unwrap(),
-        pixels: vec![
-            TracedPixel { ray: None, t: 1e30, id: u32::MAX, shading_ray: None };
-            (width * height) as usize
-        ],
+        pixels: vec![TracedPixel { ray: None, t: 1e30, id: u32::MAX, shading_ray: None }; (width * height) as usize],
         image: cpu::render(&scene, &View::new(&camera, film), &settings, LayerSet::DATA).unwrap(),
         rendered: PlainRender::None,
     };
@@ -178,11 +175,7 @@ fn runs_that_are_damaged() {
             &other,
             "other: run file of version 8; this program reads version 7; record it again with `verify --save`",
         ),
-        (
-            "none",
-            b"PK\x03\x04 something else",
-            "none: this is not a run file; `pinhole verify --save`",
-        ),
+        ("none", b"PK\x03\x04 something else", "none: this is not a run file; `pinhole verify --save`"),
         ("empty", b"", "empty: this is not a run file"),
     ] {
         std::fs::write(folder.path(name), contents).unwrap();

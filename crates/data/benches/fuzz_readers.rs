@@ -7,12 +7,7 @@
 //! ```
 //!
 //! A file that fails is written into the current folder as `fuzz-FORMAT-NUMBER`.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    clippy::panic,
-    reason = "a benchmark may panic, and prints"
-)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic, reason = "a benchmark may panic, and prints")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
@@ -44,13 +39,10 @@ const SHOWN: u64 = 3;
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let numbers: Vec<u64> = wanted.iter().filter_map(|word| word.parse().ok()).collect();
-    let (count, first) =
-        (numbers.first().copied().unwrap_or(20_000), numbers.get(1).copied().unwrap_or(0));
+    let (count, first) = (numbers.first().copied().unwrap_or(20_000), numbers.get(1).copied().unwrap_or(0));
     let formats: Vec<_> = FORMATS
         .iter()
-        .filter(|format| {
-            wanted.len() == numbers.len() || wanted.iter().any(|word| word == format.name)
-        })
+        .filter(|format| wanted.len() == numbers.len() || wanted.iter().any(|word| word == format.name))
         .collect();
     let each = count.div_ceil(formats.len().max(1) as u64);
     println!("{each} damaged files of each format, from seed {first}");
@@ -74,16 +66,13 @@ fn run(format: &'static Format, count: u64, first: u64) -> u64 {
         let bytes = damage::damaged(&seed.bytes, other, &mut random);
         MEMORY.reset_peak_usage();
         let before = MEMORY.current_usage();
-        let read = catch_unwind(AssertUnwindSafe(|| {
-            damage::read_all(format, &bytes, &seed.options, &file, &mut random)
-        }));
+        let read =
+            catch_unwind(AssertUnwindSafe(|| damage::read_all(format, &bytes, &seed.options, &file, &mut random)));
         let memory = MEMORY.peak_usage().saturating_sub(before);
         let is_much = memory > BYTES_PER_BYTE * bytes.len() + MORE_BYTES;
         let (taken, problem) = match read {
             Ok(Ok(taken)) if taken > damage::SLOW => (taken, Some(format!("it takes {taken:?}"))),
-            Ok(Ok(taken)) if is_much => {
-                (taken, Some(format!("{} bytes take {memory} bytes of memory", bytes.len())))
-            }
+            Ok(Ok(taken)) if is_much => (taken, Some(format!("{} bytes take {memory} bytes of memory", bytes.len()))),
             Ok(Ok(taken)) => (taken, None),
             Ok(Err(what)) => (Duration::ZERO, Some(what)),
             Err(_) => (Duration::ZERO, Some("it panics".to_owned())),

@@ -35,9 +35,7 @@ pub enum ColumnError {
         columns: String,
     },
     /// The values are text, but numbers are needed.
-    #[error(
-        "the column `{name}` holds text, but numbers are needed here; the columns of numbers are {columns}"
-    )]
+    #[error("the column `{name}` holds text, but numbers are needed here; the columns of numbers are {columns}")]
     Text {
         /// The name of the column.
         name: String,
@@ -62,18 +60,11 @@ pub enum ColumnError {
 ///
 /// # Errors
 /// Returns an error if there is no such column, or if it does not have one value for each sphere.
-pub fn column<'a>(
-    name: &str,
-    spheres: &SphereArray,
-    columns: &'a [Column],
-) -> Result<NamedColumn<'a>, ColumnError> {
+pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> Result<NamedColumn<'a>, ColumnError> {
     let name = name.trim();
     if let Some(column) = named(name, columns) {
         check_count(column, spheres)?;
-        return Ok(NamedColumn {
-            name: column.name.clone(),
-            values: Cow::Borrowed(&column.values),
-        });
+        return Ok(NamedColumn { name: column.name.clone(), values: Cow::Borrowed(&column.values) });
     }
     if let Some(built_in) = BUILT_IN.into_iter().find(|known| known.eq_ignore_ascii_case(name)) {
         let values = built_in_values(built_in, spheres);

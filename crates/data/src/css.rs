@@ -10,9 +10,8 @@ use pinhole::internals::text::shortened;
 /// Returns an error if the text is not a valid colour, or the colour is not opaque.
 pub fn color(text: &str) -> Result<LinearRgb, CssError> {
     let refused = |what| CssError(format!("`{}` is not {what}", shortened(text)));
-    let color = csscolorparser::parse(text).map_err(|_| {
-        refused("a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")
-    })?;
+    let color = csscolorparser::parse(text)
+        .map_err(|_| refused("a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]"))?;
     if color.a < 1.0 {
         return Err(refused("opaque; a color here cannot have alpha"));
     }

@@ -30,11 +30,7 @@ enum Kind {
 impl Bsdf {
     /// The BSDF of a surface for light towards the local direction `out`. `None` for an emissive sphere, which does not
     /// scatter light.
-    pub(super) fn of(
-        context: &LightingContext<'_>,
-        interaction: &Interaction,
-        out: DVec3,
-    ) -> Option<Self> {
+    pub(super) fn of(context: &LightingContext<'_>, interaction: &Interaction, out: DVec3) -> Option<Self> {
         // Clamped so that divisions by the cosine are safe.
         let out = DVec3::new(out.x, out.y, out.z.max(MIN_COSINE));
         let color = context.color(interaction.surface);
@@ -44,8 +40,7 @@ impl Bsdf {
         let energy = |table: usize| energy::lookup(context.energy(id, table), out.z);
         let kind = match context.scene.surface(id).material {
             Material::Lambert { specular, roughness } => {
-                let lobe = (specular > 0.0)
-                    .then(|| (Ggx::of_roughness(roughness), f64::from(specular), energy(0)));
+                let lobe = (specular > 0.0).then(|| (Ggx::of_roughness(roughness), f64::from(specular), energy(0)));
                 Kind::Lambert(Lambert { color, lobe })
             }
             Material::Conductor { roughness } => {
@@ -67,11 +62,7 @@ impl Bsdf {
     }
 
     /// The BSDF that the studio integrator uses. Metal and glass become matt. Lambert surfaces keep their lobe.
-    pub(super) fn in_studio(
-        context: &LightingContext<'_>,
-        interaction: &Interaction,
-        out: DVec3,
-    ) -> Option<Self> {
+    pub(super) fn in_studio(context: &LightingContext<'_>, interaction: &Interaction, out: DVec3) -> Option<Self> {
         let bsdf = Self::of(context, interaction, out)?;
         Some(match bsdf.kind {
             Kind::Lambert(_) => bsdf,
@@ -224,11 +215,8 @@ impl Dielectric {
         let cosine = out.dot(h);
         let (reflected, inside) = fresnel(cosine, self.eta);
         let is_reflected = choice < reflected;
-        let direction = if is_reflected {
-            mirrored(out, h)
-        } else {
-            -out / self.eta + (cosine / self.eta - inside) * h
-        };
+        let direction =
+            if is_reflected { mirrored(out, h) } else { -out / self.eta + (cosine / self.eta - inside) * h };
         let goes_where_it_should = if is_reflected { direction.z > 0.0 } else { direction.z < 0.0 };
         if !goes_where_it_should {
             return None;
@@ -301,11 +289,7 @@ impl Ggx {
         let alpha = self.0;
         let stretched = DVec3::new(alpha * out.x, alpha * out.y, out.z).normalize_or(DVec3::Z);
         let square = stretched.x * stretched.x + stretched.y * stretched.y;
-        let first = if square > 1e-12 {
-            DVec3::new(-stretched.y, stretched.x, 0.0) / square.sqrt()
-        } else {
-            DVec3::X
-        };
+        let first = if square > 1e-12 { DVec3::new(-stretched.y, stretched.x, 0.0) / square.sqrt() } else { DVec3::X };
         let second = stretched.cross(first);
         let spot = disk(u);
         let s = 0.5 * (1.0 + stretched.z);

@@ -59,19 +59,13 @@ pub(super) struct SkyImage<'a> {
 }
 
 impl<'a> LightingContext<'a> {
-    pub(super) fn new(
-        search: Search<'a>,
-        camera: &dyn Camera,
-        settings: &'a RenderSettings,
-    ) -> Self {
+    pub(super) fn new(search: Search<'a>, camera: &dyn Camera, settings: &'a RenderSettings) -> Self {
         let scene = search.scene();
         let origin = scene.origin();
         let vectors = camera.vectors();
         let lights = settings.lights.iter().filter_map(|light| light.in_view(&vectors));
         let lights = lights.map(|light| match light {
-            LightKind::Point { position, intensity } => {
-                LightKind::Point { position: position - origin, intensity }
-            }
+            LightKind::Point { position, intensity } => LightKind::Point { position: position - origin, intensity },
             LightKind::Sphere { center, radius, radiance } => {
                 LightKind::Sphere { center: center - origin, radius, radiance }
             }
@@ -86,9 +80,7 @@ impl<'a> LightingContext<'a> {
             })
         });
         let sky_image = match &settings.sky.light {
-            SkyLight::Image { environment, strength, rotation }
-                if *strength > 0.0 && environment.has_light() =>
-            {
+            SkyLight::Image { environment, strength, rotation } if *strength > 0.0 && environment.has_light() => {
                 let rotation = Environment::rotation(*rotation);
                 Some(SkyImage { environment, rotation })
             }
@@ -178,12 +170,7 @@ pub(super) enum SampledLight {
 
 impl LightingContext<'_> {
     /// Samples a randomly chosen light source, seen from a point.
-    pub(super) fn sample_light(
-        &self,
-        point: DVec3,
-        choice: [u32; 2],
-        u: [u32; 2],
-    ) -> Option<LightSample> {
+    pub(super) fn sample_light(&self, point: DVec3, choice: [u32; 2], u: [u32; 2]) -> Option<LightSample> {
         let sources = &self.sources;
         let last = sources.sampled.len().checked_sub(1)?;
         let index = ((fraction(choice[0]) * sources.count()) as usize).min(last);
@@ -245,9 +232,8 @@ impl LightingContext<'_> {
     /// The radiance of the sky, and the density with which light sampling chooses the direction. The density is `None`
     /// if light sampling does not sample the sky.
     pub(super) fn sky(&self, direction: DVec3) -> (DVec3, Option<f64>) {
-        let density = self.sky_image.map(|image| {
-            image.environment.density(direction, image.rotation) / self.sources.count()
-        });
+        let density =
+            self.sky_image.map(|image| image.environment.density(direction, image.rotation) / self.sources.count());
         (self.settings.sky.light.radiance(direction), density)
     }
 }

@@ -66,12 +66,7 @@ struct History {
 impl LiveReference {
     /// Renders the next frame of the same spheres. Only the camera and the lamps may differ between frames. Returns
     /// `None` if the integrator is not `studio`.
-    pub fn frame(
-        &mut self,
-        search: Search<'_>,
-        view: &View<'_>,
-        settings: &RenderSettings,
-    ) -> Option<LiveFrame> {
+    pub fn frame(&mut self, search: Search<'_>, view: &View<'_>, settings: &RenderSettings) -> Option<LiveFrame> {
         let mut settings = settings.clone();
         let Integrator::Studio(studio) = &mut settings.integrator else { return None };
         if let Some(occlusion) = &mut studio.occlusion {
@@ -83,18 +78,15 @@ impl LiveReference {
         let [width, height] = [view.film.width(), view.film.height()];
         let pixels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
         let found: Vec<LivePixel> = pixels.clone().map(|pixel| light.pixel(pixel)).collect();
-        let has_moved =
-            self.before.as_ref().is_some_and(|before| before.lights != light.context.lights);
+        let has_moved = self.before.as_ref().is_some_and(|before| before.lights != light.context.lights);
         let most = [if has_moved { MOST_MOVING } else { MOST }, MOST];
         let origin = search.scene().origin();
         let with_history = |(pixel, seen): ([u32; 2], &LivePixel)| {
             let ray = view.ray_through_center(pixel);
             let point = ray.map(|ray| ray.at(seen.depth) - origin);
             let known = point.filter(|_| seen.depth.is_finite());
-            let known =
-                known.and_then(|point| self.found_before(view, pixel, point + origin, seen));
-            let counts =
-                known.map_or([1; 2], |old| [0, 1].map(|i| (old.counts[i] + 1).min(most[i])));
+            let known = known.and_then(|point| self.found_before(view, pixel, point + origin, seen));
+            let counts = known.map_or([1; 2], |old| [0, 1].map(|i| (old.counts[i] + 1).min(most[i])));
             let old = known.map_or(DVec2::ONE, |old| old.shares);
             let part = DVec2::new(1.0 / f64::from(counts[0]), 1.0 / f64::from(counts[1]));
             let shares = old + part * (DVec2::from(seen.shares) - old);
@@ -104,11 +96,8 @@ impl LiveReference {
         let mut frame = LiveFrame::default();
         for (pixel, seen) in pixels.zip(&found) {
             let shares = smoothed(view, pixel, &known, &found);
-            let of = |lamps: f64, ambient: f64, steady: f64| {
-                steady + shares.x * lamps + shares.y * ambient
-            };
-            let color =
-                seen.steady.color + shares.x * seen.lamps.color + shares.y * seen.ambient.color;
+            let of = |lamps: f64, ambient: f64, steady: f64| steady + shares.x * lamps + shares.y * ambient;
+            let color = seen.steady.color + shares.x * seen.lamps.color + shares.y * seen.ambient.color;
             frame.color.push(color.max(DVec3::ZERO).to_array());
             let alpha = of(seen.lamps.alpha, seen.ambient.alpha, seen.steady.alpha);
             frame.alpha.push(alpha.clamp(0.0, 1.0));
@@ -123,13 +112,7 @@ impl LiveReference {
     }
 
     /// The history of the previous frame at a point in world space.
-    fn found_before(
-        &self,
-        view: &View<'_>,
-        pixel: [u32; 2],
-        point: DVec3,
-        seen: &LivePixel,
-    ) -> Option<History> {
+    fn found_before(&self, view: &View<'_>, pixel: [u32; 2], point: DVec3, seen: &LivePixel) -> Option<History> {
         let before = self.before.as_ref()?;
         let now = view.camera.vectors();
         let is_parallel = view.camera.kind() == CameraKind::Orthographic;
@@ -189,8 +172,7 @@ fn footprint(view: &View<'_>, distance: f64) -> f64 {
 fn smoothed(view: &View<'_>, [x, y]: [u32; 2], known: &[History], found: &[LivePixel]) -> DVec2 {
     let index = (y * view.film.width() + x) as usize;
     let own = known[index];
-    let part =
-        DVec2::from(own.counts.map(|count| (1.25 - f64::from(count) / 16.0).clamp(0.0, 1.0)));
+    let part = DVec2::from(own.counts.map(|count| (1.25 - f64::from(count) / 16.0).clamp(0.0, 1.0)));
     let (mut sum, mut total) = (own.shares, DVec2::ONE);
     for (across, down) in (-1..=1).flat_map(|down| (-1..=1).map(move |across| (across, down))) {
         let at = [f64::from(x) + 2.0 * f64::from(across), f64::from(y) + 2.0 * f64::from(down)];
@@ -323,8 +305,7 @@ impl VisibleSurface<'_> {
             let middle = arrival_of_middle(light, interaction.point)?;
             Some(luminance(middle.strength) * middle.direction.dot(interaction.normal).max(0.0))
         };
-        let lights: Vec<f64> =
-            context.lights.iter().map(|light| middle(light).unwrap_or(0.0)).collect();
+        let lights: Vec<f64> = context.lights.iter().map(|light| middle(light).unwrap_or(0.0)).collect();
         let whole = ambient + lights.iter().sum::<f64>();
         let share = |light: f64| if whole > 0.0 { light / whole } else { 0.0 };
         let without = |alpha: f64| Shade { color: behind * -alpha, alpha };
@@ -357,8 +338,7 @@ impl VisibleSurface<'_> {
         let u = self.address.pair(2 + light as u32);
         let arrival = arrival(&self.context.lights[light], self.interaction.point, u);
         let is_seen = arrival.is_some_and(|arrival| {
-            arrival.direction.dot(self.interaction.normal) > 0.0
-                && !self.is_hidden(arrival.direction, arrival.distance)
+            arrival.direction.dot(self.interaction.normal) > 0.0 && !self.is_hidden(arrival.direction, arrival.distance)
         });
         f64::from(u8::from(is_seen))
     }

@@ -22,8 +22,7 @@ use crate::geometry::ray::Ray;
 use crate::image::outline;
 use crate::image::{Image, LayerSet, NO_ID, Pixel};
 use crate::render::{
-    Decision, Integrator, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
-    batch,
+    Decision, Integrator, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch, batch,
 };
 
 mod bsdf;
@@ -79,10 +78,12 @@ impl<'a> SampledPicture<'a> {
         let surface_ray = || self.surface_ray(pixel, address);
         let found = match integrator {
             Integrator::Primary(_) => Some(self.primary(pixel)),
-            Integrator::Studio(studio) => surface_ray()
-                .map(|surface_ray| follow_in_studio(&self.context, studio, surface_ray, address)),
-            Integrator::Path(tracing) => surface_ray()
-                .map(|surface_ray| follow_path(&self.context, tracing, surface_ray, address)),
+            Integrator::Studio(studio) => {
+                surface_ray().map(|surface_ray| follow_in_studio(&self.context, studio, surface_ray, address))
+            }
+            Integrator::Path(tracing) => {
+                surface_ray().map(|surface_ray| follow_path(&self.context, tracing, surface_ray, address))
+            }
         };
         let nothing = || {
             let color = if *is_transparent { DVec3::ZERO } else { self.context.background() };
@@ -114,19 +115,14 @@ impl<'a> SampledPicture<'a> {
 
     fn primary(&self, pixel: [u32; 2]) -> Sample {
         let primary = self.context.settings.primary().unwrap_or_default();
-        let Pixel { color, albedo, id, .. } =
-            primary_pixel(self.context.search, &self.view, &primary, pixel);
+        let Pixel { color, albedo, id, .. } = primary_pixel(self.context.search, &self.view, &primary, pixel);
         let alpha = if id == NO_ID { 0.0 } else { 1.0 };
         Sample { color: wide(color), alpha, albedo: wide(albedo) }
     }
 
     /// Renders all pixels in batches of samples, and asks `watch` after parts of each batch how to continue; see
     /// [`super::render_watched`]. Each pixel adds its samples in the same order, however a render is divided.
-    pub(super) fn render(
-        &self,
-        layers: LayerSet,
-        watch: &mut Watch<'_>,
-    ) -> Result<Picture, RenderError> {
+    pub(super) fn render(&self, layers: LayerSet, watch: &mut Watch<'_>) -> Result<Picture, RenderError> {
         let (film, settings) = (self.view.film, self.context.settings);
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
         let mut sums = FilmSums::new(film.width(), film.height())?;

@@ -185,13 +185,7 @@ impl Path<'_> {
         }
     }
 
-    fn add_sampled_light(
-        &mut self,
-        v: u32,
-        interaction: &Interaction,
-        frame: &TangentFrame,
-        bsdf: &Bsdf,
-    ) {
+    fn add_sampled_light(&mut self, v: u32, interaction: &Interaction, frame: &TangentFrame, bsdf: &Bsdf) {
         let (choice, u) = (self.pair(v, Purpose::Source), self.pair(v, Purpose::Light));
         let Some(sampled) = self.context.sample_light(interaction.point, choice, u) else { return };
         let LightSample { direction, distance, sphere, light } = sampled;
@@ -207,9 +201,7 @@ impl Path<'_> {
         let light = self.throughput * light * response.value * into.z;
         let ray = Ray { origin: interaction.point, direction };
         let surface_ray = SurfaceRay { ray, start: interaction.this_side() };
-        if light != DVec3::ZERO
-            && !is_occluded(self.context, &surface_ray, distance, Occluders::All, sphere)
-        {
+        if light != DVec3::ZERO && !is_occluded(self.context, &surface_ray, distance, Occluders::All, sphere) {
             self.found.color += light;
         }
     }
@@ -235,8 +227,7 @@ impl Path<'_> {
         let ray = Ray { origin: point, direction: frame.to_scene(scattered.direction) };
         let start = if crosses { interaction.other_side() } else { interaction.this_side() };
         self.surface_ray = SurfaceRay { ray, start };
-        self.origin =
-            scattered.density.map_or(Origin::Only, |density| Origin::Scattered { point, density });
+        self.origin = scattered.density.map_or(Origin::Only, |density| Origin::Scattered { point, density });
         self.has_scattered = true;
         Some(())
     }

@@ -38,20 +38,13 @@ pub(super) struct Sources {
 
 impl Sources {
     /// Collects the light sources. Their order is that in which random numbers choose them.
-    pub(super) fn new(
-        lights: &[LightKind],
-        has_emitters: bool,
-        has_sky: bool,
-        sampling: LightSampling,
-    ) -> Self {
+    pub(super) fn new(lights: &[LightKind], has_emitters: bool, has_sky: bool, sampling: LightSampling) -> Self {
         let samples_all = sampling != LightSampling::Chance;
         let mut sources = Self::default();
         for light in lights {
             match *light {
                 LightKind::Head { .. } => {}
-                LightKind::Directional { toward, strength, angular_radius }
-                    if angular_radius > 0.0 =>
-                {
+                LightKind::Directional { toward, strength, angular_radius } if angular_radius > 0.0 => {
                     let k = versine(angular_radius);
                     let radiance = rgb(strength) * sun_radiance(angular_radius);
                     let sun = Sun { toward, k, radiance };
@@ -104,11 +97,7 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
             } else {
                 toward
             };
-            Some(Arrival {
-                direction,
-                strength: rgb(strength) * sun_factor(angular_radius),
-                distance: f64::INFINITY,
-            })
+            Some(Arrival { direction, strength: rgb(strength) * sun_factor(angular_radius), distance: f64::INFINITY })
         }
         LightKind::Point { position, intensity } => {
             let to_light = position - point;
@@ -123,9 +112,7 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
             let to_center = center - point;
             let distance = to_center.length();
             let (direction, k, is_outside) = match cone_of_sphere(radius, distance) {
-                Some(k) => {
-                    (TangentFrame::around(to_center / distance).to_scene(cone(u, k)), k, true)
-                }
+                Some(k) => (TangentFrame::around(to_center / distance).to_scene(cone(u, k)), k, true),
                 None => (cone(u, 2.0), 2.0, false),
             };
             Some(Arrival {
@@ -157,21 +144,12 @@ fn sun_radiance(angular_radius: f64) -> f64 {
 
 /// [`sun_radiance`] times the solid angle of the disk, divided by π. It is 1 for a light without angular radius.
 fn sun_factor(angular_radius: f64) -> f64 {
-    if angular_radius > 0.0 {
-        sun_radiance(angular_radius) * 2.0 * versine(angular_radius)
-    } else {
-        1.0
-    }
+    if angular_radius > 0.0 { sun_radiance(angular_radius) * 2.0 * versine(angular_radius) } else { 1.0 }
 }
 
 /// The distance along a direction to a sphere's near side, or from inside to its far side. If rounding makes the ray
 /// miss, the distance to the foot point.
-pub(super) fn distance_to_sphere(
-    to_center: DVec3,
-    radius: f64,
-    direction: DVec3,
-    is_outside: bool,
-) -> f64 {
+pub(super) fn distance_to_sphere(to_center: DVec3, radius: f64, direction: DVec3, is_outside: bool) -> f64 {
     let b = to_center.dot(direction);
     let foot = to_center - b * direction;
     let half_chord = (radius * radius - foot.length_squared()).max(0.0).sqrt();

@@ -27,14 +27,7 @@ pub(super) fn follow(
     for m in 0..studio.max_surfaces {
         let Some(interaction) = nearest(context, &surface_ray) else { break };
         depth += interaction.distance;
-        let view = VisibleSurface {
-            context,
-            studio,
-            interaction,
-            direction: surface_ray.ray.direction,
-            address,
-            m,
-        };
+        let view = VisibleSurface { context, studio, interaction, direction: surface_ray.ray.direction, address, m };
         if let Some(plane) = context.ground.filter(|g| g.is_shadow_catcher)
             && interaction.surface == Surface::Ground
         {

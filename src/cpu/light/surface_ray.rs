@@ -72,10 +72,7 @@ pub(super) enum Occluders {
 }
 
 /// The nearest interaction. At equal distances, spheres win over the ground, and smaller ids over larger ones.
-pub(super) fn nearest(
-    context: &LightingContext<'_>,
-    surface_ray: &SurfaceRay,
-) -> Option<Interaction> {
+pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<Interaction> {
     let ray = &surface_ray.ray;
     let start = StartSphere::of(context, surface_ray.start);
     let distance = |sphere| hit_of(ray, start, sphere).map(|hit| hit.distance);
@@ -302,8 +299,7 @@ mod tests {
                 let start = if is_outward { Start::Outside(1) } else { Start::Inside(1) };
                 let ray = Ray { origin: center + radius * outward, direction: along };
                 let surface_ray = SurfaceRay { ray, start };
-                let hides =
-                    |exempt| is_occluded(context, &surface_ray, 9.0, Occluders::All, exempt);
+                let hides = |exempt| is_occluded(context, &surface_ray, 9.0, Occluders::All, exempt);
                 if is_outward {
                     assert!(nearest(context, &surface_ray).is_none() && !hides(None));
                 } else {
@@ -318,15 +314,11 @@ mod tests {
     /// Shadow rays end at the light. Every surface in between hides it, except those on which they start and end.
     #[test]
     fn what_is_between_hides() {
-        let at = |z: f64, opacity: f32| {
-            Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::WHITE).with_opacity(opacity)
-        };
+        let at = |z: f64, opacity: f32| Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::WHITE).with_opacity(opacity);
         with_spheres(&[at(0.0, 1.0), at(2.0, 0.9), at(4.0, 1.0)], |context| {
             let up = Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Z };
             let from = |start| SurfaceRay { ray: up, start };
-            let hidden = |start, t_max, occluders, exempt| {
-                is_occluded(context, &from(start), t_max, occluders, exempt)
-            };
+            let hidden = |start, t_max, occluders, exempt| is_occluded(context, &from(start), t_max, occluders, exempt);
             let outside = Start::Outside(0);
             assert!(hidden(outside, 9.0, Occluders::All, None));
             assert!(!hidden(outside, 1.0, Occluders::All, None), "the near hit of the next");

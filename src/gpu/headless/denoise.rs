@@ -76,13 +76,9 @@ impl Headless {
             let kinds = [uniform::<Denoise>(), read, read, read, written];
             let layout = layout(device, "pinhole denoise", &kinds);
             let filter = pipeline(device, &kernel, &[&layout], &checks);
-            let created = |size, usage| {
-                buffer(device, "pinhole denoise", size, usage | BufferUsages::COPY_SRC)
-            };
-            let [front, back, shapes, albedos] =
-                [(); 4].map(|()| created(bytes, BufferUsages::STORAGE));
-            for (target, contents) in
-                [(&front, &guides.lights), (&shapes, &guides.shapes), (&albedos, &guides.albedos)]
+            let created = |size, usage| buffer(device, "pinhole denoise", size, usage | BufferUsages::COPY_SRC);
+            let [front, back, shapes, albedos] = [(); 4].map(|()| created(bytes, BufferUsages::STORAGE));
+            for (target, contents) in [(&front, &guides.lights), (&shapes, &guides.shapes), (&albedos, &guides.albedos)]
             {
                 queue.write_buffer(target, 0, bytemuck::cast_slice(&contents[pixels.clone()]));
             }

@@ -6,8 +6,8 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::lit::{
-    LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Moment, RecordedBy,
-    Recorder, Round, SampleStrategy, Step,
+    LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Moment, RecordedBy, Recorder, Round,
+    SampleStrategy, Step,
 };
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::profile::NotedPass;
@@ -29,11 +29,7 @@ pub(crate) struct LitWork<'a> {
 
 impl LitWork<'_> {
     /// Creates the buffers for some tiles.
-    pub(crate) async fn frame(
-        &self,
-        sizes: LitSizes,
-        tiles: impl Iterator<Item = Tile>,
-    ) -> Result<LitFrame, GpuError> {
+    pub(crate) async fn frame(&self, sizes: LitSizes, tiles: impl Iterator<Item = Tile>) -> Result<LitFrame, GpuError> {
         let Self { headless: Headless { device, queue, .. }, passes, scenes, lighting, .. } = *self;
         let (make, by) = (Make { device, queue }, RecordedBy::Headless);
         let tiles = tiles.map(scenes.records(device));
@@ -110,11 +106,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Records a dispatch, divided into slices if it takes long.
-    pub(crate) async fn step(
-        &mut self,
-        step: &Step<'a>,
-        after: &mut After<'_>,
-    ) -> Result<(), GpuError> {
+    pub(crate) async fn step(&mut self, step: &Step<'a>, after: &mut After<'_>) -> Result<(), GpuError> {
         // A slice of a list needs one more dispatch.
         if self.recorder.dispatches() + 2 > MAX_DISPATCHES {
             self.send(after).await?;
@@ -134,9 +126,7 @@ impl<'a> Flow<'a> {
         }
         self.send(after).await?;
         let mut left = vec![whole];
-        while let Some(slice) =
-            Groups::take(&mut left, (self.scene.submission_size().groups() / weight).max(1))
-        {
+        while let Some(slice) = Groups::take(&mut left, (self.scene.submission_size().groups() / weight).max(1)) {
             self.record(step, Some(slice));
             self.gathered = slice.count() * weight;
             if left.is_empty() {

@@ -29,8 +29,7 @@ impl Headless {
         let lighting = &scenes.lighting();
         let key = scenes.key(lighting, &self.device.limits());
         let is_one_pass = self.options.one_pass && key.one_pass.is_some();
-        let mut strategy =
-            if is_one_pass { SampleStrategy::OnePass } else { SampleStrategy::Steps };
+        let mut strategy = if is_one_pass { SampleStrategy::OnePass } else { SampleStrategy::Steps };
         let (samples, totals) = loop {
             let gather = async |passes: &LitPasses| {
                 let work = LitWork { headless: self, passes, scenes, lighting, strategy };
@@ -97,11 +96,7 @@ impl Headless {
 impl LitWork<'_> {
     /// Takes samples until all are complete or the caller finishes the render, and writes their means to the image.
     /// Returns the number of samples that every pixel has.
-    async fn gather(
-        &self,
-        image: &mut Image,
-        watch: &mut Watch<'_>,
-    ) -> Result<(u32, Totals), GpuError> {
+    async fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
         let Self { headless, passes, scenes, lighting, .. } = *self;
         let (film, total) = (&scenes.view.film, scenes.settings.sampling.samples);
         let limits = headless.device.limits();

@@ -12,9 +12,7 @@ use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, States, lon
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::lit::records::LightingParameters;
-use crate::gpu::passes::lit::{
-    LightingData, LitPasses, LitScene, LitSizes, Moment, SampleStrategy,
-};
+use crate::gpu::passes::lit::{LightingData, LitPasses, LitScene, LitSizes, Moment, SampleStrategy};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
@@ -186,11 +184,7 @@ fn pcg(input: u32) -> u32 {
 }
 
 /// Collects the numbers that the device is given for a tile.
-pub(super) fn inputs(
-    scenes: &LitScene<'_>,
-    lighting: &LightingData,
-    Tile { origin, size, .. }: Tile,
-) -> LitInputs {
+pub(super) fn inputs(scenes: &LitScene<'_>, lighting: &LightingData, Tile { origin, size, .. }: Tile) -> LitInputs {
     let LitScene { all, occluders, view, settings } = *scenes;
     inputs_in([&all.space, &occluders.space], view, settings, lighting, [origin, size])
 }

@@ -7,8 +7,7 @@ use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::lit::{LightingData, LitFrame, Mode, Moment};
 use crate::recording::lit::{
-    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface,
-    StudioLight,
+    LitInputs, LitRecording, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, StudioLight,
 };
 
 /// Maximum side in pixels of the rectangle that is recorded. A sample of a path of eight surfaces then takes 130 MB of
@@ -75,11 +74,8 @@ fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
     let others = match mode {
         Mode::Studio => [7, 8, 9].map(SlotSource::Device),
         Mode::Path(..) => {
-            let [shadow, pending] = if mode.samples_light() {
-                [7, 8].map(SlotSource::Device)
-            } else {
-                [no_direction, zero]
-            };
+            let [shadow, pending] =
+                if mode.samples_light() { [7, 8].map(SlotSource::Device) } else { [no_direction, zero] };
             [shadow, pending, if mode.has_medium() { SlotSource::Device(9) } else { zero }]
         }
     };
@@ -157,8 +153,7 @@ const FEW_SURFACES: u64 = 4;
 
 /// The longest side in pixels of a rectangle that stays within [`MAX_BYTES`] and [`MAX_RAYS`].
 pub(super) fn longest_side(lighting: &LightingData) -> u32 {
-    let [lights, directions] =
-        [lighting.parameters.light_count, lighting.parameters.occlusion_samples].map(u64::from);
+    let [lights, directions] = [lighting.parameters.light_count, lighting.parameters.occlusion_samples].map(u64::from);
     let batches = lights.div_ceil(32) + directions.div_ceil(32);
     let (state, hit, light) = (size_of::<PathState>() as u64, 16, 24);
     let surfaces = u64::from(lighting.max_surfaces);

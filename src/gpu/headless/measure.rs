@@ -61,12 +61,7 @@ impl Stamps {
                 ty: wgpu::QueryType::Timestamp,
                 count: 2,
             }),
-            resolved: buffer(
-                device,
-                label,
-                16,
-                BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
-            ),
+            resolved: buffer(device, label, 16, BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
             readable: ReadableBuffer::new(device, label, 16),
             nanoseconds_per_tick,
         }
@@ -97,16 +92,11 @@ impl Headless {
     ///
     /// # Errors
     /// Returns the errors of [`Headless::render`].
-    pub async fn measure(
-        &self,
-        scene: &SceneBuffers,
-        view: &View<'_>,
-    ) -> Result<TraceTime, GpuError> {
+    pub async fn measure(&self, scene: &SceneBuffers, view: &View<'_>) -> Result<TraceTime, GpuError> {
         let options = self.options_for(scene, view.camera);
         self.with_renderer(options, async |renderer: &Renderer| {
             let (device, queue) = (&self.device, &self.queue);
-            let tile_size =
-                tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
+            let tile_size = tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
             let textures = scoped(device, || TileTextures::new(device, tile_size, false)).await?;
             let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
             let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
@@ -121,9 +111,7 @@ impl Headless {
                 frame.set_tile(queue, scene, view, tile, &PrimarySettings::default());
                 for part in frame.parts().collect::<Vec<_>>() {
                     let mut left = vec![part.groups];
-                    while let Some(groups) =
-                        Groups::take(&mut left, scene.submission_size().groups())
-                    {
+                    while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                         frame.set_first_group(queue, part.slot, groups.first);
                         let mut encoder = self.encoder();
                         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -134,11 +122,9 @@ impl Headless {
                         renderer.record_trace(&mut pass, scene, &frame, slice)?;
                         drop(pass);
                         stamps.iter().for_each(|stamps| stamps.record_copy(&mut encoder));
-                        let mapped: Vec<_> =
-                            stamps.iter().map(|stamps| &stamps.readable.buffer).collect();
+                        let mapped: Vec<_> = stamps.iter().map(|stamps| &stamps.readable.buffer).collect();
                         let unnoted = NotedPass::default();
-                        let elapsed =
-                            self.submit_slice(encoder, unnoted, groups, scene, &mapped).await?;
+                        let elapsed = self.submit_slice(encoder, unnoted, groups, scene, &mapped).await?;
                         time.pixels += groups.pixels();
                         time.add(elapsed, stamps.as_ref().map(Stamps::elapsed).transpose()?);
                     }

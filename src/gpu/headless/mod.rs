@@ -90,10 +90,7 @@ impl Headless {
     ///
     /// # Errors
     /// If the adapter cannot open a device.
-    pub async fn from_adapter(
-        adapter: &Adapter,
-        options: &HeadlessOptions,
-    ) -> Result<Self, GpuError> {
+    pub async fn from_adapter(adapter: &Adapter, options: &HeadlessOptions) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let mut required_features = adapter.features() & wanted_features(info.device_type);
         let mut required_limits = required_limits(&adapter.limits(), options.limits);
@@ -115,10 +112,8 @@ impl Headless {
             ..wgpu::DeviceDescriptor::default()
         };
         let opened = adapter.request_device(&descriptor).await;
-        let (device, queue) = opened.map_err(|error| GpuError::NoDevice {
-            adapter: info.name.clone(),
-            message: error.to_string(),
-        })?;
+        let (device, queue) =
+            opened.map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), message: error.to_string() })?;
         let faults = Arc::new(Faults::default());
         let reported = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error| {
@@ -131,10 +126,8 @@ impl Headless {
         let downlevel = adapter.get_downlevel_capabilities().flags;
         let has_indirect = downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let edits = Edits { replacements: options.edits.clone(), rewrite: options.rewrite.clone() };
-        let info =
-            AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
-        let options =
-            HeadlessOptions { indirect: options.indirect && has_indirect, ..options.clone() };
+        let info = AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
+        let options = HeadlessOptions { indirect: options.indirect && has_indirect, ..options.clone() };
         Ok(Self {
             info,
             device,
@@ -210,9 +203,8 @@ impl Headless {
         settings.check(scene)?;
         let request = PictureRequest::new(scene, view, settings, layers);
         let plan = |choice| self.plan(&request, choice);
-        let picture = retried(plan, async |plan: &RenderPlan| {
-            self.render_planned(&request, plan, &mut go_on, &mut go_on).await
-        });
+        let picture =
+            retried(plan, async |plan: &RenderPlan| self.render_planned(&request, plan, &mut go_on, &mut go_on).await);
         Ok(picture.await?.image)
     }
 
@@ -284,10 +276,7 @@ impl Headless {
     }
 
     /// Calls `work` while nothing else uses this device.
-    async fn alone<T>(
-        &self,
-        work: impl AsyncFnOnce(&mut Renderers) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
+    async fn alone<T>(&self, work: impl AsyncFnOnce(&mut Renderers) -> Result<T, GpuError>) -> Result<T, GpuError> {
         let mut turn = self.renderers.turn().await;
         self.faults.forget();
         work(&mut turn.value).await.map_err(|error| self.explained(error))
@@ -306,11 +295,7 @@ impl Headless {
     }
 
     /// Submits an encoder, and waits until it has finished and the buffers are mapped.
-    pub(crate) async fn run(
-        &self,
-        encoder: CommandEncoder,
-        mapped: &[&wgpu::Buffer],
-    ) -> Result<(), GpuError> {
+    pub(crate) async fn run(&self, encoder: CommandEncoder, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
         let submission = self.start(encoder);
         self.wait(mapped, submission).await
     }
@@ -328,8 +313,7 @@ impl Headless {
             buffer.map_async(wgpu::MapMode::Read, .., |mapped| to_answer.give(mapped));
             answers.push(answer);
         }
-        let done =
-            waiting::until_done(&self.device, &self.queue, submission, self.options.timeout).await;
+        let done = waiting::until_done(&self.device, &self.queue, submission, self.options.timeout).await;
         if let Err(GpuError::Timeout { .. }) = done {
             // Dropping the last handle of a queue waits for its work, which may never end.
             std::mem::forget(self.queue.clone());

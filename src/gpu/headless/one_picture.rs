@@ -9,9 +9,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
-use crate::gpu::headless::progress::{
-    Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
-};
+use crate::gpu::headless::progress::{Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
 use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::uploading::OptionsOf;
@@ -92,8 +90,7 @@ impl Headless {
         let size = [film.width(), film.height()];
         let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
         let phase = self.phase("divide");
-        let BrickSource { space: brick_space, mut bricks, .. } =
-            BrickSource::from(plan.accel.bricks(scene.spheres()));
+        let BrickSource { space: brick_space, mut bricks, .. } = BrickSource::from(plan.accel.bricks(scene.spheres()));
         let boxes = bricks.boxes();
         drop(phase);
         // In every brick, the nearest of equal spheres has the smallest id, so the ids of the input suffice.
@@ -103,8 +100,7 @@ impl Headless {
         let kinds = [false, true].map(|nested| brick_space.structure.with_nested(nested));
         self.alone(async |renderers: &mut Renderers| {
             let layouts = self.layouts_of(kinds.to_vec()).await?;
-            let mut upload =
-                SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
+            let mut upload = SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
             let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
             let primary = scene.primary_settings(settings)?;
             let visible = VisibleBricks::of(view, &scene.space, &boxes);
@@ -116,10 +112,9 @@ impl Headless {
             });
             let first = renderers.of(device, options[0].clone()).await?;
             let mut frame = Frame::new(first, device, &textures.targets()).await?;
-            let seen_buffer = scoped(device, || {
-                ReadableBuffer::new(device, "pinhole hits read-back", frame.traced().0.size())
-            })
-            .await?;
+            let seen_buffer =
+                scoped(device, || ReadableBuffer::new(device, "pinhole hits read-back", frame.traced().0.size()))
+                    .await?;
             frame.set_bricks(queue, &scene, &visible, view, tile, &primary);
             let parts: Vec<BandBrick> = frame.parts().collect();
             bricks.keep(&parts.iter().map(|part| part.brick).collect::<Vec<_>>());
@@ -135,9 +130,7 @@ impl Headless {
                     done.add(part.groups, watch)?;
                     continue;
                 }
-                let mut tell = |step| {
-                    UploadProgress { step, brick: number, bricks: parts.len() }.tell(upload_watch)
-                };
+                let mut tell = |step| UploadProgress { step, brick: number, bricks: parts.len() }.tell(upload_watch);
                 tell(UploadStep::Building)?;
                 let phase = self.phase("build");
                 let Some(brick) = bricks.next() else { break };
@@ -285,8 +278,7 @@ impl NearestDistances {
             let entry = ray.and_then(|ray| bounds.entry(&ray));
             entry.is_none_or(|entry| f64::from(self.distances[place]) < entry * (1.0 - FARTHER))
         };
-        let is_row_hidden =
-            |at: usize| columns.clone().all(|column| is_hidden(column, rows.start + at as u32));
+        let is_row_hidden = |at: usize| columns.clone().all(|column| is_hidden(column, rows.start + at as u32));
         map(rows.len(), is_row_hidden).into_iter().all(|is_hidden| is_hidden)
     }
 }
@@ -303,8 +295,7 @@ mod tests {
     #[test]
     fn a_box_is_hidden_by_nearer_hits_on_all_of_its_pixels() {
         let film = Film::new(16, 16).unwrap();
-        let pose =
-            Pose::looking_along([8.0, 8.0, 10.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let pose = Pose::looking_along([8.0, 8.0, 10.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [8.0, 8.0]).unwrap();
         let view = View::new(&camera, film);
         let space = SceneSpace {
@@ -315,9 +306,7 @@ mod tests {
         let (all, right) = (Groups::of_size([16, 16]), Groups { first: [1, 0], size: [1, 2] });
         let hit = |t: f32| [t.to_bits(), 0, 0, 0.5_f32.to_bits()];
         let mut hits = vec![[0, NO_ID, 0, 0]; 256];
-        let hides = |hits: &[Hit], groups| {
-            NearestDistances::new([16, 16], hits).hide(&view, &space, groups)
-        };
+        let hides = |hits: &[Hit], groups| NearestDistances::new([16, 16], hits).hide(&view, &space, groups);
         assert!(!hides(&hits, all) && hides(&hits, right));
         for row in 10..12 {
             for column in 4..6 {
@@ -333,10 +322,6 @@ mod tests {
         }
         hits[16 * 10 + 4] = hit(6.4);
         let round = FisheyeCamera::new(pose, 3.0, 1.0).unwrap();
-        assert!(!NearestDistances::new([16, 16], &hits).hide(
-            &View::new(&round, film),
-            &space,
-            all
-        ));
+        assert!(!NearestDistances::new([16, 16], &hits).hide(&View::new(&round, film), &space, all));
     }
 }

@@ -70,12 +70,7 @@ pub struct PictureRequest<'a> {
 impl<'a> PictureRequest<'a> {
     /// A picture for which the caller needs no host memory beyond the image.
     #[must_use]
-    pub fn new(
-        scene: &'a Scene,
-        view: &View<'a>,
-        settings: &'a RenderSettings,
-        layers: LayerSet,
-    ) -> Self {
+    pub fn new(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings, layers: LayerSet) -> Self {
         Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0 }
     }
 }
@@ -112,12 +107,12 @@ impl RenderPlan {
         let in_host = |bytes| device.in_host(bytes);
         // Rays, hits and verdicts, and the picture of the second render. A second copy of the
         // verdicts exists while parts are joined.
-        let judged =
-            (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
-        let per_pixel = layers
-            .bytes_per_pixel()
-            .saturating_add(host_bytes_per_pixel)
-            .saturating_add(if keeps_rays { judged } else { 0 });
+        let judged = (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
+        let per_pixel = layers.bytes_per_pixel().saturating_add(host_bytes_per_pixel).saturating_add(if keeps_rays {
+            judged
+        } else {
+            0
+        });
         let picture = film.pixel_count().saturating_mul(per_pixel);
         let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
@@ -170,8 +165,7 @@ impl RenderPlan {
             .flat_map(|planned| [(planned, binding), (planned, buffer)])
             .chain(self.tile_textures.iter().map(|planned| (planned, buffer)));
         let largest = emitter_table::limit(limits);
-        let textures =
-            self.tile_textures.iter().filter(|planned| planned.name == emitter_table::NAME);
+        let textures = self.tile_textures.iter().filter(|planned| planned.name == emitter_table::NAME);
         if let Some(planned) = textures.into_iter().find(|planned| planned.bytes > largest.1) {
             let (what, (limit_name, limit)) = (emitter_table::WHAT, largest);
             return Err(GpuError::Limit { what, needed: planned.bytes, limit_name, limit });
@@ -190,9 +184,7 @@ impl RenderPlan {
         };
         let (what, needed) = (self.host_peak, self.host_bytes);
         match memory {
-            Some(available) if needed > available => {
-                Err(GpuError::HostMemory { what, needed, available, instead })
-            }
+            Some(available) if needed > available => Err(GpuError::HostMemory { what, needed, available, instead }),
             _ => Ok(()),
         }
     }
@@ -258,17 +250,10 @@ mod tests {
         planned(size, layers, device_type, false)
     }
 
-    fn planned(
-        size: u32,
-        layers: LayerSet,
-        device_type: DeviceType,
-        keeps_rays: bool,
-    ) -> RenderPlan {
-        let scene = Scene::from_f32(
-            (0..1000).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect(),
-            LinearRgb::from_srgb8([255, 0, 0]),
-        )
-        .unwrap();
+    fn planned(size: u32, layers: LayerSet, device_type: DeviceType, keeps_rays: bool) -> RenderPlan {
+        let scene =
+            Scene::from_f32((0..1000).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect(), LinearRgb::from_srgb8([255, 0, 0]))
+                .unwrap();
         let accel = AccelPlan::new(scene.spheres(), AccelChoice::List, 1 << 27);
         let film = Film::new(size, size).unwrap();
         let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
@@ -313,9 +298,8 @@ mod tests {
     #[test]
     fn an_individual_color_takes_four_bytes_per_sphere() {
         let count = 4_000_000;
-        let spheres: Vec<[f32; 4]> = (0..count)
-            .map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4])
-            .collect();
+        let spheres: Vec<[f32; 4]> =
+            (0..count).map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4]).collect();
         let accel = AccelPlan::new(&spheres, AccelChoice::Auto, 1 << 27);
         let colors = (0..count as u32).map(|i| (i | 0xff00_0000).to_le_bytes()).collect();
         let mut appearance = Appearance::new(Colors::Rgba8(colors));
@@ -328,10 +312,8 @@ mod tests {
             let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
             assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
             spheres = scene.spheres().to_vec();
-            let surfaces = vec![
-                SurfaceProperties::default(),
-                SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() },
-            ];
+            let surfaces =
+                vec![SurfaceProperties::default(), SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() }];
             let indices = (0..count as u32).map(|i| i % 2).collect();
             appearance = appearance.with_surfaces(surfaces, indices);
         }

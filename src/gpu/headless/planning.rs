@@ -14,11 +14,7 @@ use crate::scene::Scene;
 impl RenderPlan {
     /// Plans a picture on a device with the given limits and planned structures.
     #[must_use]
-    pub fn new(
-        request: &PictureRequest<'_>,
-        structures: StructurePlans,
-        device: &DeviceLimits,
-    ) -> Self {
+    pub fn new(request: &PictureRequest<'_>, structures: StructurePlans, device: &DeviceLimits) -> Self {
         if request.settings.integrator.is_primary() {
             Self::planned(request, structures.accel, device, false)
         } else {
@@ -67,8 +63,7 @@ impl Headless {
         let is_grid = matches!(plan.structure, Structure::Grid | Structure::NestedGrid);
         if choice == AccelChoice::Auto && is_grid && self.info.name.starts_with("SwiftShader") {
             plan = planned(AccelChoice::Tree);
-            plan.reason =
-                format!("{} spheres, and this driver computes grids wrongly", scene.len());
+            plan.reason = format!("{} spheres, and this driver computes grids wrongly", scene.len());
         }
         match scene.whole() {
             Some(whole) => plan.within((whole.min, whole.max)),

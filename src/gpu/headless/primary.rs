@@ -37,12 +37,7 @@ impl Headless {
 
     /// The options of a renderer for pictures without data layers, of one brick or of several bricks.
     /// `kinds` are the kinds of the bricks.
-    pub(crate) fn options_of(
-        &self,
-        kinds: &[BrickKind],
-        several_bricks: bool,
-        camera: &dyn Camera,
-    ) -> RendererOptions {
+    pub(crate) fn options_of(&self, kinds: &[BrickKind], several_bricks: bool, camera: &dyn Camera) -> RendererOptions {
         let mut structures: Vec<_> = kinds.iter().map(|kind| kind.structure).collect();
         let mut primitives: Vec<_> = kinds.iter().map(|kind| kind.primitive).collect();
         // Lists are sorted, so that equal options have equal lists.
@@ -94,8 +89,7 @@ impl Headless {
     ) -> Result<(), GpuError> {
         let (device, film) = (self.device(), &view.film);
         let tile_size = tile_size(&device.limits(), self.shape(), film, renderer.keeps_rays);
-        let textures =
-            scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
+        let textures = scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
         let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
         let traced = scoped(device, || ReadableTrace::new(device, &frame)).await?;
         let derived = DerivedLayers { view: *view, appearance: scene.appearance() };

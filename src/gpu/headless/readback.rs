@@ -26,12 +26,7 @@ pub(crate) struct ReadableTexture {
 }
 
 impl ReadableTexture {
-    pub(crate) fn new(
-        device: &Device,
-        label: &'static str,
-        format: TextureFormat,
-        size: [u32; 2],
-    ) -> Self {
+    pub(crate) fn new(device: &Device, label: &'static str, format: TextureFormat, size: [u32; 2]) -> Self {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let texture = texture(device, label, format, size, usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -57,10 +52,7 @@ impl ReadableTexture {
                 buffer: &self.back.buffer,
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some(padded_row(
-                        size[0],
-                        bytes_per_pixel(self.texture.format()),
-                    )),
+                    bytes_per_row: Some(padded_row(size[0], bytes_per_pixel(self.texture.format()))),
                     rows_per_image: None,
                 },
             },
@@ -101,14 +93,9 @@ impl ReadableBuffer {
     }
 
     /// Returns the result of `read` for the elements, and unmaps the buffer, which must be mapped.
-    pub(crate) fn read<T: bytemuck::AnyBitPattern, R>(
-        &self,
-        read: impl FnOnce(&[T]) -> R,
-    ) -> Result<R, GpuError> {
-        let bytes = self
-            .buffer
-            .get_mapped_range(..)
-            .map_err(|error| GpuError::Device { message: error.to_string() })?;
+    pub(crate) fn read<T: bytemuck::AnyBitPattern, R>(&self, read: impl FnOnce(&[T]) -> R) -> Result<R, GpuError> {
+        let bytes =
+            self.buffer.get_mapped_range(..).map_err(|error| GpuError::Device { message: error.to_string() })?;
         let result = read(bytemuck::cast_slice(&bytes));
         drop(bytes);
         self.buffer.unmap();
@@ -181,8 +168,7 @@ pub(crate) struct TileTextures {
 
 impl TileTextures {
     pub(crate) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
-        let create =
-            |(label, format, _): TileTexture| ReadableTexture::new(device, label, format, size);
+        let create = |(label, format, _): TileTexture| ReadableTexture::new(device, label, format, size);
         let status = size_of::<records::Status>() as u64;
         Self {
             color: create(COLOR),
@@ -199,12 +185,7 @@ impl TileTextures {
 
     /// Records the copies of the part of a tile, and of the status word of its frame, to the buffers through which the
     /// host reads them. Returns these buffers, which must be mapped for [`TileTextures::read_into`].
-    pub(crate) fn record_read_back(
-        &self,
-        encoder: &mut CommandEncoder,
-        frame: &Frame,
-        size: [u32; 2],
-    ) -> Vec<&Buffer> {
+    pub(crate) fn record_read_back(&self, encoder: &mut CommandEncoder, frame: &Frame, size: [u32; 2]) -> Vec<&Buffer> {
         for texture in self.all() {
             texture.record_copy(encoder, size);
         }
@@ -226,12 +207,7 @@ impl TileTextures {
 
     /// Copies the contents of the mapped buffers, and the layers that are derived from them, to the tile's part of the
     /// image, and unmaps the buffers. Nothing is copied if rays took too many steps.
-    pub(crate) fn read_into(
-        &self,
-        image: &mut Image,
-        tile: Tile,
-        derived: &DerivedLayers<'_>,
-    ) -> Result<(), GpuError> {
+    pub(crate) fn read_into(&self, image: &mut Image, tile: Tile, derived: &DerivedLayers<'_>) -> Result<(), GpuError> {
         self.check_steps()?;
         let [x, y] = tile.origin.map(|start| start as usize);
         let [width, height] = tile.size.map(|side| side as usize);
@@ -307,20 +283,11 @@ impl ReadableTrace {
     }
 
     /// Copies the contents of the mapped buffers to the pixels of the tile, and unmaps the buffers.
-    pub(crate) fn read_into(
-        &self,
-        pixels: &mut [TracedPixel],
-        film: &Film,
-        tile: Tile,
-    ) -> Result<(), GpuError> {
+    pub(crate) fn read_into(&self, pixels: &mut [TracedPixel], film: &Film, tile: Tile) -> Result<(), GpuError> {
         let [x, y] = tile.origin.map(|start| start as usize);
         let [width, height] = tile.size.map(|side| side as usize);
-        let mut rows: Vec<&mut [TracedPixel]> = pixels
-            .chunks_mut(film.width() as usize)
-            .skip(y)
-            .take(height)
-            .map(|row| &mut row[x..x + width])
-            .collect();
+        let mut rows: Vec<&mut [TracedPixel]> =
+            pixels.chunks_mut(film.width() as usize).skip(y).take(height).map(|row| &mut row[x..x + width]).collect();
         self.rays.read(|rays: &[records::RecordedRays]| {
             for (row, rays) in rows.iter_mut().zip(rays.chunks(width)) {
                 for (pixel, rays) in row.iter_mut().zip(rays) {

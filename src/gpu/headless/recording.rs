@@ -16,18 +16,13 @@ use crate::gpu::self_test::{TestedProperty, fence_probe};
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::image::color::LinearRgb;
 use crate::image::{Image, LayerSet, NO_ID};
-use crate::recording::{
-    NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, UploadedView,
-};
+use crate::recording::{NO_HIT, PlainRender, Recording, RequestedCamera, TracedPixel, UploadedView};
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{Certificate, Checker};
 
 /// Returns a camera together with the numbers that are uploaded for it and for the scene's bounds.
-pub(crate) fn requested_view(
-    space: &SceneSpace,
-    camera: &dyn Camera,
-) -> (RequestedCamera, UploadedView) {
+pub(crate) fn requested_view(space: &SceneSpace, camera: &dyn Camera) -> (RequestedCamera, UploadedView) {
     let requested = RequestedCamera::of(camera);
     let records::Camera { origin, advance, right, up, forward, first, second, third } =
         records::Camera::new(&requested, space);
@@ -45,11 +40,7 @@ pub(crate) fn requested_view(
 }
 
 /// Creates a recording in which no pixel has been traced.
-fn new_recording(
-    space: &SceneSpace,
-    view: &View<'_>,
-    primary: PrimarySettings,
-) -> Result<Recording, GpuError> {
+fn new_recording(space: &SceneSpace, view: &View<'_>, primary: PrimarySettings) -> Result<Recording, GpuError> {
     let (requested, uploaded) = requested_view(space, view.camera);
     let film = view.film;
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
@@ -159,8 +150,7 @@ impl Headless {
     pub(super) async fn probe_fences(&self) -> Result<TestedProperty, GpuError> {
         let place = |index: u16| f32::from(index) / f32::from(ALONG);
         let sphere = |index: u16| {
-            let [x, y, z] =
-                [index % ALONG, index / ALONG % ALONG, index / ALONG / ALONG].map(place);
+            let [x, y, z] = [index % ALONG, index / ALONG % ALONG, index / ALONG / ALONG].map(place);
             [x, y, z, 0.3 / f32::from(ALONG)]
         };
         let spheres = (0..ALONG * ALONG * ALONG).map(sphere).collect();

@@ -29,14 +29,8 @@ impl Renderers {
     /// started. [`Renderers::of`] returns the renderer, or the error of building it. Browsers build
     /// pipelines beside other work by themselves.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn begin(
-        &mut self,
-        device: &Device,
-        options: RendererOptions,
-        profile: Option<Profile>,
-    ) {
-        let mut known =
-            self.built.iter().map(|(of, _)| of).chain(self.ahead.iter().map(|(of, _)| of));
+    pub(crate) fn begin(&mut self, device: &Device, options: RendererOptions, profile: Option<Profile>) {
+        let mut known = self.built.iter().map(|(of, _)| of).chain(self.ahead.iter().map(|(of, _)| of));
         if known.any(|of| *of == options) {
             return;
         }
@@ -63,11 +57,7 @@ impl Renderers {
     }
 
     /// Returns the renderer with these options, and builds it if necessary.
-    pub(crate) async fn of(
-        &mut self,
-        device: &Device,
-        options: RendererOptions,
-    ) -> Result<&Renderer, GpuError> {
+    pub(crate) async fn of(&mut self, device: &Device, options: RendererOptions) -> Result<&Renderer, GpuError> {
         #[cfg(not(target_arch = "wasm32"))]
         self.take_ahead(&options)?;
         let known = self.built.iter().position(|(of, _)| *of == options);

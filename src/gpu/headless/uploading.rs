@@ -39,25 +39,17 @@ impl Headless {
     ///
     /// # Errors
     /// If the scene does not fit into the device's memory or limits, or if the device fails.
-    pub async fn upload(
-        &self,
-        scene: &Scene,
-        structures: &Structures,
-    ) -> Result<SceneBuffers, GpuError> {
+    pub async fn upload(&self, scene: &Scene, structures: &Structures) -> Result<SceneBuffers, GpuError> {
         let Structures { accel, occluders } = structures;
         let kinds = [accel].into_iter().chain(occluders).map(Accel::structure).collect();
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
             let renderer = self.layouts_of(kinds).await?;
-            let all = self
-                .upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {})
-                .await?;
+            let all = self.upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
                 return Ok(all);
             };
-            let some = self
-                .upload_bricks(&renderer, scene, true, accel.into(), watch, &mut |_, _| {})
-                .await?;
+            let some = self.upload_bricks(&renderer, scene, true, accel.into(), watch, &mut |_, _| {}).await?;
             Ok(all.with_occluders(some))
         })
         .await
@@ -103,14 +95,12 @@ impl Headless {
                     self.begin_renderer(renderers, options_of(kind, several_bricks));
                 }
             };
-            let all =
-                self.upload_bricks(&renderer, scene, false, bricks, watch, &mut begin).await?;
+            let all = self.upload_bricks(&renderer, scene, false, bricks, watch, &mut begin).await?;
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
             };
             let bricks = plan.bricks(opaque.spheres()).into();
-            let some =
-                self.upload_bricks(&renderer, scene, true, bricks, watch, &mut |_, _| {}).await?;
+            let some = self.upload_bricks(&renderer, scene, true, bricks, watch, &mut |_, _| {}).await?;
             Ok(all.with_occluders(some))
         })
         .await
@@ -133,8 +123,7 @@ impl Headless {
         update: &SceneUpdate<'_>,
     ) -> Result<(), GpuError> {
         // If the first sphere ceases to be opaque, a studio may need a separate structure of occluders.
-        let loses_opacity =
-            buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
+        let loses_opacity = buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
         if buffers.takes_in_place(scene, update) && !loses_opacity {
             let work = async |_: &mut Renderers| {
                 let recolor = self.recolor.of((), Recolor::new(&self.device)).await?;
@@ -148,8 +137,7 @@ impl Headless {
         }
         let choice = buffers.structure().choice();
         let accel = self.plan_accel(scene, choice);
-        let opaque =
-            (loses_opacity || buffers.occluders.is_some()).then(|| scene.opaque()).flatten();
+        let opaque = (loses_opacity || buffers.occluders.is_some()).then(|| scene.opaque()).flatten();
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
         let plans = StructurePlans { accel, occluders };
         let copy = self.upload_planned(scene, &plans, &mut go_on).await?;
@@ -158,14 +146,10 @@ impl Headless {
     }
 
     /// A renderer that only provides the bind group layouts of structures. Equal layouts of one device are compatible.
-    pub(crate) async fn layouts_of(
-        &self,
-        structures: Vec<Structure>,
-    ) -> Result<Renderer, GpuError> {
+    pub(crate) async fn layouts_of(&self, structures: Vec<Structure>) -> Result<Renderer, GpuError> {
         let cameras = Vec::new();
         let device_type = Some(self.info.device_type);
-        let options =
-            RendererOptions { cameras, structures, device_type, ..RendererOptions::default() };
+        let options = RendererOptions { cameras, structures, device_type, ..RendererOptions::default() };
         Renderer::new(self.device(), &options).await
     }
 

@@ -110,12 +110,7 @@ pub(crate) async fn until_done(
 
 /// Waits until the device has finished everything that was submitted. The browser waits as long as it takes.
 #[cfg(target_arch = "wasm32")]
-pub(crate) async fn until_done(
-    _: &Device,
-    queue: &Queue,
-    _: SubmissionIndex,
-    _: Duration,
-) -> Result<(), GpuError> {
+pub(crate) async fn until_done(_: &Device, queue: &Queue, _: SubmissionIndex, _: Duration) -> Result<(), GpuError> {
     let (answer, to_answer) = answer();
     queue.on_submitted_work_done(move || to_answer.give(()));
     answer.await;

@@ -1,8 +1,8 @@
 //! Drawing pictures into a host's render pass, with the host's depth, and the options of that pass.
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BlendState, Buffer, CompareFunction, Device, Queue, RenderPass,
-    RenderPipeline, TextureFormat,
+    BindGroup, BindGroupLayout, BlendState, Buffer, CompareFunction, Device, Queue, RenderPass, RenderPipeline,
+    TextureFormat,
 };
 
 use crate::camera::{DepthOrder, HostCamera};
@@ -46,11 +46,7 @@ pub(crate) fn cover_kernel() -> Kernel {
 }
 
 /// The fragment kernel for colours stored as `source`. Without a coverage, it is for a pass without depth.
-pub(crate) fn composite_kernel(
-    source: ColorTarget,
-    encoding: TargetEncoding,
-    coverage: Option<Coverage>,
-) -> Kernel {
+pub(crate) fn composite_kernel(source: ColorTarget, encoding: TargetEncoding, coverage: Option<Coverage>) -> Kernel {
     let stored = match source {
         ColorTarget::Srgb8 => TargetEncoding::Srgb,
         ColorTarget::Linear16 | ColorTarget::Linear32 => TargetEncoding::Linear,
@@ -79,19 +75,12 @@ impl Composite {
 
     /// Builds the pipeline like [`Composite::new`], but with edited shaders.
     #[doc(hidden)]
-    pub async fn edited(
-        device: &Device,
-        options: &CompositeOptions,
-        edits: Vec<ShaderEdit>,
-    ) -> Result<Self, GpuError> {
+    pub async fn edited(device: &Device, options: &CompositeOptions, edits: Vec<ShaderEdit>) -> Result<Self, GpuError> {
         let edits = &Edits { replacements: edits, ..Edits::default() };
         let CompositeOptions { source, encoding, .. } = *options;
         let has_depth = options.depth.is_some();
         let coverage = options.depth.map(|_| options.coverage);
-        let kernels = [
-            cover_kernel().edited(edits)?,
-            composite_kernel(source, encoding, coverage).edited(edits)?,
-        ];
+        let kernels = [cover_kernel().edited(edits)?, composite_kernel(source, encoding, coverage).edited(edits)?];
         let texture = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -120,8 +109,7 @@ impl Composite {
                     source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
                 })
             });
-            let [vertex_constants, fragment_constants] =
-                kernels.each_ref().map(Kernel::values_of_constants);
+            let [vertex_constants, fragment_constants] = kernels.each_ref().map(Kernel::values_of_constants);
             let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label,
                 layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -176,11 +164,7 @@ impl Composite {
     ///
     /// # Errors
     /// [`GpuError::NoCamera`] if the pass has depth and the picture no camera yet.
-    pub fn draw(
-        &self,
-        pass: &mut RenderPass<'_>,
-        picture: &CompositePicture,
-    ) -> Result<(), GpuError> {
+    pub fn draw(&self, pass: &mut RenderPass<'_>, picture: &CompositePicture) -> Result<(), GpuError> {
         if self.has_depth && !picture.has_camera {
             return Err(GpuError::NoCamera);
         }
@@ -197,11 +181,7 @@ impl CompositePicture {
     ///
     /// # Errors
     /// If there are no data layers but the pass has depth, or a texture has another format or usage.
-    pub async fn new(
-        composite: &Composite,
-        device: &Device,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
+    pub async fn new(composite: &Composite, device: &Device, targets: &Targets<'_>) -> Result<Self, GpuError> {
         let mut layers = vec![("color", targets.color, composite.source.texture_format())];
         match &targets.data {
             _ if !composite.has_depth => {}
@@ -222,8 +202,7 @@ impl CompositePicture {
         let size = [texture.width(), texture.height()];
         let (view, group) = scoped(device, || {
             let view = HostView::buffer(device, &HostView::without_camera(size, [0, 0]));
-            let textures =
-                layers.iter().map(|(_, view, _)| wgpu::BindingResource::TextureView(view));
+            let textures = layers.iter().map(|(_, view, _)| wgpu::BindingResource::TextureView(view));
             let resources = std::iter::once(view.as_entire_binding()).chain(textures);
             let group = numbered_group(device, "pinhole composite", &composite.layout, resources);
             (view, group)

@@ -80,13 +80,7 @@ impl DepthTest {
     }
 
     /// Records a pass over the pixels of a band in which the scene may be visible.
-    fn record(
-        pipeline: &ComputePipeline,
-        pass: &mut ComputePass<'_>,
-        frame: &Frame,
-        band: usize,
-        depth: &HostDepth,
-    ) {
+    fn record(pipeline: &ComputePipeline, pass: &mut ComputePass<'_>, frame: &Frame, band: usize, depth: &HostDepth) {
         let slot = Slot::of_scene(band);
         let groups = frame.traced_groups(slot);
         if groups.count() == 0 {
@@ -106,11 +100,7 @@ impl HostDepth {
     ///
     /// # Errors
     /// If the texture does not meet these conditions.
-    pub async fn new(
-        test: &DepthTest,
-        device: &Device,
-        texture: &wgpu::TextureView,
-    ) -> Result<Self, GpuError> {
+    pub async fn new(test: &DepthTest, device: &Device, texture: &wgpu::TextureView) -> Result<Self, GpuError> {
         let (view, group) = scoped(device, || {
             let view = HostView::buffer(device, &HostView::without_camera([0, 0], [0, 0]));
             let bound = [view.as_entire_binding(), wgpu::BindingResource::TextureView(texture)];
@@ -138,17 +128,12 @@ impl HostDepth {
         first_pixel: [u32; 2],
     ) -> Result<(), GpuError> {
         let size = frame.size();
-        if (0..2).any(|axis| {
-            u64::from(first_pixel[axis]) + u64::from(size[axis]) > self.texture_size[axis].into()
-        }) {
+        if (0..2).any(|axis| u64::from(first_pixel[axis]) + u64::from(size[axis]) > self.texture_size[axis].into()) {
             let [width, height] = self.texture_size;
             return Err(GpuError::Target {
                 layer: "host's depth",
                 found: format!("{width}x{height}"),
-                expected: format!(
-                    "large enough for {}x{} pixels from pixel {first_pixel:?} on",
-                    size[0], size[1]
-                ),
+                expected: format!("large enough for {}x{} pixels from pixel {first_pixel:?} on", size[0], size[1]),
             });
         }
         let view = HostView::new(camera, size, first_pixel);
@@ -191,10 +176,8 @@ impl Renderer {
         let limit = test.limit(self, frame.view(self, scene)?.camera);
         let traced = |part| if limit.is_some() { continued(part) } else { part };
         self.check_pipelines(scene, frame, traced)?;
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("pinhole"),
-            timestamp_writes: None,
-        });
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None });
         for part in frame.parts() {
             if let Some(limit) = limit.filter(|_| part.is_first_of_band) {
                 DepthTest::record(limit, &mut pass, frame, part.band, depth);

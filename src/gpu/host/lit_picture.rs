@@ -12,8 +12,7 @@ use crate::gpu::host::lit_renderer::{LitRenderer, lit_key};
 use crate::gpu::host::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::lit::{
-    LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder, Round,
-    SampleStrategy,
+    LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Recorder, Round, SampleStrategy,
 };
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::targets::Targets;
@@ -270,8 +269,7 @@ impl LitPicture {
             }
             let slice = Groups::take(&mut cursor.left, budget.groups(1)).unwrap_or(Groups::NONE);
             data.set_first_group(queue, part.slot, slice.first);
-            let descriptor =
-                ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None };
+            let descriptor = ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None };
             let mut pass = encoder.begin_compute_pass(&descriptor);
             renderer.record_trace(&mut pass, scene, data, BandBrick { groups: slice, ..*part })?;
             budget.take(slice.count(), 1);

@@ -8,9 +8,7 @@ use crate::camera::View;
 use crate::gpu::cache::Cache;
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::{
-    LightingData, LitKey, LitLayouts, LitPasses, LitScene, LiveKey, LivePasses,
-};
+use crate::gpu::passes::lit::{LightingData, LitKey, LitLayouts, LitPasses, LitScene, LiveKey, LivePasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
@@ -30,12 +28,7 @@ impl LitRenderer {
     /// Adds lit pictures to a renderer. Nothing is built yet.
     #[must_use]
     pub fn new(renderer: Renderer) -> Self {
-        Self {
-            renderer,
-            passes: Cache::default(),
-            resolve: Cache::default(),
-            live: Cache::default(),
-        }
+        Self { renderer, passes: Cache::default(), resolve: Cache::default(), live: Cache::default() }
     }
 
     /// Returns the renderer of primary rays, for scenes, frames and depth tests.
@@ -89,19 +82,11 @@ impl LitRenderer {
         Ok(self.passes.get(&key).is_some() && self.resolve.get(&()).is_some())
     }
 
-    pub(super) async fn passes(
-        &self,
-        device: &Device,
-        key: LitKey,
-    ) -> Result<Arc<LitPasses>, GpuError> {
+    pub(super) async fn passes(&self, device: &Device, key: LitKey) -> Result<Arc<LitPasses>, GpuError> {
         self.passes.of(key, LitPasses::new(device, key, &self.renderer.edits)).await
     }
 
-    pub(super) async fn live_passes(
-        &self,
-        device: &Device,
-        key: LiveKey,
-    ) -> Result<Arc<LivePasses>, GpuError> {
+    pub(super) async fn live_passes(&self, device: &Device, key: LiveKey) -> Result<Arc<LivePasses>, GpuError> {
         let Renderer { color, data_layers, layouts, edits, .. } = &self.renderer;
         let targets = (*color, *data_layers, &layouts.targets);
         self.live.of(key, LivePasses::new(device, key, targets, edits)).await

@@ -14,9 +14,7 @@ use crate::gpu::host::lit_renderer::{LitRenderer, lit_key};
 use crate::gpu::host::tickets::{AT_ONCE, Tickets};
 use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::lit::records::DispatchParameters;
-use crate::gpu::passes::lit::{
-    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView,
-};
+use crate::gpu::passes::lit::{LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView};
 use crate::gpu::passes::targets::Targets;
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::resources::{Make, bind_group, buffer, part, whole};
@@ -105,8 +103,7 @@ impl LivePicture {
         let targets = Frame::new(renderer.renderer(), device, targets).await?;
         targets.check_film(view)?;
         let passes = renderer.live_passes(device, key).await?;
-        let lit =
-            LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting, None).await?;
+        let lit = LightingBuffers::new(Make { device, queue }, &passes.lit, &lighting, None).await?;
         let buffers = Buffers::new(device, &passes, targets.size()).await?;
         let tickets = scoped(device, || Tickets::new(device)).await?;
         let frames = frames_of(device, scenes);
@@ -217,13 +214,7 @@ impl LivePicture {
         Ok(LiveProgress { rays, state: LitState::Refining, was_lost: news.is_lost })
     }
 
-    fn record_passes(
-        &self,
-        queue: &Queue,
-        encoder: &mut CommandEncoder,
-        scene: &SceneBuffers,
-        place: usize,
-    ) {
+    fn record_passes(&self, queue: &Queue, encoder: &mut CommandEncoder, scene: &SceneBuffers, place: usize) {
         let Self { passes, buffers, .. } = self;
         let [all, visible] = &self.frames;
         let dispatch = DispatchParameters {
@@ -240,8 +231,7 @@ impl LivePicture {
         let most_lamps = if self.has_moving_lamps { MOST_MOVING } else { MOST };
         let view = record(self.seen_from, &self.film, before, [most_lamps, MOST]);
         queue.write_buffer(&buffers.views, offsets[1].into(), bytemuck::bytes_of(&view));
-        let descriptor =
-            ComputePassDescriptor { label: Some("pinhole live"), timestamp_writes: None };
+        let descriptor = ComputePassDescriptor { label: Some("pinhole live"), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
         let brick = &scene.bricks[0];
         pass.set_pipeline(&passes.live);
@@ -264,19 +254,14 @@ impl LivePicture {
 }
 
 impl Buffers {
-    async fn new(
-        device: &Device,
-        passes: &LivePasses,
-        [width, height]: [u32; 2],
-    ) -> Result<Self, GpuError> {
+    async fn new(device: &Device, passes: &LivePasses, [width, height]: [u32; 2]) -> Result<Self, GpuError> {
         let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
-        let strides = [size_of::<DispatchParameters>(), size_of::<LiveView>()]
-            .map(|bytes| bytes.next_multiple_of(alignment));
+        let strides =
+            [size_of::<DispatchParameters>(), size_of::<LiveView>()].map(|bytes| bytes.next_multiple_of(alignment));
         let pixels = u64::from(width) * u64::from(height);
         check_storage_size(device, "the surfaces of a live picture", 64 * pixels)?;
         scoped(device, || {
-            let uniform =
-                |label, bytes: usize| buffer(device, label, bytes as u64, BufferUsages::UNIFORM);
+            let uniform = |label, bytes: usize| buffer(device, label, bytes as u64, BufferUsages::UNIFORM);
             let both = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let storage = |label, bytes| buffer(device, label, bytes, both);
             let frame = uniform("pinhole live frame", size_of::<FrameParameters>());
@@ -366,12 +351,7 @@ impl PreviousCamera {
 
 /// The record of a frame seen by the camera `now`. `before` is the camera of an earlier frame that shows the same
 /// surfaces. `most` are the maximum numbers of frames over which the shares of lamps and of ambient light are averaged.
-pub(super) fn record(
-    now: PreviousCamera,
-    film: &Film,
-    before: Option<PreviousCamera>,
-    most: [u32; 2],
-) -> LiveView {
+pub(super) fn record(now: PreviousCamera, film: &Film, before: Option<PreviousCamera>, most: [u32; 2]) -> LiveView {
     let CameraVectors { origin, right, up, forward, .. } = now.vectors;
     let narrow = |v: DVec3| v.as_vec3().to_array();
     let is_parallel = now.kind == CameraKind::Orthographic;

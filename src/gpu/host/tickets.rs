@@ -64,10 +64,7 @@ pub(super) struct News {
 
 impl Tickets {
     pub(super) fn new(device: &Device) -> Self {
-        let slot = |_| Slot {
-            buffer: buffer(device, "pinhole recording", 8, BufferUsages::MAP_READ),
-            under_way: None,
-        };
+        let slot = |_| Slot { buffer: buffer(device, "pinhole recording", 8, BufferUsages::MAP_READ), under_way: None };
         Self { slots: [0; AT_ONCE].map(slot), next: 0, order: Arc::default() }
     }
 
@@ -107,12 +104,7 @@ impl Tickets {
     }
 
     /// Records the copies of two status words for a recording that takes the slot `place`.
-    pub(super) fn record(
-        &mut self,
-        encoder: &mut CommandEncoder,
-        place: usize,
-        words: [&Buffer; 2],
-    ) {
+    pub(super) fn record(&mut self, encoder: &mut CommandEncoder, place: usize, words: [&Buffer; 2]) {
         let slot = &mut self.slots[place];
         for (word, offset) in words.into_iter().zip([0, 4]) {
             encoder.copy_buffer_to_buffer(word, 0, &slot.buffer, offset, 4);

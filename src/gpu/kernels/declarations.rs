@@ -71,11 +71,7 @@ fn tokens(code: &str) -> Vec<&str> {
     let mut tokens = Vec::new();
     let mut rest = code.trim_start();
     while let Some(first) = rest.chars().next() {
-        let end = if is_word(first) {
-            rest.find(|c| !is_word(c)).unwrap_or(rest.len())
-        } else {
-            first.len_utf8()
-        };
+        let end = if is_word(first) { rest.find(|c| !is_word(c)).unwrap_or(rest.len()) } else { first.len_utf8() };
         let (token, behind) = rest.split_at(end);
         tokens.push(token);
         rest = behind.trim_start();
@@ -100,8 +96,7 @@ fn names_are_told_apart() {
     let set = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<BTreeSet<_>>();
     assert_eq!(found.global, set(&["Pair", "SIZE", "count", "items", "sum"]));
     assert_eq!(found.private_variables, set(&["count"]));
-    let names =
-        found.used.iter().filter(|name| ["Other", "helper", "LIMIT"].contains(&name.as_str()));
+    let names = found.used.iter().filter(|name| ["Other", "helper", "LIMIT"].contains(&name.as_str()));
     assert_eq!(names.count(), 3);
     for foreign in ["used_in_comment", "field", "by", "x", "i", "second"] {
         assert!(!found.used.contains(foreign), "{foreign}");

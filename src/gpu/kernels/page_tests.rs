@@ -29,8 +29,7 @@ struct PartNames {
 fn known_parts() -> BTreeMap<String, PartNames> {
     let mut known: BTreeMap<String, PartNames> = BTreeMap::new();
     for kernel in all_sources() {
-        let parts: Vec<_> =
-            kernel.parts.iter().map(|part| (part.name, Declarations::of(&part.source))).collect();
+        let parts: Vec<_> = kernel.parts.iter().map(|part| (part.name, Declarations::of(&part.source))).collect();
         for (name, own) in &parts {
             let part = known.entry((*name).to_owned()).or_default();
             part.entry_points.insert(kernel.entry_point.to_owned());
@@ -82,8 +81,7 @@ fn without_lists(source: &str) -> String {
 /// A source with the lists of provided and needed names after its first comment.
 fn with_lists(source: &str, known: &PartNames) -> String {
     let source = without_lists(source);
-    let comment: usize =
-        source.split_inclusive('\n').take_while(|line| line.starts_with("//")).map(str::len).sum();
+    let comment: usize = source.split_inclusive('\n').take_while(|line| line.starts_with("//")).map(str::len).sum();
     let (comment, rest) = source.split_at(comment);
     let lists = list("provides", &known.provides) + &list("needs", &known.needs);
     let blank = if rest.starts_with('\n') { "" } else { "\n" };
@@ -121,13 +119,10 @@ fn after<'a>(text: &'a str, start: &str) -> &'a str {
 }
 
 fn kernel_table(known: &BTreeMap<String, PartNames>, files: &BTreeMap<String, String>) -> String {
-    let mut table =
-        "| entry point | file | what it finds or does | dispatched |\n|---|---|---|---|\n"
-            .to_owned();
+    let mut table = "| entry point | file | what it finds or does | dispatched |\n|---|---|---|---|\n".to_owned();
     let entry_points: Names = all_sources().iter().map(|k| k.entry_point.to_owned()).collect();
     for entry_point in entry_points {
-        let (file, _) =
-            known.iter().find(|(_, part)| part.provides.contains(&entry_point)).unwrap();
+        let (file, _) = known.iter().find(|(_, part)| part.provides.contains(&entry_point)).unwrap();
         let dispatched = after(&files[file], "// dispatched: ");
         assert!(!dispatched.is_empty(), "{file} does not say when it is dispatched");
         let what = first_sentence(&files[file]);
@@ -137,16 +132,14 @@ fn kernel_table(known: &BTreeMap<String, PartNames>, files: &BTreeMap<String, St
 }
 
 fn part_table(known: &BTreeMap<String, PartNames>, files: &BTreeMap<String, String>) -> String {
-    let mut table =
-        "| part | what it is | provides | needs | in |\n|---|---|---|---|---|\n".to_owned();
+    let mut table = "| part | what it is | provides | needs | in |\n|---|---|---|---|---|\n".to_owned();
     for (name, part) in known {
         let (file, variant) = name.split_once('#').unwrap_or((name, ""));
         let text = &files[file];
         let source = variants(text).find(|(found, ..)| *found == variant).map(|(_, text, _)| text);
         let what = first_sentence(source.unwrap_or(text));
         assert!(!what.is_empty(), "{name} does not say what it is");
-        let [provides, needs, kernels] =
-            [&part.provides, &part.needs, &part.entry_points].map(code);
+        let [provides, needs, kernels] = [&part.provides, &part.needs, &part.entry_points].map(code);
         writeln!(table, "| `{name}` | {what} | {provides} | {needs} | {kernels} |").unwrap();
     }
     table
@@ -198,10 +191,8 @@ fn expected_page(page: &str, tables: &[(&str, String)]) -> String {
 fn parts_say_what_they_provide_and_need_and_the_readme_lists_them() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let (known, files) = (known_parts(), files());
-    let mut expected: Vec<(PathBuf, String)> = files
-        .iter()
-        .map(|(file, text)| (root.join(file), expected_file(file, text, &known)))
-        .collect();
+    let mut expected: Vec<(PathBuf, String)> =
+        files.iter().map(|(file, text)| (root.join(file), expected_file(file, text, &known))).collect();
     let page = std::fs::read_to_string(root.join("README.md")).unwrap();
     let tables = [
         ("kernels", kernel_table(&known, &files)),

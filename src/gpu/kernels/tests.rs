@@ -13,11 +13,8 @@ use crate::gpu::shader::{Kernel, Part, variants};
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
     let source = kernel.source();
     let readable = |message: String| kernel.with_positions_in_files(&message);
-    let module = naga::front::wgsl::parse_str(&source)
-        .map_err(|error| readable(error.emit_to_string(&source)))?;
-    validator(kernel.has_ray_queries())
-        .validate(&module)
-        .map_err(|error| readable(error.emit_to_string(&source)))?;
+    let module = naga::front::wgsl::parse_str(&source).map_err(|error| readable(error.emit_to_string(&source)))?;
+    validator(kernel.has_ray_queries()).validate(&module).map_err(|error| readable(error.emit_to_string(&source)))?;
     Ok(module)
 }
 
@@ -96,8 +93,7 @@ fn no_two_kernels_have_the_same_name() {
 /// Tests that every kernel calls `start_fences`, because a compiler knows the value of a zero that was never set.
 #[test]
 fn every_kernel_sets_what_fences_need() {
-    let uses_frame =
-        |kernel: &Kernel| kernel.parts.iter().any(|part| part.name == "scene/frame.wgsl");
+    let uses_frame = |kernel: &Kernel| kernel.parts.iter().any(|part| part.name == "scene/frame.wgsl");
     for kernel in all_sources().iter().filter(|kernel| uses_frame(kernel)) {
         let source = kernel.source();
         let entry = source.split(&format!("fn {}(", kernel.entry_point)).nth(1).unwrap();
@@ -110,8 +106,7 @@ fn every_kernel_sets_what_fences_need() {
 #[test]
 fn no_part_uses_a_private_variable_of_another() {
     for kernel in all_sources() {
-        let parts: Vec<_> =
-            kernel.parts.iter().map(|part| (part, Declarations::of(&part.source))).collect();
+        let parts: Vec<_> = kernel.parts.iter().map(|part| (part, Declarations::of(&part.source))).collect();
         for (owner, declared) in &parts {
             for variable in &declared.private_variables {
                 let others = parts.iter().filter(|(part, _)| part.name != owner.name);
@@ -127,8 +122,7 @@ fn no_part_uses_a_private_variable_of_another() {
 fn an_error_names_the_file_and_its_line() {
     let broken = Part::of("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
     let parts = vec![Part::named("camera/ray.wgsl"), broken, Part::named("camera/film.wgsl")];
-    let refused =
-        |parts| validate(&Kernel { entry_point: "none", parts, constants: vec![] }).unwrap_err();
+    let refused = |parts| validate(&Kernel { entry_point: "none", parts, constants: vec![] }).unwrap_err();
     let message = refused(parts);
     assert!(message.contains("broken.wgsl:3:"), "{message}");
     let file = "// Head.\n\n//// a\nconst x: f32 = 1.0;\n//// b\n\nconst x: f32 = y;\n";
@@ -158,8 +152,7 @@ pub(super) fn files() -> BTreeMap<String, String> {
 #[test]
 fn every_file_and_variant_is_used_and_short() {
     let kernels = all_sources();
-    let used: BTreeSet<String> =
-        kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.name.to_owned())).collect();
+    let used: BTreeSet<String> = kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.name.to_owned())).collect();
     let mut there = BTreeSet::new();
     for (file, text) in files() {
         let lines = text.lines().count();

@@ -56,12 +56,7 @@ pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_ra
 
 /// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
 /// the rays of its last band only.
-pub(crate) fn tile_size(
-    limits: &Limits,
-    shape: DeviceShape,
-    film: &Film,
-    keeps_rays: bool,
-) -> [u32; 2] {
+pub(crate) fn tile_size(limits: &Limits, shape: DeviceShape, film: &Film, keeps_rays: bool) -> [u32; 2] {
     let side_limit = limits.max_texture_dimension_2d;
     let [width, height] = tiles::tile_size(film, shape.max_tile_pixels, side_limit);
     let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };

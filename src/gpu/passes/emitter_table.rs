@@ -2,9 +2,9 @@
 //! an array of textures holds several gigabytes on every device.
 
 use wgpu::{
-    Device, Extent3d, Limits, Origin3d, Queue, TexelCopyBufferLayout, TexelCopyTextureInfo,
-    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
-    TextureViewDescriptor, TextureViewDimension,
+    Device, Extent3d, Limits, Origin3d, Queue, TexelCopyBufferLayout, TexelCopyTextureInfo, TextureAspect,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    TextureViewDimension,
 };
 
 use crate::accel::PlannedBuffer;
@@ -71,18 +71,9 @@ pub(crate) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> Text
         let rows = (texels.len() / columns.max(1) as usize) as u32;
         let origin = Origin3d { x: 0, y: row as u32, z: layer as u32 };
         queue.write_texture(
-            TexelCopyTextureInfo {
-                texture: &texture,
-                mip_level: 0,
-                origin,
-                aspect: TextureAspect::All,
-            },
+            TexelCopyTextureInfo { texture: &texture, mip_level: 0, origin, aspect: TextureAspect::All },
             bytemuck::cast_slice(texels),
-            TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(16 * columns),
-                rows_per_image: None,
-            },
+            TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * columns), rows_per_image: None },
             Extent3d { width: columns, height: rows, depth_or_array_layers: 1 },
         );
     };
@@ -115,11 +106,7 @@ pub(crate) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
         };
         let probability = emitters.probability(*id) as f32;
         let [r, g, b] = color.to_array().map(|c| c * strength);
-        [
-            sphere,
-            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
-            [r, g, b, 0.0],
-        ]
+        [sphere, [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0], [r, g, b, 0.0]]
     })
 }
 

@@ -97,11 +97,7 @@ impl Frame {
     /// # Errors
     /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory
     /// left.
-    pub async fn new(
-        renderer: &Renderer,
-        device: &Device,
-        targets: &Targets<'_>,
-    ) -> Result<Self, GpuError> {
+    pub async fn new(renderer: &Renderer, device: &Device, targets: &Targets<'_>) -> Result<Self, GpuError> {
         let views = checked_targets(renderer, targets)?;
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
@@ -132,8 +128,7 @@ impl Frame {
             };
             let groups = (0..slots).map(group).collect();
             let views = views.into_iter().map(BindingResource::TextureView);
-            let target_group =
-                numbered_group(device, "pinhole targets", &renderer.layouts.targets, views);
+            let target_group = numbered_group(device, "pinhole targets", &renderer.layouts.targets, views);
             (records, hits, rays, status, groups, target_group)
         })
         .await?;
@@ -260,8 +255,7 @@ impl Frame {
         let mut bytes = vec![0_u8; used * self.stride];
         for (slot, record) in &records {
             let start = self.place(*slot) * self.stride;
-            bytes[start..start + size_of::<FrameParameters>()]
-                .copy_from_slice(bytemuck::bytes_of(record));
+            bytes[start..start + size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(record));
         }
         queue.write_buffer(&self.records, 0, &bytes);
         let bands = bands.into_iter().map(|band| band.size).collect();
@@ -331,11 +325,7 @@ impl Frame {
     }
 
     /// The view, if this renderer can record it for this scene.
-    pub(crate) fn view(
-        &self,
-        renderer: &Renderer,
-        scene: &SceneBuffers,
-    ) -> Result<&SetView, GpuError> {
+    pub(crate) fn view(&self, renderer: &Renderer, scene: &SceneBuffers) -> Result<&SetView, GpuError> {
         let view = self.view.as_ref().ok_or(GpuError::NoView)?;
         self.check_renderer(renderer)?;
         if view.scene != scene.id {
@@ -352,10 +342,7 @@ impl Frame {
     /// The workgroups of a record.
     pub(crate) fn traced_groups(&self, slot: Slot) -> Groups {
         let record = self.view.as_ref().and_then(|view| view.records.get(&slot));
-        record.map_or(Groups::NONE, |record| Groups {
-            first: record.traced_first,
-            size: record.traced_size,
-        })
+        record.map_or(Groups::NONE, |record| Groups { first: record.traced_first, size: record.traced_size })
     }
 
     /// Bind group 0 of every kernel, with the record of a slot.

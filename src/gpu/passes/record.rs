@@ -31,10 +31,8 @@ impl Renderer {
         frame: &Frame,
     ) -> Result<(), GpuError> {
         self.check_pipelines(scene, frame, |part| part)?;
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("pinhole"),
-            timestamp_writes: None,
-        });
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None });
         for part in frame.parts() {
             self.record_trace(&mut pass, scene, frame, part)?;
             if part.is_last_of_band {

@@ -62,9 +62,7 @@ impl Renderer {
         let mut renderer = Self::begin(device, options);
         // A browser builds pipelines at the same time, so all are begun before the first is awaited.
         while renderer.begin_next(device)? {}
-        std::mem::take(renderer.layouts_check.get_mut().unwrap_or_else(PoisonError::into_inner))
-            .passed()
-            .await?;
+        std::mem::take(renderer.layouts_check.get_mut().unwrap_or_else(PoisonError::into_inner)).passed().await?;
         let building = std::mem::take(renderer.in_building());
         for (key, pipeline, checks) in building {
             checks.passed().await?;
@@ -170,33 +168,24 @@ impl Renderer {
         let built = self.built.iter().map(|(key, _)| key);
         let mut keys = built.chain(&self.remaining);
         // Rays are kept only by the pass of the first brick.
-        !self.keeps_rays
-            && keys
-                .any(|key| matches!(key, PassKey::Trace(of, _, BrickPass::Later) if *of == camera))
+        !self.keeps_rays && keys.any(|key| matches!(key, PassKey::Trace(of, _, BrickPass::Later) if *of == camera))
     }
 
     /// Moves some pipelines to the front of the remaining ones, and returns how many of them are not ready.
     pub(crate) fn put_first(&mut self, needed: &[PassKey]) -> usize {
         // Pipelines that are being built keep their places.
         let begun = self.in_building().len();
-        let (first, others): (Vec<_>, Vec<_>) =
-            self.remaining.drain(begun..).partition(|key| needed.contains(key));
+        let (first, others): (Vec<_>, Vec<_>) = self.remaining.drain(begun..).partition(|key| needed.contains(key));
         self.remaining.extend(first.into_iter().chain(others));
         self.remaining.iter().filter(|key| needed.contains(key)).count()
     }
 
     fn kernel(&self, key: PassKey) -> Kernel {
         match key {
-            PassKey::Shade(camera, primitive) => shader::shade_kernel(
-                camera,
-                primitive,
-                self.color,
-                self.data_layers,
-                self.keeps_rays,
-            ),
-            PassKey::Trace(camera, kind, brick_pass) => {
-                shader::trace_kernel(camera, kind, brick_pass, self.keeps_rays)
+            PassKey::Shade(camera, primitive) => {
+                shader::shade_kernel(camera, primitive, self.color, self.data_layers, self.keeps_rays)
             }
+            PassKey::Trace(camera, kind, brick_pass) => shader::trace_kernel(camera, kind, brick_pass, self.keeps_rays),
         }
     }
 
@@ -212,17 +201,11 @@ impl Renderer {
     }
 
     /// The pipeline for a purpose, and for a brick of a kind.
-    pub(crate) fn pipeline(
-        &self,
-        key: PassKey,
-        kind: BrickKind,
-    ) -> Result<&ComputePipeline, GpuError> {
+    pub(crate) fn pipeline(&self, key: PassKey, kind: BrickKind) -> Result<&ComputePipeline, GpuError> {
         let (PassKey::Trace(camera, ..) | PassKey::Shade(camera, _)) = key;
         match self.built.iter().find(|(of, _)| *of == key) {
             Some((_, pipeline)) => Ok(pipeline),
-            None if self.remaining.contains(&key) => {
-                Err(GpuError::NotReady { remaining: self.remaining.len() })
-            }
+            None if self.remaining.contains(&key) => Err(GpuError::NotReady { remaining: self.remaining.len() }),
             None => Err(GpuError::NoPipeline { camera, kind }),
         }
     }
@@ -261,17 +244,10 @@ mod tests {
     fn a_refused_kernel_is_an_error_that_names_the_part() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         let structures = vec![Structure::List];
-        let layouts =
-            Layouts::new(&device, &RendererOptions { structures, ..RendererOptions::default() });
-        for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
-        {
-            let kernel = shader::trace_kernel(
-                CameraKind::Pinhole,
-                layouts.brick[0].0,
-                BrickPass::First,
-                false,
-            )
-            .with_part("broken.wgsl", broken);
+        let layouts = Layouts::new(&device, &RendererOptions { structures, ..RendererOptions::default() });
+        for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"] {
+            let kernel = shader::trace_kernel(CameraKind::Pinhole, layouts.brick[0].0, BrickPass::First, false)
+                .with_part("broken.wgsl", broken);
             let checks = Checks::default();
             pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1], &checks);
             match checks.passed().wait() {

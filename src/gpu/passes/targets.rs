@@ -107,14 +107,8 @@ impl TargetTextures {
     ///
     /// # Errors
     /// If the size is zero or more than the device allows, or if the device has no memory left.
-    pub async fn new(
-        renderer: &Renderer,
-        device: &Device,
-        size: [u32; 2],
-    ) -> Result<Self, GpuError> {
-        let usage = TextureUsages::STORAGE_BINDING
-            | TextureUsages::TEXTURE_BINDING
-            | TextureUsages::COPY_SRC;
+    pub async fn new(renderer: &Renderer, device: &Device, size: [u32; 2]) -> Result<Self, GpuError> {
+        let usage = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let texture = |label, format| {
             let texture = texture(device, label, format, size, usage);
             texture.create_view(&wgpu::TextureViewDescriptor::default())
@@ -122,12 +116,8 @@ impl TargetTextures {
         let (color, data) = scoped(device, || {
             let color = texture("pinhole color", renderer.color.texture_format());
             let data = renderer.data_layers.then(|| {
-                [
-                    ("pinhole depth", DEPTH_FORMAT),
-                    ("pinhole normal", NORMAL_FORMAT),
-                    ("pinhole id", ID_FORMAT),
-                ]
-                .map(|(label, format)| texture(label, format))
+                [("pinhole depth", DEPTH_FORMAT), ("pinhole normal", NORMAL_FORMAT), ("pinhole id", ID_FORMAT)]
+                    .map(|(label, format)| texture(label, format))
             });
             (color, data)
         })

@@ -78,8 +78,7 @@ pub(crate) fn nearest_first(
     space: &SceneSpace,
 ) -> Vec<usize> {
     let eye = (camera.ray_in_world(DVec2::ZERO).origin - space.origin).as_vec3();
-    let mut order: Vec<(f32, usize)> =
-        boxes.map(|brick| distance_squared(&brick, eye)).zip(0..).collect();
+    let mut order: Vec<(f32, usize)> = boxes.map(|brick| distance_squared(&brick, eye)).zip(0..).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     order.into_iter().map(|(_, brick)| brick).collect()
 }
@@ -196,9 +195,7 @@ mod tests {
 
     use super::*;
     use crate::camera::film::Film;
-    use crate::camera::{
-        Camera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
-    };
+    use crate::camera::{Camera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 
     /// Eight bricks in a row along x, with spheres from 10 i + 1 to 10 i + 9.
     fn bricks() -> Vec<BrickBounds> {
@@ -229,8 +226,7 @@ mod tests {
     #[test]
     fn each_brick_has_its_columns_and_the_first_has_all() {
         let film = Film::new(80, 16).unwrap();
-        let pose =
-            Pose::looking_along([45.0, 5.0, 30.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let pose = Pose::looking_along([45.0, 5.0, 30.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [40.0, 8.0]).unwrap();
         let parts = visible(&camera, film);
         assert_eq!(parts.len(), 8);
@@ -247,8 +243,7 @@ mod tests {
     fn bricks_behind_or_beside_the_picture_are_left_out() {
         let film = Film::new(64, 64).unwrap();
         let from = |x: f64, toward: f64| {
-            let pose =
-                Pose::looking_along([x, 5.0, 5.0], [toward, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+            let pose = Pose::looking_along([x, 5.0, 5.0], [toward, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
             PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
         };
         // The eye is between two bricks, of which one is on its plane.
@@ -257,8 +252,7 @@ mod tests {
         // Nothing is seen, so one brick writes the misses, if there are any.
         let nothing = visible(&from(95.0, 1.0), film);
         assert_eq!((nothing.len(), nothing[0].0), (1, 7));
-        let aside =
-            Pose::looking_along([30.0, 5.0, 30.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let aside = Pose::looking_along([30.0, 5.0, 30.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let narrow = PinholeCamera::with_vertical_fov(aside, 0.05, 1.0).unwrap();
         assert_eq!(numbers(&visible(&narrow, film)), [2]);
     }
@@ -283,18 +277,15 @@ mod tests {
             let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]);
             BrickBounds::of_spheres(&spheres.collect::<Vec<_>>())
         });
-        let space = SceneSpace {
-            origin: DVec3::new(1e6, 0.0, 0.0),
-            min: Vec3::splat(-1.0),
-            max: Vec3::new(30.9, 1.0, 1.0),
-        };
+        let space =
+            SceneSpace { origin: DVec3::new(1e6, 0.0, 0.0), min: Vec3::splat(-1.0), max: Vec3::new(30.9, 1.0, 1.0) };
         let order = |eye: [f64; 3]| {
             let eye = [1e6 + eye[0], eye[1], eye[2]];
             let pose = Pose::looking_at(eye, [1e6 + 12.0, 0.0, 0.1], [0.0, 1.0, 0.1]).unwrap();
             let pinhole = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
             let orthographic = OrthographicCamera::new(pose, [5.0, 5.0]).unwrap();
-            let orders: [_; 2] = [&pinhole as &dyn Camera, &orthographic]
-                .map(|camera| nearest_first(boxes.into_iter(), camera, &space));
+            let orders: [_; 2] =
+                [&pinhole as &dyn Camera, &orthographic].map(|camera| nearest_first(boxes.into_iter(), camera, &space));
             assert_eq!(orders[0], orders[1]);
             orders[0].clone()
         };
@@ -327,8 +318,7 @@ mod tests {
     #[test]
     fn a_box_in_the_middle() {
         let film = Film::new(160, 80).unwrap();
-        let pose =
-            Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let pose = Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
         let region = VisibleRegion::of(&View::new(&camera, film), &cube());
         assert_eq!(region, VisibleRegion { first: [68.0, 28.0], end: [92.0, 52.0] });
@@ -343,8 +333,7 @@ mod tests {
     #[test]
     fn y_down_is_the_other_way_round() {
         let film = Film::new(80, 80).unwrap();
-        let pose =
-            Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let pose = Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
         let up = VisibleRegion::of(&View::new(&camera, film), &cube());
         let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &cube());
@@ -355,8 +344,7 @@ mod tests {
     #[test]
     fn from_inside_the_box_the_whole_film_is_visible() {
         let film = Film::new(80, 40).unwrap();
-        let pose =
-            Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let pose = Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
         let region = VisibleRegion::of(&View::new(&camera, film), &cube());
         assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
@@ -377,12 +365,7 @@ mod tests {
             let along = (corner - ray.origin).dot(ray.direction);
             assert!((ray.at(along) - corner).length() < 1e-9);
             let (x, y) = ((location.x + 1.0) * 100.0, (1.0 - location.y) * 50.0);
-            assert!(
-                region.first[0] < x
-                    && x < region.end[0]
-                    && region.first[1] < y
-                    && y < region.end[1]
-            );
+            assert!(region.first[0] < x && x < region.end[0] && region.first[1] < y && y < region.end[1]);
         }
     }
 }

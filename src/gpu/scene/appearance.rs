@@ -55,9 +55,7 @@ pub(crate) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32>) -> Ve
         Colors::One(_) => Vec::new(),
         Colors::Palette { indices, .. } => ids.map(|id| indices[id as usize]).collect(),
         Colors::Rgba8(colors) => ids.map(|id| u32::from_le_bytes(colors[id as usize])).collect(),
-        Colors::Scalars { values, map } => {
-            ids.map(|id| map.index(values[id as usize]) as u32).collect()
-        }
+        Colors::Scalars { values, map } => ids.map(|id| map.index(values[id as usize]) as u32).collect(),
     }
 }
 
@@ -124,8 +122,7 @@ mod tests {
         let gray = |level: u8| LinearRgb::from_srgb8([level; 3]);
         let palette_of = vec![gray(10), gray(20), gray(30)];
         let map = ColorMap::new(palette_of.clone(), [0.0, 2.0]).unwrap();
-        let glass =
-            Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
+        let glass = Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
         let surfaces = vec![
             SurfaceProperties { material: glass, opacity: 1.0 },
             SurfaceProperties { opacity: 0.25, ..SurfaceProperties::default() },
@@ -143,10 +140,8 @@ mod tests {
             ] {
                 let scene = scene(appearance);
                 let ids = [3, 1, 1, 0, 2];
-                let (appearances, palette) = (
-                    AppearanceWords::of(scene.checked_appearance(), &ids),
-                    palette(scene.appearance()),
-                );
+                let (appearances, palette) =
+                    (AppearanceWords::of(scene.checked_appearance(), &ids), palette(scene.appearance()));
                 assert_eq!(palette.len(), palette_length(scene.appearance()));
                 let used = words_per_sphere(scene.checked_appearance()) * 5;
                 assert_eq!(appearances.words.len() as u64, used.max(1));
@@ -171,25 +166,19 @@ mod tests {
     #[test]
     fn materials_are_told_apart_only_where_they_differ() {
         let colors = vec![[1, 2, 3, 255], [4, 5, 6, 255], [7, 8, 9, 255], [1, 2, 3, 0]];
-        let metal =
-            SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 1.0 };
+        let metal = SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 1.0 };
         let one = scene(Appearance::from(colors.clone()).with_surface(metal));
         let counts = |scene: &Scene| {
             let appearance = scene.checked_appearance();
             (appearance.material_rows().len(), words_per_sphere(appearance))
         };
         assert_eq!(counts(&one), (1, 1));
-        let glass =
-            Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
-        let tinted = Appearance::from(colors)
-            .with_surface(SurfaceProperties { material: glass, opacity: 1.0 });
+        let glass = Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
+        let tinted = Appearance::from(colors).with_surface(SurfaceProperties { material: glass, opacity: 1.0 });
         let tinted = scene(tinted);
         // The first and the last sphere have the same colour.
         assert_eq!(counts(&tinted), (3, 2));
-        assert_eq!(
-            [0, 1, 2, 3].map(|id| tinted.checked_appearance().material_row(id)),
-            [0, 1, 2, 0]
-        );
+        assert_eq!([0, 1, 2, 3].map(|id| tinted.checked_appearance().material_row(id)), [0, 1, 2, 0]);
     }
 
     #[test]

@@ -7,10 +7,7 @@ use wgpu::{BufferUsages, CommandEncoder, Device, Features, Tlas};
 pub(crate) const FEATURES: Features = Features::EXPERIMENTAL_RAY_QUERY;
 
 /// The permission that wgpu requires for ray queries.
-#[expect(
-    unsafe_code,
-    reason = "whoever opens a device for ray queries is told that they are an experiment"
-)]
+#[expect(unsafe_code, reason = "whoever opens a device for ray queries is told that they are an experiment")]
 pub(crate) fn experiment() -> wgpu::ExperimentalFeatures {
     // SAFETY: `HeadlessOptions::ray_query`, which is off by default, says that a mistake in wgpu or in the driver may do
     // anything. Our kernels use no other experimental feature.
@@ -40,12 +37,7 @@ pub(crate) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncode
         &wgpu::CreateBlasDescriptor { label, flags, update_mode },
         wgpu::BlasGeometrySizeDescriptors::AABBs { descriptors: vec![size.clone()] },
     );
-    let mut tlas = device.create_tlas(&wgpu::CreateTlasDescriptor {
-        label,
-        max_instances: 1,
-        flags,
-        update_mode,
-    });
+    let mut tlas = device.create_tlas(&wgpu::CreateTlasDescriptor { label, max_instances: 1, flags, update_mode });
     tlas[0] = Some(wgpu::TlasInstance::new(&blas, IN_PLACE, 0, 0xff));
     let geometry = wgpu::BlasAabbGeometry {
         size: &size,
@@ -53,10 +45,7 @@ pub(crate) fn begin(device: &Device, boxes: &[[f32; 6]]) -> (Tlas, CommandEncode
         aabb_buffer: &buffer,
         primitive_offset: 0,
     };
-    let entry = wgpu::BlasBuildEntry {
-        blas: &blas,
-        geometry: wgpu::BlasGeometries::AabbGeometries(vec![geometry]),
-    };
+    let entry = wgpu::BlasBuildEntry { blas: &blas, geometry: wgpu::BlasGeometries::AabbGeometries(vec![geometry]) };
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
     encoder.build_acceleration_structures([&entry], [&tlas]);
     (tlas, encoder)

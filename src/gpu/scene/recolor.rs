@@ -123,10 +123,8 @@ impl Recolor {
             let bound = [&range, &new_words, ids, appearances].map(Buffer::as_entire_binding);
             let group = numbered_group(make.device, label, &self.layout, bound);
             noted.note("recolor");
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(label),
-                timestamp_writes: None,
-            });
+            let mut pass =
+                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
             let groups = shape_count.div_ceil(64);
@@ -147,15 +145,12 @@ impl SceneBuffers {
         };
         let (before, after) = (self.appearance(), scene.appearance());
         let is_same_kind = match (before.colors(), after.colors()) {
-            (Colors::Palette { palette, .. }, Colors::Palette { palette: other, .. }) => {
-                palette == other
-            }
+            (Colors::Palette { palette, .. }, Colors::Palette { palette: other, .. }) => palette == other,
             (Colors::Scalars { map, .. }, Colors::Scalars { map: other, .. }) => map == other,
             (before, after) => std::mem::discriminant(before) == std::mem::discriminant(after),
         };
         let is_opaque = |alpha: f32| alpha >= 1.0;
-        let hides_the_same =
-            || update.range().all(|id| is_opaque(before.alpha(id)) == is_opaque(after.alpha(id)));
+        let hides_the_same = || update.range().all(|id| is_opaque(before.alpha(id)) == is_opaque(after.alpha(id)));
         !update.changes_shape()
             && is_same_kind
             && before.sphere_count() == scene.len()

@@ -7,17 +7,13 @@ use std::time::Duration;
 
 use wgpu::{Device, Queue};
 
-use crate::accel::{
-    Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure,
-};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure};
 use crate::gpu::device_shape::{DeviceShape, SubmissionSize};
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_summary::{ExcludeBy, SceneSummary, ShapeIds};
-use crate::gpu::scene::scene_upload::{
-    BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks,
-};
+use crate::gpu::scene::scene_upload::{BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks};
 use crate::gpu::shader::records::SceneSpace;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
@@ -77,12 +73,7 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
-    pub async fn new(
-        renderer: &Renderer,
-        device: &Device,
-        queue: &Queue,
-        scene: &Scene,
-    ) -> Result<Self, GpuError> {
+    pub async fn new(renderer: &Renderer, device: &Device, queue: &Queue, scene: &Scene) -> Result<Self, GpuError> {
         let plan = plan_of(device, scene);
         let bricks = BrickSource::from(plan.bricks(scene.spheres()));
         let ids = ShapeIds::of_all(scene, bricks.may_split_duplicates);
@@ -155,8 +146,7 @@ impl SceneBuffers {
         exclude_by: ExcludeBy,
         shape: DeviceShape,
     ) -> Self {
-        let UploadedBricks { space: BrickSpace { structure, bounds: (min, max) }, bricks, bytes } =
-            uploaded;
+        let UploadedBricks { space: BrickSpace { structure, bounds: (min, max) }, bricks, bytes } = uploaded;
         let tests_per_ray = match structure {
             Structure::List => bricks.iter().map(|brick| brick.shape_count as usize).max(),
             _ => None,
@@ -196,8 +186,7 @@ impl SceneBuffers {
         let SceneId { scene, shape } = self.id;
         let is_same_structure = copy.structure == self.structure;
         // The adapted submission size stays valid for the same kind of structure.
-        let submission_size =
-            if is_same_structure { self.submission_size() } else { copy.submission_size() };
+        let submission_size = if is_same_structure { self.submission_size() } else { copy.submission_size() };
         let id = SceneId { scene, shape: shape + 1 };
         *self = Self { id, submission_size: Mutex::new(submission_size), ..copy };
     }
@@ -223,10 +212,7 @@ impl SceneBuffers {
     }
 
     /// The settings for shading primary rays.
-    pub(crate) fn primary_settings(
-        &self,
-        settings: &RenderSettings,
-    ) -> Result<PrimarySettings, GpuError> {
+    pub(crate) fn primary_settings(&self, settings: &RenderSettings) -> Result<PrimarySettings, GpuError> {
         let integrator = settings.integrator.name();
         let primary = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
         settings.check_with(&self.summary.appearance)?;
@@ -252,10 +238,7 @@ impl SceneBuffers {
     /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of
     /// this picture, because most pictures of a scene take about the same time.
     pub(crate) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
-        self.submission_size
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .adapt(groups.count(), elapsed);
+        self.submission_size.lock().unwrap_or_else(PoisonError::into_inner).adapt(groups.count(), elapsed);
     }
 
     pub(crate) fn appearance(&self) -> &SceneAppearance {

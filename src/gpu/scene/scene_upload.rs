@@ -189,9 +189,8 @@ impl<'a> SceneUpload<'a> {
             check_storage_size(device, what, bytes as u64)?;
         }
         let buffers = scoped(device, || {
-            let mut filled = |label, usage, slices: &[&[u8]]| {
-                joined((device, queue), &mut uploaded.bytes, label, usage, slices)
-            };
+            let mut filled =
+                |label, usage, slices: &[&[u8]]| joined((device, queue), &mut uploaded.bytes, label, usage, slices);
             let storage = BufferUsages::STORAGE;
             let uniform = BufferUsages::UNIFORM;
             let shape_count = record.shape_count;
@@ -245,8 +244,7 @@ impl<'a> SceneUpload<'a> {
     /// Returns the bricks. If any of them is a nested grid, all are searched as nested grids.
     pub(crate) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
-        let is_nested =
-            |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
+        let is_nested = |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
         space.structure = space.structure.with_nested(bricks.iter().any(is_nested));
         for brick in &mut bricks {
             brick.kind.structure = space.structure;

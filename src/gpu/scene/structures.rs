@@ -107,11 +107,9 @@ mod tests {
             layers: LayerSet::COLOR,
             host_bytes_per_pixel: 0,
         };
-        let [accel, occluders] =
-            choices.map(|choice| AccelPlan::new(scene.spheres(), choice, 1 << 27));
+        let [accel, occluders] = choices.map(|choice| AccelPlan::new(scene.spheres(), choice, 1 << 27));
         let structures = StructurePlans { accel, occluders: Some(occluders) };
-        let device =
-            DeviceLimits { limits: wgpu::Limits::default(), device_type: wgpu::DeviceType::Cpu };
+        let device = DeviceLimits { limits: wgpu::Limits::default(), device_type: wgpu::DeviceType::Cpu };
         RenderPlan::new(&request, structures, &device)
     }
 

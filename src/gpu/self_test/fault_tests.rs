@@ -118,8 +118,7 @@ fn unfenced_sums_are_counted_and_may_be_anything() {
     let share = |answers: &[Arithmetic]| {
         let fence = &rounding::judge(&operands, answers)[0];
         assert!(fence.passed());
-        let (_, percent) =
-            fence.figures.iter().find(|(name, _)| *name == "unfenced_rewritten_percent").unwrap();
+        let (_, percent) = fence.figures.iter().find(|(name, _)| *name == "unfenced_rewritten_percent").unwrap();
         (*percent, fence.words.contains("reassociates"))
     };
     assert_eq!(share(&answers), (100.0, true));
@@ -165,27 +164,19 @@ fn rounding_down_is_legal() {
 #[test]
 fn errors_beyond_their_bounds_are_found() {
     type Field = fn(&mut Arithmetic) -> &mut f32;
-    let bounded: [(&str, u32, Field); 2] = [
-        ("sqrt", 4, |answer| &mut answer.root),
-        ("inverse_sqrt", 1, |answer| &mut answer.inverse_root),
-    ];
+    let bounded: [(&str, u32, Field); 2] =
+        [("sqrt", 4, |answer| &mut answer.root), ("inverse_sqrt", 1, |answer| &mut answer.inverse_root)];
     for (name, allowed, field) in bounded {
         let failing = |neighbours| failing_arithmetic(3, |_, a| off(field(a), neighbours));
         assert!(failing(allowed).is_empty(), "{name}");
         // The error of the correct result may have the opposite sign.
         assert_eq!(failing(allowed + 2), [name]);
         for wrong in [f32::NAN, f32::INFINITY, 0.0] {
-            assert_eq!(
-                failing_arithmetic(3, |_, answer| *field(answer) = wrong),
-                [name],
-                "{wrong}"
-            );
+            assert_eq!(failing_arithmetic(3, |_, answer| *field(answer) = wrong), [name], "{wrong}");
         }
     }
     // The error of a quotient is measured relative to the quotient, not in ULP.
-    let divide = |units: f32| {
-        failing_arithmetic(3, |_, answer| answer.quotient *= 1.0 + units * f32::EPSILON)
-    };
+    let divide = |units: f32| failing_arithmetic(3, |_, answer| answer.quotient *= 1.0 + units * f32::EPSILON);
     assert!(divide(3.0).is_empty() && divide(-3.0).is_empty());
     for wrong in [5.0, -5.0, f32::NAN, f32::INFINITY] {
         assert_eq!(divide(wrong), ["divide"], "{wrong}");

@@ -24,8 +24,7 @@ pub(crate) fn judge(pixels: &[TracedPixel]) -> TestedProperty {
     for TracedRay { origin: [sum, back, error], direction: [a, b, _], distance: unfenced } in
         pixels.iter().filter_map(|pixel| pixel.ray)
     {
-        let [wide_sum, wide_back, wide_error, wide_a, wide_b] =
-            [sum, back, error, a, b].map(f64::from);
+        let [wide_sum, wide_back, wide_error, wide_a, wide_b] = [sum, back, error, a, b].map(f64::from);
         // The error of a sum with a term that is much smaller need not be an f32 if it is not rounded to nearest.
         if !(1e-3..=1.0).contains(&(wide_b / wide_a).abs()) {
             continue;
@@ -33,9 +32,7 @@ pub(crate) fn judge(pixels: &[TracedPixel]) -> TestedProperty {
         tally.check(wide_sum + wide_error == wide_a + wide_b, || {
             format!("TwoSum of {a:e} and {b:e}, which gives {sum:e} and {error:e}")
         });
-        tally.check(wide_back == wide_sum - wide_a, || {
-            format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}")
-        });
+        tally.check(wide_back == wide_sum - wide_a, || format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}"));
         if error != 0.0 {
             rounded += 1;
             rewritten += usize::from(unfenced != error);
@@ -64,9 +61,7 @@ mod tests {
     #[test]
     fn fences_that_leak_are_found() {
         let of = |fences| -> Vec<_> {
-            (0..100)
-                .map(|i| probed(4.0 + 0.01 * i as f32, 0.9 - 0.013 * i as f32, fences))
-                .collect()
+            (0..100).map(|i| probed(4.0 + 0.01 * i as f32, 0.9 - 0.013 * i as f32, fences)).collect()
         };
         let sound = judge(&of(true));
         assert!(sound.passed(), "{sound}");

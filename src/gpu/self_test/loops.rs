@@ -29,9 +29,7 @@ pub(super) fn judge(limit: u32, answers: &[Vec<Loop>]) -> TestedProperty {
     let mut tally = Tally::default();
     let runs = runs(limit);
     let [single, nested, _] = runs;
-    for (what, run, answers) in
-        [("a loop", single, answers.first()), ("two nested loops", nested, answers.get(1))]
-    {
+    for (what, run, answers) in [("a loop", single, answers.first()), ("two nested loops", nested, answers.get(1))] {
         // Either `single` or `inner` is zero.
         let expected = run.single + run.inner;
         for index in 0..INVOCATIONS {
@@ -56,14 +54,9 @@ pub(super) fn judge(limit: u32, answers: &[Vec<Loop>]) -> TestedProperty {
             Some(count) => format!("silently stops after {count}"),
             None => "loses count".to_owned(),
         };
-        words += &format!(
-            "; one of {LONGEST} {stops}: a trap below which pinhole's limit of {limit} iterations stays"
-        );
+        words += &format!("; one of {LONGEST} {stops}: a trap below which pinhole's limit of {limit} iterations stays");
     }
-    let figures = vec![
-        ("limit_iterations", f64::from(limit)),
-        ("longest_iterations", f64::from(longest.unwrap_or(0))),
-    ];
+    let figures = vec![("limit_iterations", f64::from(limit)), ("longest_iterations", f64::from(longest.unwrap_or(0)))];
     let mut property = tally.property("loops", words, figures);
     if property.passed() && !ends {
         property.outcome = PropertyOutcome::Noted;
@@ -108,8 +101,7 @@ mod tests {
     }
 
     fn answers(limit: u32) -> Vec<Vec<Loop>> {
-        let run =
-            |run: SelfTest| (0..INVOCATIONS).map(|i| after(i, run.single + run.inner)).collect();
+        let run = |run: SelfTest| (0..INVOCATIONS).map(|i| after(i, run.single + run.inner)).collect();
         runs(limit).map(run).to_vec()
     }
 

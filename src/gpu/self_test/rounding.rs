@@ -18,14 +18,7 @@ type Pair<'a> = (&'a Operands, &'a Arithmetic);
 /// All properties of operations whose results may be rounded.
 pub(super) fn judge(operands: &[Operands], answers: &[Arithmetic]) -> Vec<TestedProperty> {
     let pairs: Vec<Pair<'_>> = operands.iter().zip(answers).collect();
-    vec![
-        fence(&pairs),
-        add_multiply(&pairs),
-        divide(&pairs),
-        sqrt(&pairs),
-        inverse_sqrt(&pairs),
-        dot(&pairs),
-    ]
+    vec![fence(&pairs), add_multiply(&pairs), divide(&pairs), sqrt(&pairs), inverse_sqrt(&pairs), dot(&pairs)]
 }
 
 fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
@@ -39,9 +32,7 @@ fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
             format!("TwoSum of {a:e} and {b:e}, which gives {sum:e} and {error:e}")
         });
         // This difference is exact, because |a| >= |b|.
-        tally.check(wide(back) == wide(sum) - wide(a), || {
-            format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}")
-        });
+        tally.check(wide(back) == wide(sum) - wide(a), || format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}"));
         tally.check(is_sum_of_products(scaled, p, q, factor), || {
             format!("{p:e}*{factor:e} + {q:e}*{factor:e}, which gives {scaled:e}")
         });
@@ -57,10 +48,8 @@ fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
     } else {
         format!("this compiler reassociates: {rewritten:.1} % of unfenced sums that round")
     };
-    let words = format!(
-        "fenced sums, differences and products are as written, {} of them; {reassociates}",
-        tally.tested()
-    );
+    let words =
+        format!("fenced sums, differences and products are as written, {} of them; {reassociates}", tally.tested());
     tally.property("fence", words, vec![("unfenced_rewritten_percent", rewritten)])
 }
 
@@ -103,14 +92,11 @@ struct Measure {
     figures: [&'static str; 2],
 }
 
-const IN_ULP: Measure =
-    Measure { of: error_in_ulp, unit: "ULP", figures: ["worst_ulp", "allowed_ulp"] };
+const IN_ULP: Measure = Measure { of: error_in_ulp, unit: "ULP", figures: ["worst_ulp", "allowed_ulp"] };
 
 /// Errors of quotients, which may be products of two rounded numbers.
 const RELATIVE: Measure =
-    Measure {
-        of: relative_error, unit: "· 2⁻²³ of it", figures: ["worst_units", "allowed_units"]
-    };
+    Measure { of: relative_error, unit: "· 2⁻²³ of it", figures: ["worst_units", "allowed_units"] };
 
 /// Judges results whose errors are bounded. Each has a description, the result of the device and the exact value.
 fn within<W: Fn() -> String>(
@@ -122,19 +108,12 @@ fn within<W: Fn() -> String>(
     let mut tally = Tally::default();
     let mut worst = 0.0_f64;
     for (what, got, exact) in results {
-        let error = if exact == 0.0 {
-            if got == 0.0 { 0.0 } else { f64::INFINITY }
-        } else {
-            of(got, exact)
-        };
+        let error = if exact == 0.0 { if got == 0.0 { 0.0 } else { f64::INFINITY } } else { of(got, exact) };
         // A NaN fails this comparison.
-        tally.check(error <= bound + PAD, || {
-            format!("{} = {got:e}, off by {error:.2} {unit}", what())
-        });
+        tally.check(error <= bound + PAD, || format!("{} = {got:e}, off by {error:.2} {unit}", what()));
         worst = worst.max(error);
     }
-    let words =
-        format!("the worst of {} is off by {worst:.2} {unit}; {bound} are allowed", tally.tested());
+    let words = format!("the worst of {} is off by {worst:.2} {unit}; {bound} are allowed", tally.tested());
     tally.property(name, words, vec![(found, worst), (allowed, bound)])
 }
 
@@ -147,9 +126,9 @@ fn divide(pairs: &[Pair<'_>]) -> TestedProperty {
 }
 
 fn sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
-    let results = pairs.iter().map(|&(o, answer)| {
-        (move || format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt())
-    });
+    let results = pairs
+        .iter()
+        .map(|&(o, answer)| (move || format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt()));
     within("sqrt", SQRT_ULP, IN_ULP, results)
 }
 
@@ -169,16 +148,11 @@ fn dot(pairs: &[Pair<'_>]) -> TestedProperty {
         let products = [0, 1, 2].map(|axis| f64::from(o.u[axis]) * f64::from(o.v[axis]));
         let size: f64 = products.iter().map(|product| product.abs()).sum();
         let error = (f64::from(answer.dot) - products.iter().sum::<f64>()).abs() / size;
-        tally.check(error <= DOT + DOT_PAD, || {
-            format!("dot({:?}, {:?}) = {:e}", o.u, o.v, answer.dot)
-        });
+        tally.check(error <= DOT + DOT_PAD, || format!("dot({:?}, {:?}) = {:e}", o.u, o.v, answer.dot));
         worst = worst.max(error);
     }
     let share = 100.0 * worst / DOT;
-    let words = format!(
-        "the worst of {} errors is {share:.0} % of the largest allowed, 3 roundings",
-        tally.tested()
-    );
+    let words = format!("the worst of {} errors is {share:.0} % of the largest allowed, 3 roundings", tally.tested());
     tally.property("dot", words, vec![("worst_percent_of_allowed", share)])
 }
 
@@ -205,9 +179,7 @@ fn subnormals(values: &[Values], answers: &[Exact]) -> TestedProperty {
             // A device may flush one subnormal operand of a sum, or both.
             let is_operand = operation == "sum" && (got == v.tiny || got == v.speck);
             tally.check(got == 0.0 || is_operand || is_neighbour(got, exact), || {
-                format!(
-                    "the {operation} of {v:?} is {got:e}, which is neither kept nor flushed to zero"
-                )
+                format!("the {operation} of {v:?} is {got:e}, which is neither kept nor flushed to zero")
             });
             if exact.abs() >= f64::from(f32::from_bits(1)) {
                 count.0 += usize::from(got != 0.0);

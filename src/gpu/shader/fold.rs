@@ -5,8 +5,7 @@ use wgpu::naga::back::pipeline_constants::process_overrides;
 use wgpu::naga::compact::{KeepUnused, compact};
 use wgpu::naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use wgpu::naga::{
-    Block, Expression, Function, Handle, Literal, Module, ShaderStage, Statement, SwitchCase,
-    SwitchValue, front,
+    Block, Expression, Function, Handle, Literal, Module, ShaderStage, Statement, SwitchCase, SwitchValue, front,
 };
 
 /// The module of a kernel without `override` constants and without branches that are not taken. `None` if the source is
@@ -43,12 +42,10 @@ fn fold_function(module: &Module, function: &mut Function) {
     let expressions = &function.expressions;
     let known = |handle: Handle<Expression>| match expressions[handle] {
         Expression::Literal(literal) => Some(literal),
-        Expression::Constant(constant) => {
-            match module.global_expressions[module.constants[constant].init] {
-                Expression::Literal(literal) => Some(literal),
-                _ => None,
-            }
-        }
+        Expression::Constant(constant) => match module.global_expressions[module.constants[constant].init] {
+            Expression::Literal(literal) => Some(literal),
+            _ => None,
+        },
         _ => None,
     };
     fold(&mut function.body, &known);
@@ -84,10 +81,7 @@ fn fold(block: &mut Block, known: &impl Fn(Handle<Expression>) -> Option<Literal
 }
 
 /// The branch that is taken, if it is known.
-fn taken(
-    statement: Statement,
-    known: &impl Fn(Handle<Expression>) -> Option<Literal>,
-) -> Statement {
+fn taken(statement: Statement, known: &impl Fn(Handle<Expression>) -> Option<Literal>) -> Statement {
     match statement {
         Statement::If { condition, accept, reject } => match known(condition) {
             Some(Literal::Bool(true)) => Statement::Block(accept),

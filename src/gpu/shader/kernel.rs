@@ -19,13 +19,8 @@ pub(crate) struct Kernel {
 }
 
 /// The files of structures, which are alternatives to each other.
-const STRUCTURES: &[&str] = &[
-    "accel/list.wgsl",
-    "accel/ball_grid.wgsl",
-    "accel/nested_grid.wgsl",
-    "accel/wide_tree.wgsl",
-    WITH_DIRECTIVE,
-];
+const STRUCTURES: &[&str] =
+    &["accel/list.wgsl", "accel/ball_grid.wgsl", "accel/nested_grid.wgsl", "accel/wide_tree.wgsl", WITH_DIRECTIVE];
 
 /// The file that begins with a directive, which WGSL allows only before all declarations.
 const WITH_DIRECTIVE: &str = "accel/ray_query.wgsl";
@@ -45,9 +40,8 @@ impl Kernel {
     /// The kernel with values of constants. Values of constants that it does not declare are ignored.
     pub(crate) fn with(mut self, constants: impl IntoIterator<Item = Constant>) -> Self {
         let lines = self.parts.iter().flat_map(|part| part.source.lines());
-        let names: BTreeSet<_> = lines
-            .filter_map(|line| Some(line.strip_prefix("override ")?.split_once(':')?.0))
-            .collect();
+        let names: BTreeSet<_> =
+            lines.filter_map(|line| Some(line.strip_prefix("override ")?.split_once(':')?.0)).collect();
         let declared = constants.into_iter().filter(|(name, _)| names.contains(name));
         self.constants.extend(declared);
         self

@@ -27,9 +27,7 @@ pub(crate) struct Layouts {
 
 impl Layouts {
     pub(crate) fn new(device: &Device, options: &RendererOptions) -> Self {
-        let RendererOptions {
-            color, data_layers, keeps_rays, ref structures, ref primitives, ..
-        } = *options;
+        let RendererOptions { color, data_layers, keeps_rays, ref structures, ref primitives, .. } = *options;
         let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
         let mut targets = vec![target(color.texture_format())];
         if data_layers {
@@ -47,11 +45,7 @@ impl Layouts {
             frame: layout("pinhole frame", &frame),
             brick: BrickKind::of(structures, primitives)
                 .map(|kind| {
-                    let mut kinds = vec![
-                        uniform::<records::Brick>(),
-                        shapes(kind.primitive),
-                        storage::<u32>(true),
-                    ];
+                    let mut kinds = vec![uniform::<records::Brick>(), shapes(kind.primitive), storage::<u32>(true)];
                     kinds.extend(word_buffers(kind.structure));
                     (kind, layout("pinhole brick", &kinds))
                 })
@@ -65,10 +59,7 @@ impl Layouts {
                     storage::<records::Color>(true),
                 ],
             ),
-            appearance: layout(
-                "pinhole appearance",
-                &[storage::<u32>(true), storage::<records::Color>(true)],
-            ),
+            appearance: layout("pinhole appearance", &[storage::<u32>(true), storage::<records::Color>(true)]),
             targets: layout("pinhole targets", &targets),
         }
     }
@@ -111,18 +102,11 @@ pub(crate) fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> Bin
 }
 
 /// Creates a layout of bindings with the given numbers.
-pub(crate) fn layout_of(
-    device: &Device,
-    label: &str,
-    kinds: &[(u32, BindingType)],
-) -> BindGroupLayout {
+pub(crate) fn layout_of(device: &Device, label: &str, kinds: &[(u32, BindingType)]) -> BindGroupLayout {
     let visibility = wgpu::ShaderStages::COMPUTE;
     let entry = |&(binding, ty)| BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let entries: Vec<_> = kinds.iter().map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &entries,
-    })
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
 /// Binding types of the buffers of a structure besides its shapes and ids, from binding 3 on.

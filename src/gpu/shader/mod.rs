@@ -21,6 +21,6 @@ pub(super) use part::Part;
 pub(super) use part::{VARIANT, variants};
 pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
-    BrickPass, camera_constant, color_target_choice, data_layers_choice, probe_kernel,
-    shade_kernel, structure_choice, trace_kernel,
+    BrickPass, camera_constant, color_target_choice, data_layers_choice, probe_kernel, shade_kernel, structure_choice,
+    trace_kernel,
 };

@@ -74,8 +74,7 @@ impl Part {
     /// which a test of all kernels detects.
     pub(crate) fn named(name: &'static str) -> Self {
         let file = name.split('#').next();
-        let text =
-            FILES.iter().find(|(known, _)| Some(*known) == file).map_or("", |(_, text)| text);
+        let text = FILES.iter().find(|(known, _)| Some(*known) == file).map_or("", |(_, text)| text);
         Self::of(name, text)
     }
 

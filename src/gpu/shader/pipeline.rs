@@ -47,18 +47,13 @@ pub(crate) fn pipeline_with(
     };
     let refused = kernel.clone();
     checks.create_explained(device, create, move |error| match error {
-        GpuError::Device { message } => {
-            GpuError::Device { message: refused.with_positions_in_files(&message) }
-        }
+        GpuError::Device { message } => GpuError::Device { message: refused.with_positions_in_files(&message) },
         other => other,
     })
 }
 
 /// The source of a kernel as a device takes it, and the constants that still need values. A browser takes WGSL.
-fn source<'a>(
-    kernel: &Kernel,
-    constants: &'a [(&'a str, f64)],
-) -> (wgpu::ShaderSource<'static>, &'a [(&'a str, f64)]) {
+fn source<'a>(kernel: &Kernel, constants: &'a [(&'a str, f64)]) -> (wgpu::ShaderSource<'static>, &'a [(&'a str, f64)]) {
     let source = kernel.source();
     #[cfg(not(target_arch = "wasm32"))]
     if let Some(module) = super::fold::folded(&source, kernel.entry_point, constants) {
@@ -68,23 +63,15 @@ fn source<'a>(
 }
 
 /// The options of a stage with these values of `override` constants.
-pub(crate) fn with_constants<'a>(
-    constants: &'a [(&'a str, f64)],
-) -> wgpu::PipelineCompilationOptions<'a> {
+pub(crate) fn with_constants<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
     wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() }
 }
 
 /// Creates a shader module without the counter that wgpu inserts into every loop to stop endless ones, because it takes
 /// 4 to 14 % of the time of a trace. Bounds checks stay enabled.
 #[expect(unsafe_code, reason = "every loop of our kernels ends by itself, see below")]
-fn shader_module(
-    device: &Device,
-    descriptor: wgpu::ShaderModuleDescriptor<'_>,
-) -> wgpu::ShaderModule {
-    let checks = wgpu::ShaderRuntimeChecks {
-        force_loop_bounding: false,
-        ..wgpu::ShaderRuntimeChecks::checked()
-    };
+fn shader_module(device: &Device, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
+    let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
     // SAFETY: a loop without wgpu's counter must not run forever. Loops over the levels and cells of a tree or a grid
     // call `spend` in every iteration and leave when it returns false. The others are bounded by data: a loop over all
     // spheres by a number from a uniform; a loop over a list or a leaf by a mark in buffers that only `SceneBuffers`

@@ -19,12 +19,7 @@ impl BrickPass {
 }
 
 /// The kernel that finds the nearest sphere of every ray, and may record the rays.
-pub(crate) fn trace_kernel(
-    camera: CameraKind,
-    kind: BrickKind,
-    brick_pass: BrickPass,
-    keeps_rays: bool,
-) -> Kernel {
+pub(crate) fn trace_kernel(camera: CameraKind, kind: BrickKind, brick_pass: BrickPass, keeps_rays: bool) -> Kernel {
     let entry = if keeps_rays { "primary/entry.wgsl#recorded" } else { "primary/entry.wgsl#made" };
     entered_kernel(camera, kind, brick_pass, entry)
 }

@@ -322,18 +322,7 @@ mod tests {
             }),
             layout!(Loop { count, state }),
             layout!(Denoise { size, step, zero }),
-            layout!(HostView {
-                column,
-                is_parallel,
-                row,
-                slope,
-                forward,
-                far,
-                film_depth,
-                zero,
-                size,
-                first_pixel
-            }),
+            layout!(HostView { column, is_parallel, row, slope, forward, far, film_depth, zero, size, first_pixel }),
             layout!(DispatchParameters {
                 sample,
                 surface,
@@ -385,12 +374,7 @@ mod tests {
                 // A kernel that does not use a record does not declare it.
                 if source.contains(&format!("struct {name} ")) {
                     declared.insert(*name);
-                    assert_eq!(
-                        *in_rust,
-                        layout_in_wgsl(&module, name),
-                        "{name} of {}",
-                        kernel.name()
-                    );
+                    assert_eq!(*in_rust, layout_in_wgsl(&module, name), "{name} of {}", kernel.name());
                 }
             }
         }
@@ -411,22 +395,12 @@ mod tests {
             numbers: [0.0; 3],
         };
         let source = include_str!("../../../shaders/primary/shading.wgsl");
-        assert!(
-            source.contains(&format!("const SHADING_TRANSPARENT: u32 = {SHADING_TRANSPARENT}u;"))
-        );
+        assert!(source.contains(&format!("const SHADING_TRANSPARENT: u32 = {SHADING_TRANSPARENT}u;")));
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let primary = PrimarySettings { shading, ..PrimarySettings::default() };
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
             let camera = RequestedCamera { kind: CameraKind::Pinhole, vectors };
-            let frame = FrameParameters::new(
-                &camera,
-                &scene,
-                &film,
-                tile,
-                Groups::of_size([1, 1]),
-                &primary,
-                0,
-            );
+            let frame = FrameParameters::new(&camera, &scene, &film, tile, Groups::of_size([1, 1]), &primary, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }

@@ -76,10 +76,8 @@ impl SlabCrossing {
 
 impl BoxCrossing {
     /// The crossing of an unbounded box.
-    pub(crate) const UNBOUNDED: Self = Self {
-        enter: Interval { low: 0.0, high: 0.0 },
-        leave: Interval { low: f64::INFINITY, high: f64::INFINITY },
-    };
+    pub(crate) const UNBOUNDED: Self =
+        Self { enter: Interval { low: 0.0, high: 0.0 }, leave: Interval { low: f64::INFINITY, high: f64::INFINITY } };
 
     /// Intersects the crossing with the slab between two parallel planes.
     pub(crate) fn cut(&mut self, SlabCrossing { near, far }: SlabCrossing) {
@@ -133,10 +131,7 @@ impl EnteredRay {
     }
 
     /// The numbers of a legal ray, with their names and bounds.
-    pub(crate) fn numbers(
-        &self,
-        ray: &TracedRay,
-    ) -> impl Iterator<Item = (&'static str, f64, Interval)> {
+    pub(crate) fn numbers(&self, ray: &TracedRay) -> impl Iterator<Item = (&'static str, f64, Interval)> {
         let [direction, origin] = [ray.direction, ray.origin].map(|v| v.map(f64::from));
         let axes = (0..3).flat_map(move |axis| {
             [
@@ -144,8 +139,7 @@ impl EnteredRay {
                 ("the start of a ray", origin[axis], self.origin(axis, self.enter)),
             ]
         });
-        let distance =
-            ("the distance of a start", f64::from(ray.distance), self.distance(self.enter));
+        let distance = ("the distance of a start", f64::from(ray.distance), self.distance(self.enter));
         axes.chain([distance])
     }
 
@@ -176,8 +170,7 @@ impl EnteredRay {
 
     fn distance(&self, enter: Interval) -> Interval {
         let CameraRay { distance, distance_error, .. } = self.exact;
-        let error =
-            distance_error + PAD * U * (distance.abs() + distance_error + enter.high) + FLUSH;
+        let error = distance_error + PAD * U * (distance.abs() + distance_error + enter.high) + FLUSH;
         Interval { low: distance + enter.low - error, high: distance + enter.high + error }
     }
 
@@ -216,16 +209,12 @@ pub(crate) struct AnyRay {
 impl CameraRay {
     /// The legal rays for every direction that the device may have computed.
     pub(crate) fn any(&self, model: &CameraModel) -> AnyRay {
-        let BoxCrossing { enter, leave } =
-            model.slabs(self, self.line.direction, self.direction_error);
+        let BoxCrossing { enter, leave } = model.slabs(self, self.line.direction, self.direction_error);
         let Line { origin, direction, bend } = self.line;
         let turned = self.direction_error.length();
         let along = enter.high * (direction.abs() + self.direction_error);
         // As in `EnteredRay::origin_error`: a product and a sum.
-        let moved = self.origin_error
-            + gamma(4) * along
-            + U * (origin.abs() + along + self.origin_error)
-            + 4.0 * FLUSH;
+        let moved = self.origin_error + gamma(4) * along + U * (origin.abs() + along + self.origin_error) + 4.0 * FLUSH;
         let across = PAD * (moved.length() + enter.high * turned);
         let slack = Slack { across, along: enter.high - enter.low, direction: PAD * turned };
         let distance = self.distance + enter.low;

@@ -33,13 +33,10 @@ impl CameraModel {
         let Aside { exact: aside, terms, location_error } = self.aside(location);
         let unit = Unit::of(DeviceVector {
             exact: aside + self.forward,
-            error: location_error
-                + gamma(3) * (terms + location_error + self.forward.abs())
-                + 4.0 * FLUSH,
+            error: location_error + gamma(3) * (terms + location_error + self.forward.abs()) + 4.0 * FLUSH,
         });
         let along = self.advance * aside;
-        let origin_error = self.advance.abs()
-            * (location_error + gamma(3) * (terms + location_error))
+        let origin_error = self.advance.abs() * (location_error + gamma(3) * (terms + location_error))
             + gamma(2) * (self.advance.abs() * (terms + location_error) + self.origin.abs())
             + 4.0 * FLUSH;
         self.advanced(self.origin + along, origin_error, &unit)
@@ -59,8 +56,7 @@ impl CameraModel {
 
     pub(super) fn orthographic(&self, location: Location) -> CameraRay {
         let Aside { exact: aside, terms, location_error } = self.aside(location);
-        let origin_error =
-            location_error + gamma(3) * (terms + location_error + self.origin.abs()) + 4.0 * FLUSH;
+        let origin_error = location_error + gamma(3) * (terms + location_error + self.origin.abs()) + 4.0 * FLUSH;
         CameraRay {
             distance: self.advance,
             origin_error: PAD * origin_error,
@@ -88,9 +84,7 @@ impl CameraModel {
 
         let unit = Unit::of(DeviceVector {
             exact: aside.exact + self.forward - offset.exact,
-            error: aside.error
-                + offset.error
-                + gamma(2) * (aside.size() + self.forward.abs() + offset.size()),
+            error: aside.error + offset.error + gamma(2) * (aside.size() + self.forward.abs() + offset.size()),
         });
         let (near, far) = (1.0 - self.advance, self.advance);
         let origin = self.origin + far * aside.exact + near * offset.exact;

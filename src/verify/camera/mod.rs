@@ -173,9 +173,7 @@ impl Unit {
         let shortest = (length - length_error).max(f64::MIN_POSITIVE);
         // The errors of a reciprocal of the length and of a product.
         let direction_error =
-            (error + exact.abs() * (length_error / length) + toward.size() * (DIVIDE + 2.0 * U))
-                / shortest
-                * PAD
+            (error + exact.abs() * (length_error / length) + toward.size() * (DIVIDE + 2.0 * U)) / shortest * PAD
                 + FLUSH;
         Self { direction: exact / length, direction_error, length, length_error }
     }

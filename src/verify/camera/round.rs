@@ -44,11 +44,7 @@ impl SinCos {
 const SMALLEST_SPOT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// The sum a p + b q on a device, where each factor has an error bound.
-fn sum_of_products(
-    [(a, a_error), (b, b_error)]: [(f64, f64); 2],
-    p: DeviceVector,
-    q: DeviceVector,
-) -> DeviceVector {
+fn sum_of_products([(a, a_error), (b, b_error)]: [(f64, f64); 2], p: DeviceVector, q: DeviceVector) -> DeviceVector {
     let product = |factor: f64, error: f64, v: DeviceVector| {
         let size = (factor.abs() + error) * v.size();
         (factor.abs() * v.error + error * v.size(), size)
@@ -112,12 +108,7 @@ impl CameraModel {
 }
 
 /// A ray that starts at the camera, and may be rotated by an additional angle.
-fn ray(
-    start: DeviceVector,
-    toward: DeviceVector,
-    turned: f64,
-    [may_be_seen, may_be_unseen]: [bool; 2],
-) -> CameraRay {
+fn ray(start: DeviceVector, toward: DeviceVector, turned: f64, [may_be_seen, may_be_unseen]: [bool; 2]) -> CameraRay {
     let Unit { direction, direction_error, .. } = Unit::of(toward);
     CameraRay {
         origin_error: start.error,

@@ -116,8 +116,7 @@ impl Answers<'_> {
             if found as u64 == count {
                 return Ok(());
             }
-            let message =
-                format!("there are {found} {what} for a picture of {width}x{height} pixels");
+            let message = format!("there are {found} {what} for a picture of {width}x{height} pixels");
             Err(refused(None, message))
         };
         has("ids", self.ids.len())?;
@@ -139,8 +138,7 @@ impl Answers<'_> {
                 (0..).zip(rays).try_for_each(|(index, ray)| self.check_ray(index, ray))?;
             }
         }
-        if self.depths.is_some() && self.depth_kind == DepthKind::AlongAxis && rays.axis().is_none()
-        {
+        if self.depths.is_some() && self.depth_kind == DepthKind::AlongAxis && rays.axis().is_none() {
             let message = "depths along an axis need a camera with a plane (pinhole, orthographic or thin-lens)";
             return Err(refused(Some(Field::DepthKind), message.to_owned()));
         }
@@ -153,11 +151,7 @@ impl Answers<'_> {
         refused(Some(field), format!("the {what} at pixel ({column}, {row}) {message}"))
     }
 
-    fn check_ray(
-        &self,
-        index: usize,
-        Ray { origin, direction }: &Ray,
-    ) -> Result<(), ConformanceError> {
+    fn check_ray(&self, index: usize, Ray { origin, direction }: &Ray) -> Result<(), ConformanceError> {
         let length = direction.length();
         if !origin.is_finite() {
             let found = origin.to_array();
@@ -338,9 +332,8 @@ impl fmt::Display for Conformance {
     /// Writes a table, the histogram, and the worst pixel.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pixels = self.outcomes.len().max(1) as f64;
-        let mut row = |name: &str, count: usize| {
-            writeln!(f, "{name:<16}{count:>12}  {:8.4} %", 100.0 * count as f64 / pixels)
-        };
+        let mut row =
+            |name: &str, count: usize| writeln!(f, "{name:<16}{count:>12}  {:8.4} %", 100.0 * count as f64 / pixels);
         for outcome in Outcome::ALL {
             row(outcome.name(), self.count(*outcome))?;
         }

@@ -109,8 +109,8 @@ mod pixel;
 mod relative_sphere;
 
 pub use answers::{
-    Answers, Conformance, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, Field,
-    Finding, OF_GIVEN_RAYS, Rays, Reason,
+    Answers, Conformance, ConformanceError, DepthKind, EPSILON, FOR_CAMERAS, FOR_NORMALS, Field, Finding,
+    OF_GIVEN_RAYS, Rays, Reason,
 };
 
 use std::ops::Range;
@@ -149,13 +149,8 @@ impl Checker<'_> {
             axis: rays.axis(),
             at_most,
         };
-        let mut found = Conformance {
-            size: answers.size,
-            at_most,
-            outcomes: Vec::new(),
-            least: Vec::new(),
-            worst: Vec::new(),
-        };
+        let mut found =
+            Conformance { size: answers.size, at_most, outcomes: Vec::new(), least: Vec::new(), worst: Vec::new() };
         let mut worst = Vec::new();
         for part in map_parts(ranges(answers.ids.len(), CHUNK), |range| judge(&check, range)) {
             let (judged, worst_of_part) = part;
@@ -164,8 +159,7 @@ impl Checker<'_> {
             worst.extend(worst_of_part);
         }
         keep_worst(&mut worst, |index| found.least[*index]);
-        let explain =
-            |index: usize| check.explain(index, found.outcomes[index], found.least[index].into());
+        let explain = |index: usize| check.explain(index, found.outcomes[index], found.least[index].into());
         found.worst = map_parts(worst, explain);
         Ok(found)
     }

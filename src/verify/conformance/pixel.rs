@@ -83,11 +83,7 @@ impl PixelCheck<'_> {
         let id = self.answers.ids[index];
         let Some(ray) = self.ray(index) else {
             // If the camera has no ray, only a miss is legal.
-            return if id == NO_ID {
-                (Outcome::Proved, 0.0)
-            } else {
-                (Outcome::Violated, f64::INFINITY)
-            };
+            return if id == NO_ID { (Outcome::Proved, 0.0) } else { (Outcome::Violated, f64::INFINITY) };
         };
         let (least, is_only) = match self.claim(index, id, &ray) {
             None => {
@@ -134,8 +130,7 @@ impl PixelCheck<'_> {
         let Some(ray) = self.ray(index) else { return finding };
         let mut crossed = Vec::new();
         self.find_crossed(&ray, None, f64::INFINITY, &mut crossed);
-        let nearest =
-            crossed.iter().min_by(|a, b| a.earliest.total_cmp(&b.earliest).then(a.id.cmp(&b.id)));
+        let nearest = crossed.iter().min_by(|a, b| a.earliest.total_cmp(&b.earliest).then(a.id.cmp(&b.id)));
         finding.exact = nearest.map(|other| (other.id, other.earliest));
         match self.claim(index, id, &ray) {
             Some(claim) if claim.alone as f32 >= least as f32 => {
@@ -145,16 +140,13 @@ impl PixelCheck<'_> {
                 // The sphere that hides the claimed one the most.
                 let needed = |other: &Other| {
                     let unit = ray.unit(&other.seen);
-                    let t = claim
-                        .as_ref()
-                        .map(|claim| claim.distance.unwrap_or_else(|| claim.earliest(least)));
-                    let moved =
-                        t.map_or_else(|| other.seen.move_to_miss(), |t| other.seen.move_to_pass(t));
+                    let t = claim.as_ref().map(|claim| claim.distance.unwrap_or_else(|| claim.earliest(least)));
+                    let moved = t.map_or_else(|| other.seen.move_to_miss(), |t| other.seen.move_to_pass(t));
                     (moved / unit, moved)
                 };
-                let others = crossed.iter().filter(|other| {
-                    claim.as_ref().is_none_or(|claim| !is_same(self.sphere(other.id), claim.sphere))
-                });
+                let others = crossed
+                    .iter()
+                    .filter(|other| claim.as_ref().is_none_or(|claim| !is_same(self.sphere(other.id), claim.sphere)));
                 let worst = others.max_by(|a, b| needed(a).0.total_cmp(&needed(b).0));
                 if let Some(worst) = worst {
                     (finding.margin, finding.reason) = (needed(worst).1, Reason::Hidden(worst.id));
@@ -176,11 +168,10 @@ impl PixelCheck<'_> {
         let sphere = self.sphere(id);
         let (seen, direction) = (ray.seen(sphere), ray.line.direction);
         let unit = ray.unit(&seen);
-        let distance =
-            self.answers.depths.map(|depths| match (self.answers.depth_kind, self.axis) {
-                (DepthKind::AlongAxis, Some(axis)) => depths[index] / direction.dot(axis),
-                _ => depths[index],
-            });
+        let distance = self.answers.depths.map(|depths| match (self.answers.depth_kind, self.axis) {
+            (DepthKind::AlongAxis, Some(axis)) => depths[index] / direction.dot(axis),
+            _ => depths[index],
+        });
         let (mut alone, mut reason) = match distance {
             Some(t) => (seen.move_to_hit_at(t) / unit, Reason::Depth),
             None => (seen.move_to_hit() / unit, Reason::Missed),
@@ -218,8 +209,7 @@ impl PixelCheck<'_> {
         self.candidates.visit_beside(&ray.line, beside, limit, |candidate| {
             let seen = ray.seen(candidate.sphere);
             let a = k * ray.unit(&seen);
-            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.sphere))
-            {
+            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.sphere)) {
                 return limit;
             }
             let earliest = seen.earliest(a);

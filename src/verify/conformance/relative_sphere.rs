@@ -68,8 +68,7 @@ impl RelativeSphere {
         let to_surface = (self.distance_of(t) - self.r).abs();
         // If a line only touches the moved sphere, its centre is beside the point.
         let to_touching = (t - self.b).hypot(self.f - self.r);
-        let [entering, leaving] =
-            if t <= self.b { [to_surface, to_touching] } else { [to_touching, to_surface] };
+        let [entering, leaving] = if t <= self.b { [to_surface, to_touching] } else { [to_touching, to_surface] };
         // A ray meets the far side first only if it starts inside.
         entering.min(leaving.max(self.l - self.r))
     }

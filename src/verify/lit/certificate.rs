@@ -203,8 +203,7 @@ fn covered(rectangles: &[[u32; 4]]) -> u64 {
     let rows: std::collections::BTreeSet<u32> = rows.collect();
     let in_row = |row: u32| {
         let here = rectangles.iter().filter(|[_, y, _, height]| row >= *y && row - y < *height);
-        let mut spans: Vec<_> =
-            here.map(|[x, _, width, _]| (*x, x.saturating_add(*width))).collect();
+        let mut spans: Vec<_> = here.map(|[x, _, width, _]| (*x, x.saturating_add(*width))).collect();
         spans.sort_unstable();
         let mut end = 0;
         spans.into_iter().fold(0_u64, |sum, (first, last)| {
@@ -235,19 +234,13 @@ impl LitCertificate {
     /// The sum of the counts of all stages.
     #[must_use]
     pub fn stages(&self) -> StageCounts {
-        self.named()
-            .into_iter()
-            .map(|(_, counts)| counts)
-            .fold(StageCounts::default(), StageCounts::plus)
+        self.named().into_iter().map(|(_, counts)| counts).fold(StageCounts::default(), StageCounts::plus)
     }
 
     /// The counts of the stages of a path, or of a studio, with their names, in order.
     #[must_use]
     pub fn named(&self) -> Vec<(&'static str, StageCounts)> {
-        use LitStage::{
-            Accumulate, Ambient, Extend, Gather, Illuminate, Occlude, Scatter, Shadow, Start,
-            Surface,
-        };
+        use LitStage::{Accumulate, Ambient, Extend, Gather, Illuminate, Occlude, Scatter, Shadow, Start, Surface};
         let stages: &[LitStage] = if self.is_studio {
             &[Start, Extend, Surface, Shadow, Illuminate, Ambient, Gather, Accumulate]
         } else {
@@ -321,13 +314,8 @@ mod tests {
         assert_eq!(covered(&[[2, 1, 4, 3], [4, 2, 4, 3]]), 20);
         assert_eq!(covered(&[[2, 1, 4, 3], [3, 1, 1, 1], [9, 9, 1, 1]]), 13);
         let rectangles = vec![[2, 1, 4, 3], [4, 2, 4, 3]];
-        let certificate = LitCertificate {
-            paths: 48,
-            rectangles,
-            film_pixels: 100,
-            film_samples: 16,
-            ..LitCertificate::default()
-        };
+        let certificate =
+            LitCertificate { paths: 48, rectangles, film_pixels: 100, film_samples: 16, ..LitCertificate::default() };
         let share = certificate.share();
         assert_eq!((share.samples, share.pixels), (2, 20));
         assert!((share.fraction() - 0.025).abs() < 1e-12, "{share:?}");

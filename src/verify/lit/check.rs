@@ -18,12 +18,7 @@ pub(crate) struct LitCheck<'a> {
 
 impl LitCheck<'_> {
     /// A kernel that reads the state of a ray. As yet it has no hit and changes nothing.
-    pub(crate) fn kernel<'b>(
-        &'b self,
-        address: Address,
-        state: &'b PathState,
-        choices: &'b mut Choices,
-    ) -> Kernel<'b> {
+    pub(crate) fn kernel<'b>(&'b self, address: Address, state: &'b PathState, choices: &'b mut Choices) -> Kernel<'b> {
         Kernel {
             scene: self.checker.scene,
             inputs: self.inputs,

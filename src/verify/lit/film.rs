@@ -39,11 +39,9 @@ pub(crate) fn judge_start(
         });
         let alive = if is_seen { flag::ALIVE } else { 0 };
         judge.bits(FLAGS, found.flags(), alive | flag::FULL)?;
-        let around = |exact: DVec3, error: DVec3| {
-            Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])))
-        };
-        let size =
-            inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
+        let around =
+            |exact: DVec3, error: DVec3| Vector([0, 1, 2].map(|axis| Number::around(exact[axis], error[axis])));
+        let size = inputs.uploaded.scene_max.iter().fold(0.0, |size: f64, x| size.max(f64::from(x.abs())));
         let origin = around(ray.line.origin, ray.origin_error);
         judge.vector_of(ORIGIN, found.vector(slot::ORIGIN), origin, size)?;
         let direction = around(ray.line.direction, ray.direction_error);
@@ -81,8 +79,7 @@ fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Locatio
     let along = |axis: usize, side: u32, sign: f64| {
         let doubled = 2.0 * f64::from(pixel[axis]) + 1.0 - f64::from(side);
         let sum = Number::known(doubled) + Number::TWO * offset(table, u[axis]);
-        let Interval { low, high } =
-            (sum / Number::known(side.into()) * Number::known(sign)).interval();
+        let Interval { low, high } = (sum / Number::known(side.into()) * Number::known(sign)).interval();
         (0.5 * (low + high), 0.5 * (high - low) * (1.0 + 1e-12) + 1e-300)
     };
     let (x, x_error) = along(0, film.width(), 1.0);

@@ -8,9 +8,7 @@ use crate::verify::bias::deviation;
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
-use crate::verify::lit::certificate::{
-    Address, LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT,
-};
+use crate::verify::lit::certificate::{Address, LitCertificate, LitOpen, LitStage, LitViolation, OPEN_KEPT};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
@@ -40,12 +38,7 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    pub(crate) fn bits(
-        &mut self,
-        (stage, what): Name,
-        found: u32,
-        legal: u32,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn bits(&mut self, (stage, what): Name, found: u32, legal: u32) -> Result<(), Mismatch> {
         if found != legal {
             let message = format!("{what} is {found:#x}; legal is {legal:#x}");
             return Err(Mismatch { stage, message, after: self.passed });
@@ -55,13 +48,7 @@ impl Judge {
     }
 
     /// Compares a number. Its bound is narrow or wide relative to `scale`.
-    fn within(
-        &mut self,
-        (stage, what): Name,
-        found: f32,
-        legal: Interval,
-        scale: f64,
-    ) -> Result<(), Mismatch> {
+    fn within(&mut self, (stage, what): Name, found: f32, legal: Interval, scale: f64) -> Result<(), Mismatch> {
         if !legal.contains(found.into()) {
             let message = format!("{what} is {found:?}; legal is {legal}");
             return Err(Mismatch { stage, message, after: self.passed });
@@ -78,35 +65,18 @@ impl Judge {
     }
 
     /// Compares a number. Its bound is narrow or wide relative to `size` or to itself.
-    pub(crate) fn number_of(
-        &mut self,
-        name: Name,
-        found: f32,
-        legal: Number,
-        size: f64,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn number_of(&mut self, name: Name, found: f32, legal: Number, size: f64) -> Result<(), Mismatch> {
         let legal = legal.interval();
         self.within(name, found, legal, legal.size().max(size))
     }
 
     /// Compares a vector. Its bounds are narrow or wide relative to its largest component.
-    pub(crate) fn vector(
-        &mut self,
-        name: Name,
-        found: [f32; 3],
-        legal: Vector,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn vector(&mut self, name: Name, found: [f32; 3], legal: Vector) -> Result<(), Mismatch> {
         self.vector_of(name, found, legal, 0.0)
     }
 
     /// Compares a vector. Its bounds are narrow or wide relative to `size` or its largest component.
-    pub(crate) fn vector_of(
-        &mut self,
-        name: Name,
-        found: [f32; 3],
-        legal: Vector,
-        size: f64,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn vector_of(&mut self, name: Name, found: [f32; 3], legal: Vector, size: f64) -> Result<(), Mismatch> {
         let legal = legal.intervals();
         let scale = legal.iter().map(|axis| axis.size()).fold(size, f64::max);
         let mut pairs = found.iter().zip(&legal);
@@ -114,21 +84,12 @@ impl Judge {
     }
 
     /// Checks that a state has not changed.
-    pub(crate) fn unchanged(
-        &mut self,
-        name: Name,
-        states: [&PathState; 2],
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn unchanged(&mut self, name: Name, states: [&PathState; 2]) -> Result<(), Mismatch> {
         (0..PathState::SLOTS).try_for_each(|slot| self.same(name, states, slot))
     }
 
     /// Checks that a slot has not changed.
-    pub(crate) fn same(
-        &mut self,
-        name: Name,
-        [before, after]: [&PathState; 2],
-        slot: usize,
-    ) -> Result<(), Mismatch> {
+    pub(crate) fn same(&mut self, name: Name, [before, after]: [&PathState; 2], slot: usize) -> Result<(), Mismatch> {
         let mut pairs = after.slots[slot].iter().zip(&before.slots[slot]);
         pairs.try_for_each(|(found, legal)| self.bits(name, *found, *legal))
     }

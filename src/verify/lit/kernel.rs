@@ -116,16 +116,9 @@ impl Kernel<'_> {
         let origin = Vector::recorded(before.vector(slot::ORIGIN));
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
         // A camera ray starts at the box of the spheres, and may have crossed the ground before.
-        let behind = if self.address.surface == 0 {
-            Number::recorded(before.number(slot::FIRST))
-        } else {
-            Number::ZERO
-        };
-        let ground = if before.has(flag::ON_GROUND) {
-            None
-        } else {
-            self.ground_distance(origin, direction, behind)
-        };
+        let behind =
+            if self.address.surface == 0 { Number::recorded(before.number(slot::FIRST)) } else { Number::ZERO };
+        let ground = if before.has(flag::ON_GROUND) { None } else { self.ground_distance(origin, direction, behind) };
         let has_sphere = hit.id != NO_ID;
         let to_sphere = if has_sphere {
             Number::recorded(hit.distance) + Number::recorded(hit.t)
@@ -141,12 +134,7 @@ impl Kernel<'_> {
     }
 
     /// The distance at which a ray hits the ground from above. It may be negative, down to −`behind`.
-    pub(crate) fn ground_distance(
-        &mut self,
-        origin: Vector,
-        direction: Vector,
-        behind: Number,
-    ) -> Option<Number> {
+    pub(crate) fn ground_distance(&mut self, origin: Vector, direction: Vector, behind: Number) -> Option<Number> {
         let lighting = self.lighting();
         if lighting.flags & flag::GROUND == 0 {
             return None;
@@ -169,12 +157,7 @@ impl Kernel<'_> {
         Ok(Vector::recorded(found))
     }
 
-    fn ground_vertex(
-        &mut self,
-        origin: Vector,
-        direction: Vector,
-        distance: Number,
-    ) -> Result<Vertex, Mismatch> {
+    fn ground_vertex(&mut self, origin: Vector, direction: Vector, distance: Number) -> Result<Vertex, Mismatch> {
         let lighting = self.lighting();
         let normal = Vector::recorded(lighting.ground_normal);
         let on_ray = origin + direction * distance;
@@ -196,8 +179,7 @@ impl Kernel<'_> {
 
     fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
         let (before, hit) = (self.before, self.hit);
-        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
-        else {
+        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied() else {
             return Err(self.judge.fail(HIT, format!("there is no sphere {}", hit.id)));
         };
         let appearance = self.scene.checked_appearance();
@@ -206,8 +188,7 @@ impl Kernel<'_> {
         let color = self.scene.color(hit.id).to_array();
         let opacities = [surface.opacity, appearance.alpha(hit.id)];
 
-        let (line, origin, slack) =
-            entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let (line, origin, slack) = entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Some(test) = SphereTest::new(&line, sphere, slack) else {
             return Err(self.judge.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
         };
@@ -229,11 +210,7 @@ impl Kernel<'_> {
         let r = Number::recorded(radius);
         let far = Number::known(64.0) * (Number::recorded(hit.t) + Number::recorded(hit.distance));
         let is_on_ray = self.choices.decide(r.is_more(far));
-        let position = if is_on_ray {
-            origin + direction * Number::recorded(hit.t)
-        } else {
-            center + outward * r
-        };
+        let position = if is_on_ray { origin + direction * Number::recorded(hit.t) } else { center + outward * r };
         let position = self.compared(position.fence(), radius.into())?;
         if !is_on_ray {
             outward = self.normal_by_point(outward, position, sphere)?;
@@ -280,8 +257,7 @@ fn entered(origin: [f32; 3], direction: [f32; 3], distance: f32) -> (Line, Vecto
     if distance == 0.0 {
         return (Line::new(origin, direction), Vector::recorded(origin), Slack::default());
     }
-    let error =
-        PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
+    let error = PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
     let origin = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
     let length = error.length() + U * FLUSH;
     let slack = Slack { across: length, along: length, direction: 0.0 };

@@ -39,11 +39,7 @@ pub(crate) fn pi() -> Number {
 pub(crate) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
     let Vector([x, y, z]) = n;
     let is_down = choices.decide(z.is_less(Number::ZERO));
-    let (s, z) = if is_down {
-        (Number::known(-1.0), z.min(Number::ZERO))
-    } else {
-        (Number::ONE, z.max(Number::ZERO))
-    };
+    let (s, z) = if is_down { (Number::known(-1.0), z.min(Number::ZERO)) } else { (Number::ONE, z.max(Number::ZERO)) };
     let a = Number::known(-1.0) / (s + z);
     let b = x * y * a;
     Axes {
@@ -106,13 +102,7 @@ pub(crate) struct Lamp {
 impl Kernel<'_> {
     /// The point of the light that `u` chooses. If the kernel fences the direction, it is narrowed to the recorded
     /// direction, if there is one and it is legal.
-    pub(crate) fn lamp(
-        &mut self,
-        light: u32,
-        position: Vector,
-        u: [u32; 2],
-        recorded: Option<Vector>,
-    ) -> Lamp {
+    pub(crate) fn lamp(&mut self, light: u32, position: Vector, u: [u32; 2], recorded: Option<Vector>) -> Lamp {
         let at = light.saturating_mul(3);
         let [x, y, z, _] = self.table_numbers(at);
         let position_of_light = Vector::recorded([x, y, z]);
@@ -124,8 +114,7 @@ impl Kernel<'_> {
             None => direction,
         };
         if kind == DIRECTIONAL {
-            let direction =
-                axes_around(position_of_light, self.choices).to_world(cone_direction(u, size));
+            let direction = axes_around(position_of_light, self.choices).to_world(cone_direction(u, size));
             let strength = power * (Number::TWO / (Number::TWO - size));
             let distance = Number::known(NO_HIT.into());
             return Lamp { direction: narrowed(direction), distance, strength, sun: size };
@@ -194,9 +183,7 @@ impl Kernel<'_> {
         let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
         let Interval { low, high } = along.interval();
         let index = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
-        let entry = |at: u32| {
-            Number::recorded(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize])
-        };
+        let entry = |at: u32| Number::recorded(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize]);
         (index(low)..=index(high))
             .map(|below| {
                 let (a, b) = (entry(below), entry(below + 1));
@@ -222,10 +209,8 @@ pub(crate) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
     let Interval { low: floor, high: ceiling } = exact.interval();
     // Both are bounds. The second includes the rounding errors of the quotient and the difference.
     let error = 8.0 * crate::verify::rounding::U;
-    let beyond = Number::between(
-        low.max(floor - error * (1.0 + 1.0 / most)),
-        high.min(ceiling + error * (1.0 + 1.0 / least)),
-    );
+    let beyond =
+        Number::between(low.max(floor - error * (1.0 + 1.0 / most)), high.min(ceiling + error * (1.0 + 1.0 / least)));
     let root = (Number::ONE + alpha.squared() * beyond).max(Number::ZERO).sqrt();
     Number::HALF * (root - Number::ONE)
 }

@@ -33,22 +33,15 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// A ray of a path. `distance` is the distance from the origin to the scene's box, if it was recorded.
-    fn new(
-        model: &CameraModel,
-        origin: [f32; 3],
-        direction: [f32; 3],
-        distance: Option<f32>,
-    ) -> Self {
+    fn new(model: &CameraModel, origin: [f32; 3], direction: [f32; 3], distance: Option<f32>) -> Self {
         let mut line = Line::new(origin, direction);
-        let EnteredRay { enter, may_hit_box, may_miss_box, .. } =
-            CameraRay::exact(line).entered(model, line.direction);
+        let EnteredRay { enter, may_hit_box, may_miss_box, .. } = CameraRay::exact(line).entered(model, line.direction);
         let mut slack = Slack::default();
         let from = distance.map_or(enter, |distance| Interval::around(distance.into(), 0.0));
         if from.high != 0.0 {
             let middle = 0.5 * (from.low + from.high);
             let along = middle * line.direction;
-            let rounded =
-                PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
+            let rounded = PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
             let across = rounded.length();
             slack = Slack { across, along: across + from.high - middle, direction: 0.0 };
             line = Line::exact(line.origin + along, line.direction);
@@ -105,11 +98,7 @@ impl Obstacle {
 
     /// The answer to one of two questions, if it is not known which one is asked.
     pub(crate) fn or(self, other: Self) -> Self {
-        Self {
-            may: self.may || other.may,
-            must: self.must && other.must,
-            doubts: self.doubts.and(other.doubts),
-        }
+        Self { may: self.may || other.may, must: self.must && other.must, doubts: self.doubts.and(other.doubts) }
     }
 }
 
@@ -203,11 +192,8 @@ pub(crate) fn check_open(
     });
     let is_hidden = open == 0.0;
     if (is_hidden && !hidden.may) || (!is_hidden && hidden.must) {
-        let words = if is_hidden {
-            "occluded, but no surface is in between"
-        } else {
-            "visible, but a surface is in between"
-        };
+        let words =
+            if is_hidden { "occluded, but no surface is in between" } else { "visible, but a surface is in between" };
         return Err(judge.fail(OPEN, words));
     }
     if !is_hidden {
@@ -250,12 +236,7 @@ impl Doubts {
     pub(crate) const NONE: Self = Self(Vec::new());
 
     /// Adds a sphere that the ray may miss, or else whose surface may be behind the light.
-    pub(crate) fn add(
-        &mut self,
-        Candidate { sphere, id }: &Candidate,
-        line: &Line,
-        may_miss: bool,
-    ) {
+    pub(crate) fn add(&mut self, Candidate { sphere, id }: &Candidate, line: &Line, may_miss: bool) {
         if self.0.len() < MOST {
             self.0.push(match may_miss {
                 true => {
@@ -280,9 +261,7 @@ impl Doubts {
     /// The legal answers, in words.
     pub(crate) fn alternatives(&self) -> Vec<String> {
         match self.0.is_empty() {
-            true => vec![
-                "hidden or not: the surface itself, a ground, or the box of the scene".to_owned(),
-            ],
+            true => vec!["hidden or not: the surface itself, a ground, or the box of the scene".to_owned()],
             false => self.0.iter().map(|doubt| format!("hidden or not: {doubt}")).collect(),
         }
     }

@@ -12,9 +12,7 @@ use crate::light::environment::Environment;
 use crate::light::{LightKind, SkyLight, codes};
 use crate::recording::lit::{LitInputs, UploadedLighting, flag};
 use crate::recording::{NO_HIT, UploadError};
-use crate::render::{
-    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, RenderSettings, Studio,
-};
+use crate::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, RenderSettings, Studio};
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::hit::Candidates;
@@ -23,11 +21,7 @@ use crate::verify::rounding::{FLUSH, U, are_near, is_near};
 use crate::verify::uploaded::{LEAST_MARGIN, check_view};
 
 /// Compares the recording with the scene and the settings.
-pub(crate) fn check(
-    scene: &Scene,
-    candidates: &Candidates,
-    inputs: &LitInputs,
-) -> Result<(), UploadError> {
+pub(crate) fn check(scene: &Scene, candidates: &Candidates, inputs: &LitInputs) -> Result<(), UploadError> {
     check_view(scene, candidates, &inputs.camera, &inputs.uploaded)?;
     check_lighting(scene, inputs)?;
     check_tables(scene, inputs)
@@ -71,9 +65,7 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
             let off = f64::from(lighting.ground_point[axis]) - point[axis];
             off.abs() <= 2.0 * U * point[axis].abs() + moved[axis] + FLUSH
         });
-        is_point
-            && are_near(lighting.ground_normal, normal)
-            && is_color(lighting.ground_color, ground.color)
+        is_point && are_near(lighting.ground_normal, normal) && is_color(lighting.ground_color, ground.color)
     });
     let filter = settings.sampling.filter.offset_table();
     let all = [
@@ -147,9 +139,7 @@ fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError>
 
 fn is_sky(settings: &RenderSettings, lighting: &UploadedLighting, inputs: &LitInputs) -> bool {
     let ends = [lighting.zenith, lighting.horizon, lighting.nadir];
-    let are = |colors: [[f32; 3]; 3]| {
-        ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)))
-    };
+    let are = |colors: [[f32; 3]; 3]| ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)));
     match &settings.sky.light {
         SkyLight::Constant(radiance) => inputs.sky.is_none() && are([radiance.to_array(); 3]),
         SkyLight::Gradient { zenith, horizon, nadir } => {
@@ -158,14 +148,12 @@ fn is_sky(settings: &RenderSettings, lighting: &UploadedLighting, inputs: &LitIn
         SkyLight::Image { environment, strength, rotation } => {
             let shares = environment.rows().iter().chain(environment.columns());
             lighting.environment_size == [environment.width(), environment.height()]
-                && are_near(
-                    lighting.environment_rotation,
-                    Environment::rotation(*rotation).map(f64::from),
-                )
+                && are_near(lighting.environment_rotation, Environment::rotation(*rotation).map(f64::from))
                 && is_near(lighting.environment_strength, (*strength).into())
-                && inputs.sky.as_ref().is_some_and(|sky| {
-                    sky.texels == environment.texels() && sky.shares.iter().eq(shares)
-                })
+                && inputs
+                    .sky
+                    .as_ref()
+                    .is_some_and(|sky| sky.texels == environment.texels() && sky.shares.iter().eq(shares))
         }
     }
 }
@@ -218,11 +206,7 @@ fn uses_light_sampling(inputs: &LitInputs) -> bool {
 }
 
 /// Checks the table of lights, and returns the number of lights among which light sampling chooses.
-fn check_lights(
-    tables: &Tables<'_>,
-    scene: &Scene,
-    inputs: &LitInputs,
-) -> Result<u32, UploadError> {
+fn check_lights(tables: &Tables<'_>, scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError> {
     let vectors = &inputs.camera.vectors;
     let mut lamps = 0_u32;
     // A studio samples every light.
@@ -249,13 +233,10 @@ fn check_lights(
                 let k = 1.0 - angular_radius.cos();
                 // The difference cancels here, but not on the device.
                 let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
-                let is_right =
-                    is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
+                let is_right = is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
                 (is_right, angular_radius == 0.0 || uses_light_sampling(inputs))
             }
-            LightKind::Point { position, intensity } => {
-                (is_kind && near(intensity) && is_at(position), true)
-            }
+            LightKind::Point { position, intensity } => (is_kind && near(intensity) && is_at(position), true),
             LightKind::Sphere { center, radius, radiance } => {
                 let is_right = is_kind && near(radiance) && is_at(center) && is_near(size, radius);
                 (is_right, true)
@@ -303,8 +284,7 @@ fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, UploadError>
     let slack = 3.0 + 4.0 * f64::EPSILON * all * (ids.len() as f64 + 16.0);
     let mut before = 0.0;
     for (index, id) in ids.iter().enumerate() {
-        let words =
-            |at: usize| inputs.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
+        let words = |at: usize| inputs.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
         let [found_id, last, probability, _] = words(1);
         let end = f64::from(last) + 1.0;
         let probability = f32::from_bits(probability);
@@ -350,11 +330,8 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), UploadError
     let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
     let energies = EnergyTables::of(&surfaces);
     let ground = SurfaceProperties::default();
-    let records = std::iter::once((&ground, [1.0; 3], None)).chain(
-        rows.iter()
-            .zip(&energies.starts)
-            .map(|(row, start)| (&row.surface, row.color.to_array(), *start)),
-    );
+    let records = std::iter::once((&ground, [1.0; 3], None))
+        .chain(rows.iter().zip(&energies.starts).map(|(row, start)| (&row.surface, row.color.to_array(), *start)));
     for (index, (surface, color, start)) in records.enumerate() {
         let at = tables.lighting.material_first.saturating_add(2 * index as u32);
         let [kind, _, _, first] = tables.words(at);
@@ -365,9 +342,8 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), UploadError
             Material::Lambert { specular, roughness } => (specular, roughness, [0.0; 3]),
             Material::Conductor { roughness } => (1.0, roughness, [0.0; 3]),
             Material::Dielectric { ior, roughness, attenuation_distance } => {
-                let absorbed = attenuation_distance.map_or([0.0; 3], |distance| {
-                    color.map(|c| -f64::from(c).max(1e-4).ln() / f64::from(distance))
-                });
+                let absorbed = attenuation_distance
+                    .map_or([0.0; 3], |distance| color.map(|c| -f64::from(c).max(1e-4).ln() / f64::from(distance)));
                 (ior, roughness, absorbed)
             }
             Material::Emissive { strength } => (strength, 0.0, [0.0; 3]),

@@ -18,18 +18,13 @@ impl Number {
         let Interval { low, high } = self.interval();
         let relative = |x: f64| PAD * (3.0 + 2.0 * x.abs()) * U;
         let (least, most) = (low.exp(), high.exp());
-        Self::between(
-            (least * (1.0 - relative(low)) - FLUSH).max(0.0),
-            most * (1.0 + relative(high)) + FLUSH,
-        )
-        .bounded()
+        Self::between((least * (1.0 - relative(low)) - FLUSH).max(0.0), most * (1.0 + relative(high)) + FLUSH).bounded()
     }
 
     /// The polynomial c0 + x (c1 + x (c2 + …)) with constants from the kernel's text. A compiler may expand it, so that
     /// powers pass through additional roundings.
     fn polynomial(self, coefficients: &[f64]) -> Self {
-        let sum =
-            coefficients.iter().rev().fold(Self::ZERO, |sum, c| Self::constant(*c) + self * sum);
+        let sum = coefficients.iter().rev().fold(Self::ZERO, |sum, c| Self::constant(*c) + self * sum);
         Self { products: sum.products + coefficients.len() as u32, ..sum }
     }
 
@@ -45,8 +40,7 @@ pub(crate) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
     let angle = angle.fence();
     let z = angle.squared().fence();
     let sine = z * z.polynomial(&[-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0]);
-    let cosine =
-        z * z.polynomial(&[-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0]);
+    let cosine = z * z.polynomial(&[-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0]);
     [(angle + (angle * sine).fence()).fence(), (Number::ONE + cosine.fence()).fence()]
 }
 
@@ -55,12 +49,10 @@ pub(crate) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> [Number; 2]
     let quarter = choices.pick((Number::known(4.0) * turns + Number::HALF).floor());
     // The difference of numbers that are nearly equal is exact, unless a compiler rearranges it.
     let Interval { low, high } = turns.interval();
-    let rest =
-        Number { products: 1, ..Number::between(low - 0.25 * quarter, high - 0.25 * quarter) };
+    let rest = Number { products: 1, ..Number::between(low - 0.25 * quarter, high - 0.25 * quarter) };
     let rest = rest.fence();
     let square = rest.squared().fence();
-    let sine =
-        (rest * square.polynomial(&[6.283_185_5, -41.341_663, 81.592_35, -75.393_56])).fence();
+    let sine = (rest * square.polynomial(&[6.283_185_5, -41.341_663, 81.592_35, -75.393_56])).fence();
     let cosine = square.polynomial(&[1.0, -19.739_208, 64.939_31, -85.442_3, 59.202_797]).fence();
     match quarter.rem_euclid(4.0) as u32 {
         0 => [sine, cosine],
@@ -86,8 +78,7 @@ pub(crate) fn atan2_turns(y: Number, x: Number, choices: &mut Choices) -> Number
     let (y, x) = (y.fence(), x.fence());
     let (across, up) = (x.abs(), y.abs());
     let smallest = Number::known(2.0_f64.powi(-100));
-    let ratio =
-        (across.min(up) / across.max(up).max(smallest)).fence().min(Number::around(1.0, 4.0 * U));
+    let ratio = (across.min(up) / across.max(up).max(smallest)).fence().min(Number::around(1.0, 4.0 * U));
     let square = ratio.squared().fence();
     let octant = (ratio * square.polynomial(&SERIES)).fence();
     let is_steep = choices.decide(up.is_more(across));

@@ -158,11 +158,7 @@ impl Number {
 
     pub(crate) fn abs(self) -> Self {
         let Interval { low, high } = self.interval();
-        if low >= 0.0 {
-            Self::between(low, high)
-        } else {
-            Self::between((-high).max(0.0), high.max(-low))
-        }
+        if low >= 0.0 { Self::between(low, high) } else { Self::between((-high).max(0.0), high.max(-low)) }
     }
 
     /// The product with itself.
@@ -249,15 +245,9 @@ impl Mul for Number {
             (a * c, b * d)
         } else {
             let ends = [a * c, a * d, b * c, b * d];
-            (
-                ends.into_iter().fold(f64::INFINITY, f64::min),
-                ends.into_iter().fold(f64::NEG_INFINITY, f64::max),
-            )
+            (ends.into_iter().fold(f64::INFINITY, f64::min), ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
         };
-        let flushed = self.flushed * other.size
-            + other.flushed * self.size
-            + self.flushed * other.flushed
-            + FLUSH;
+        let flushed = self.flushed * other.size + other.flushed * self.size + self.flushed * other.flushed + FLUSH;
         let product = Self {
             low,
             high,
@@ -289,16 +279,9 @@ impl Div for Number {
         let least = ends.into_iter().fold(f64::INFINITY, f64::min);
         let most = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let relative = PAD * (DIVIDE + U * DIVIDE);
-        let quotient = Self::between(
-            least - relative * least.abs() - FLUSH,
-            most + relative * most.abs() + FLUSH,
-        );
+        let quotient = Self::between(least - relative * least.abs() - FLUSH, most + relative * most.abs() + FLUSH);
         // The quotient of positive numbers is not negative.
-        let quotient = if least >= 0.0 {
-            Self::between(quotient.low.max(0.0), quotient.high)
-        } else {
-            quotient
-        };
+        let quotient = if least >= 0.0 { Self::between(quotient.low.max(0.0), quotient.high) } else { quotient };
         quotient.bounded()
     }
 }

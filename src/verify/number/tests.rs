@@ -53,9 +53,8 @@ fn leaf(random: &mut Rng) -> f32 {
 
 impl Formula {
     fn number(&self) -> Number {
-        let all = |parts: &[Self], join: fn(Number, Number) -> Number| {
-            parts.iter().map(Self::number).reduce(join).unwrap()
-        };
+        let all =
+            |parts: &[Self], join: fn(Number, Number) -> Number| parts.iter().map(Self::number).reduce(join).unwrap();
         match self {
             Self::Leaf(value) => Number::recorded(*value),
             Self::Sum(parts) => all(parts, |a, b| a + b),
@@ -74,12 +73,8 @@ impl Formula {
         let of = |value: f32| Exact::try_from(value).unwrap().with_precision(BITS).value();
         Some(match self {
             Self::Leaf(value) => of(*value),
-            Self::Sum(parts) => {
-                parts.iter().map(Self::exact).try_fold(of(0.0), |sum, part| Some(sum + part?))?
-            }
-            Self::Product(parts) => {
-                parts.iter().map(Self::exact).try_fold(of(1.0), |all, part| Some(all * part?))?
-            }
+            Self::Sum(parts) => parts.iter().map(Self::exact).try_fold(of(0.0), |sum, part| Some(sum + part?))?,
+            Self::Product(parts) => parts.iter().map(Self::exact).try_fold(of(1.0), |all, part| Some(all * part?))?,
             Self::Negative(part) => -part.exact()?,
             Self::Quotient(a, b) => {
                 let (a, b) = (a.exact()?, b.exact()?);
@@ -249,11 +244,7 @@ fn angles_hold_those_of_any_device() {
         let angle = (random.f32() - 0.5) * std::f32::consts::FRAC_PI_2;
         let [sine, cosine] = sin_cos_eighth(Number::recorded(angle)).map(Number::interval);
         let z = round(&mut random, wide(angle) * wide(angle));
-        let series = polynomial(
-            &mut random,
-            z,
-            &[0.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0],
-        );
+        let series = polynomial(&mut random, z, &[0.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0]);
         let rest = round(&mut random, wide(angle) * wide(series));
         let found = round(&mut random, wide(angle) + wide(rest));
         assert!(sine.contains(found.into()), "{angle}: {found} in {sine}");
@@ -263,13 +254,10 @@ fn angles_hold_those_of_any_device() {
 
         let turns = (random.f32() - 0.5) * 3.0;
         let mut choices = Choices::default();
-        let [sine, cosine] =
-            sin_cos_turns(Number::recorded(turns), &mut choices).map(Number::interval);
+        let [sine, cosine] = sin_cos_turns(Number::recorded(turns), &mut choices).map(Number::interval);
         let (s, c) = (wide(turns) * std::f64::consts::TAU).sin_cos();
         // The error of the polynomials is below 2^-28.
-        let near = |interval: Interval, exact: f64| {
-            interval.low - 5e-9 <= exact && exact <= interval.high + 5e-9
-        };
+        let near = |interval: Interval, exact: f64| interval.low - 5e-9 <= exact && exact <= interval.high + 5e-9;
         assert!(choices.were_open() || (near(sine, s) && near(cosine, c)), "{turns}");
         // The magnitudes of the cosine's terms add up to at most 4/3, and each passes through at most 19 roundings: 2 *
         // 19 * 2^-23 * 4/3.

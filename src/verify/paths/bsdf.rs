@@ -4,8 +4,7 @@
 use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, LAMBERT};
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::sampling::{
-    ENERGIES, Material, cosine_direction, ggx_lambda, mirrors_brdf, pi, reflected_density,
-    visible_mirror,
+    ENERGIES, Material, cosine_direction, ggx_lambda, mirrors_brdf, pi, reflected_density, visible_mirror,
 };
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::Surface;
@@ -53,14 +52,13 @@ impl Kernel<'_> {
         if material.kind != LAMBERT && material.kind != CONDUCTOR {
             return none;
         }
-        if !self.choices.decide(along.is_above_zero()) || !self.choices.decide(back.is_above_zero())
-        {
+        if !self.choices.decide(along.is_above_zero()) || !self.choices.decide(back.is_above_zero()) {
             return none;
         }
         // The values after the decisions: cosines are not negative.
         let along = along.max(Number::ZERO);
-        let [out, toward] = [(out, back.max(Number::ZERO)), (toward, along)]
-            .map(|(Vector([x, y, _]), z)| Vector([x, y, z]));
+        let [out, toward] =
+            [(out, back.max(Number::ZERO)), (toward, along)].map(|(Vector([x, y, _]), z)| Vector([x, y, z]));
         let is_metal = material.kind == CONDUCTOR;
         let share = if is_metal { Number::ONE } else { material.parameter };
         let matt = (Number::ONE - share) * along / pi();
@@ -127,8 +125,7 @@ impl Kernel<'_> {
     fn scatter_dielectric(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> BsdfSample {
         let Surface { material, out, .. } = at;
         let is_entering = !at.vertex.is_back;
-        let relative =
-            if is_entering { material.parameter } else { Number::ONE / material.parameter };
+        let relative = if is_entering { material.parameter } else { Number::ONE / material.parameter };
         let is_rough = !material.alpha.is_zero();
         let half = if is_rough {
             visible_mirror(material.alpha, *out, u, self.choices)

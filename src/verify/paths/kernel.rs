@@ -25,8 +25,7 @@ const DIRECTION: Name = (LitStage::Scatter, "the direction of the next ray");
 const DENSITY: Name = (LitStage::Scatter, "the density of the next direction");
 const FLAGS: Name = (LitStage::Scatter, "the path's flags");
 const DEPARTURE: Name = (LitStage::Vertex, "the sphere that the path leaves");
-const EXIT_DISTANCE: Name =
-    (LitStage::Scatter, "the exit distance of the sphere that the path leaves");
+const EXIT_DISTANCE: Name = (LitStage::Scatter, "the exit distance of the sphere that the path leaves");
 const THROUGHPUT: Name = (LitStage::Scatter, "the path's throughput");
 const RADIANCE: Name = (LitStage::Radiance, "the path's radiance");
 const ALPHA: Name = (LitStage::Radiance, "the path's opacity");
@@ -55,11 +54,7 @@ impl Kernel<'_> {
             return self.end(radiance_so_far + through.times(light), alpha);
         };
         let medium = Vector::recorded(before.vector(slot::MEDIUM));
-        let arriving = if self.is_matt {
-            through
-        } else {
-            through.times(medium.map(|m| (-m * vertex.distance).exp()))
-        };
+        let arriving = if self.is_matt { through } else { through.times(medium.map(|m| (-m * vertex.distance).exp())) };
         self.compare_departure(&vertex)?;
         if self.is_passed(&vertex) {
             return self.pass(&vertex, radiance_so_far, arriving);
@@ -107,8 +102,7 @@ impl Kernel<'_> {
     /// Compares the sphere that the path leaves, and its exit distance along the next ray.
     fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
         let (after, departure) = (self.after, self.after.departure());
-        let (id, shape_index) =
-            if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
+        let (id, shape_index) = if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
         self.judge.bits(DEPARTURE, departure.id, id)?;
         self.judge.bits(DEPARTURE, departure.shape_index, shape_index)?;
         let exit_distance = if after.has(flag::INSIDE) {
@@ -163,12 +157,7 @@ impl Kernel<'_> {
     }
 
     /// Judges a path that passes through a surface as if it were not there.
-    fn pass(
-        &mut self,
-        at: &Vertex,
-        radiance_so_far: Vector,
-        arriving: Vector,
-    ) -> Result<(), Mismatch> {
+    fn pass(&mut self, at: &Vertex, radiance_so_far: Vector, arriving: Vector) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
         self.compare_radiance(radiance_so_far, Number::recorded(before.number(slot::RADIANCE)))?;
         self.same(&[slot::FIRST])?;
@@ -208,11 +197,8 @@ impl Kernel<'_> {
 
         let carried = through.times(next.weight).fence();
         let most = carried.largest();
-        let survival = if surface >= self.lighting().roulette_from {
-            most.min(Number::constant(0.95))
-        } else {
-            Number::ONE
-        };
+        let survival =
+            if surface >= self.lighting().roulette_from { most.min(Number::constant(0.95)) } else { Number::ONE };
         let divisor = survival.max(Number::constant(1e-30));
         let carried = carried.map(|c| c / divisor);
         self.judge.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
@@ -226,8 +212,7 @@ impl Kernel<'_> {
         self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
 
         let draw = unit(self.pair(6)[0]);
-        let is_dead = !self.choices.decide(most.is_above_zero())
-            || !self.choices.decide(draw.is_less(survival));
+        let is_dead = !self.choices.decide(most.is_above_zero()) || !self.choices.decide(draw.is_less(survival));
         let full = if is_glass { flag::FULL } else { 0 };
         let alive = if is_dead { 0 } else { flag::ALIVE };
         self.compare_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
@@ -237,6 +222,5 @@ impl Kernel<'_> {
 /// The radiance of a path, including the pending light if it is not occluded.
 pub(crate) fn radiance_so_far(state: &PathState) -> Vector {
     let open = Number::recorded(state.number(slot::PENDING));
-    Vector::recorded(state.vector(slot::RADIANCE))
-        + Vector::recorded(state.vector(slot::PENDING)) * open
+    Vector::recorded(state.vector(slot::RADIANCE)) + Vector::recorded(state.vector(slot::PENDING)) * open
 }

@@ -84,17 +84,13 @@ impl Kernel<'_> {
         let toward = at.axes.to_local(found.direction);
         let r = self.reflect_toward(&at.material, color, at.out, toward);
         let mut light = through.times(r.value).times(found.radiance);
-        if lighting.light_sampling == MULTIPLE && self.choices.decide(found.density.is_above_zero())
-        {
+        if lighting.light_sampling == MULTIPLE && self.choices.decide(found.density.is_above_zero()) {
             let all = (found.density + r.density).max(Number::constant(1e-30));
             light = light * (found.density / all);
         }
         let is_open = self.is_open(at, &found, light);
-        let (light, open, distance) = if is_open {
-            (light, Number::ONE, found.distance)
-        } else {
-            (Vector::ZERO, Number::ZERO, Number::ZERO)
-        };
+        let (light, open, distance) =
+            if is_open { (light, Number::ONE, found.distance) } else { (Vector::ZERO, Number::ZERO, Number::ZERO) };
         self.judge.number(DISTANCE, after.number(slot::SHADOW), distance)?;
         self.compare_light(light, open)
     }
@@ -129,11 +125,7 @@ impl Kernel<'_> {
         let recorded = Some(Vector::recorded(self.after.vector(slot::SHADOW)));
         let Lamp { direction, distance, strength, sun } = self.lamp(light, position, u, recorded);
         let sources = self.sources();
-        let density = if sun.is_zero() {
-            Number::ZERO
-        } else {
-            Number::ONE / (Number::TWO * pi() * sun * sources)
-        };
+        let density = if sun.is_zero() { Number::ZERO } else { Number::ONE / (Number::TWO * pi() * sun * sources) };
         let radiance = strength * (pi() * sources);
         LightSample { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
@@ -217,8 +209,7 @@ impl Kernel<'_> {
     /// The weight of light that a scattered ray hit, if light sampling would have chosen it with a density.
     pub(crate) fn weight_of_hit_light(&mut self, light_density: Number) -> Number {
         let sampling = self.lighting().light_sampling;
-        let is_sampled =
-            !light_density.is_zero() && self.choices.decide(light_density.is_above_zero());
+        let is_sampled = !light_density.is_zero() && self.choices.decide(light_density.is_above_zero());
         if self.before.has(flag::FULL) || sampling == CHANCE || !is_sampled {
             return Number::ONE;
         }
@@ -291,8 +282,7 @@ impl Kernel<'_> {
         let [column, row] = self.texel(direction);
         let at = row as usize * lighting.environment_size[0] as usize + column as usize;
         let texel = self.image().and_then(|image| image.texels.get(at)).copied();
-        Vector::recorded(texel.unwrap_or_default())
-            * Number::recorded(lighting.environment_strength)
+        Vector::recorded(texel.unwrap_or_default()) * Number::recorded(lighting.environment_strength)
     }
 
     fn sky_density(&mut self, direction: Vector) -> Number {

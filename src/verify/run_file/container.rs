@@ -49,11 +49,7 @@ struct Header<'a> {
 }
 
 /// Gives `count` bytes of a reader to a sink, in pieces.
-pub(super) fn in_pieces(
-    source: &mut (impl Read + ?Sized),
-    count: u64,
-    sink: &mut Sink<'_>,
-) -> io::Result<()> {
+pub(super) fn in_pieces(source: &mut (impl Read + ?Sized), count: u64, sink: &mut Sink<'_>) -> io::Result<()> {
     let next = |left: u64| left.min(PIECE) as usize;
     let mut piece = vec![0; next(count)];
     let mut left = count;
@@ -152,10 +148,8 @@ impl<'a> Container<'a> {
         if start != START {
             return Err(RunFileError::NotRun);
         }
-        let truncated = |expected: u64| RunFileError::Truncated {
-            found,
-            expected: expected.saturating_add(LENGTH as u64),
-        };
+        let truncated =
+            |expected: u64| RunFileError::Truncated { found, expected: expected.saturating_add(LENGTH as u64) };
         let header_length = u64::from_le_bytes(*length);
         let beyond = found - LENGTH as u64;
         if header_length > beyond {
@@ -260,20 +254,13 @@ impl<'a> Container<'a> {
     }
 
     /// The items of a list of any length; see [`Container::items`].
-    pub(super) fn list<E: Number, const N: usize>(
-        &self,
-        name: &str,
-    ) -> Result<Vec<[E; N]>, RunFileError> {
+    pub(super) fn list<E: Number, const N: usize>(&self, name: &str) -> Result<Vec<[E; N]>, RunFileError> {
         let count = self.shape(name)?.first().copied().unwrap_or_default();
         self.items(name, &[count])
     }
 
     /// The items of an array with one number each; see [`Container::items`].
-    pub(super) fn numbers<E: Number>(
-        &self,
-        name: &str,
-        shape: &[usize],
-    ) -> Result<Vec<E>, RunFileError> {
+    pub(super) fn numbers<E: Number>(&self, name: &str, shape: &[usize]) -> Result<Vec<E>, RunFileError> {
         Ok(self.items::<E, 1>(name, shape)?.into_iter().map(|[number]| number).collect())
     }
 

@@ -21,17 +21,13 @@ pub enum RunFileError {
         expected: u64,
     },
     /// The file has another version of the format.
-    #[error(
-        "run file of version {0}; this program reads version {VERSION}; record it again with `verify --save`"
-    )]
+    #[error("run file of version {0}; this program reads version {VERSION}; record it again with `verify --save`")]
     Version(String),
     /// The file cannot be read.
     #[error("the run file cannot be read: {0}")]
     Unreadable(String),
     /// The file differs from the file that was written.
-    #[error(
-        "the run file was altered after it was written: its SHA-256 digest does not match; copy it again"
-    )]
+    #[error("the run file was altered after it was written: its SHA-256 digest does not match; copy it again")]
     Altered,
     /// The file is unaltered, but its contents are not valid.
     #[error("the run file contradicts itself: {0}")]

@@ -95,10 +95,7 @@ pub(super) fn add<'a>(
     }
     let emit = |name: &str, digest: &mut Sha256| {
         let array = arrays.iter().find(|array| array.name == name);
-        array
-            .map(|array| array.emit(&mut sink_into(digest)))
-            .transpose()
-            .map(|found| found.is_some())
+        array.map(|array| array.emit(&mut sink_into(digest))).transpose().map(|found| found.is_some())
     };
     let digest = request(texts, emit)?;
     texts.insert(REQUEST.to_owned(), digest);
@@ -125,32 +122,20 @@ fn request<E>(
     Ok(hex(all))
 }
 
-pub(super) fn view_arrays<'a>(
-    view: &UploadedView,
-    [name, advance]: [&'static str; 2],
-) -> [Array<'a>; 2] {
+pub(super) fn view_arrays<'a>(view: &UploadedView, [name, advance]: [&'static str; 2]) -> [Array<'a>; 2] {
     let UploadedView { origin, right, up, forward, numbers, scene_min, scene_max, .. } = *view;
     let vectors = vec![origin, right, up, forward, numbers, scene_min, scene_max];
-    [
-        Array::list(name, vectors, |vector| *vector),
-        Array::list(advance, vec![view.advance], |advance| [*advance]),
-    ]
+    [Array::list(name, vectors, |vector| *vector), Array::list(advance, vec![view.advance], |advance| [*advance])]
 }
 
-pub(super) fn view(
-    file: &Container<'_>,
-    [view, advance]: [&str; 2],
-) -> Result<UploadedView, RunFileError> {
+pub(super) fn view(file: &Container<'_>, [view, advance]: [&str; 2]) -> Result<UploadedView, RunFileError> {
     let [origin, right, up, forward, numbers, scene_min, scene_max] = file.fixed(view)?;
     let advance = file.numbers::<f32>(advance, &[1])?.first().copied().unwrap_or_default();
     Ok(UploadedView { origin, advance, right, up, forward, numbers, scene_min, scene_max })
 }
 
 /// Reads the inputs of a device, as yet without the rectangle of a sample. `picture` has the requested camera and film.
-pub(super) fn read(
-    file: &Container<'_>,
-    picture: &crate::verify::Recording,
-) -> Result<LitInputs, RunFileError> {
+pub(super) fn read(file: &Container<'_>, picture: &crate::verify::Recording) -> Result<LitInputs, RunFileError> {
     let texts = file.texts().map(|(key, text)| (key.clone(), text.clone())).collect();
     let emit = |name: &str, digest: &mut Sha256| {
         let has = file.has(name);
@@ -208,7 +193,6 @@ fn sky(file: &Container<'_>) -> Result<Arc<Environment>, RunFileError> {
 }
 
 fn json<T: DeserializeOwned>(file: &Container<'_>, key: &str) -> Result<T, RunFileError> {
-    serde_json::from_str(file.text(key)?).map_err(|error| {
-        contradiction(format!("the text `{key}`: {}", shortened(&error.to_string())))
-    })
+    serde_json::from_str(file.text(key)?)
+        .map_err(|error| contradiction(format!("the text `{key}`: {}", shortened(&error.to_string()))))
 }

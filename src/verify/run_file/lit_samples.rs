@@ -87,11 +87,7 @@ impl LitSamples {
             let states = surfaces.iter().flat_map(|surface| words_of(&surface.states));
             self.keep("states", &[count, pixels, PathState::SLOTS, 4], states)?;
             if given.is_studio() {
-                let lights = || {
-                    surfaces
-                        .iter()
-                        .flat_map(|surface| surface.lights.iter().chain(&surface.ambient))
-                };
+                let lights = || surfaces.iter().flat_map(|surface| surface.lights.iter().chain(&surface.ambient));
                 let batches = if count > 0 { batches } else { 0 };
                 let shape = [count, batches, pixels];
                 self.keep("hidden", &shape, lights().map(|light| &light.hidden[..]))?;
@@ -108,12 +104,7 @@ impl LitSamples {
     }
 
     /// Writes an array to the end of the spool.
-    fn keep<'a>(
-        &mut self,
-        name: &str,
-        shape: &[usize],
-        words: impl Iterator<Item = &'a [u32]>,
-    ) -> io::Result<()> {
+    fn keep<'a>(&mut self, name: &str, shape: &[usize], words: impl Iterator<Item = &'a [u32]>) -> io::Result<()> {
         let name = name_of(self.count, name);
         let spool = self.spool.get_mut();
         spool.seek(SeekFrom::Start(self.end))?;
@@ -190,9 +181,7 @@ pub(super) fn each_sample(
     }
     let count = file.whole(SAMPLES)?;
     if !(1..=MAX_SAMPLES).contains(&count) {
-        return Err(contradiction(format!(
-            "there are {count} samples; there must be 1 to {MAX_SAMPLES}"
-        )));
+        return Err(contradiction(format!("there are {count} samples; there must be 1 to {MAX_SAMPLES}")));
     }
     let mut given = lit_inputs::read(file, picture)?;
     given.settings.check(scene).map_err(|error| contradiction(format!("the settings: {error}")))?;
@@ -221,17 +210,12 @@ impl Sample<'_, '_> {
 
     /// Reads the rectangle of a sample, and returns the index of the sample in its pixels.
     fn place(self, given: &mut LitInputs) -> Result<u32, RunFileError> {
-        let [sample, x, y, width, height] =
-            self.file.fixed::<u32, 1, 5>(&self.name("place"))?.map(|[number]| number);
-        let is_inside = |first: u32, size: u32, side: u32| {
-            size > 0 && first.checked_add(size).is_some_and(|end| end <= side)
-        };
+        let [sample, x, y, width, height] = self.file.fixed::<u32, 1, 5>(&self.name("place"))?.map(|[number]| number);
+        let is_inside =
+            |first: u32, size: u32, side: u32| size > 0 && first.checked_add(size).is_some_and(|end| end <= side);
         let film = &given.film;
         if !is_inside(x, width, film.width()) || !is_inside(y, height, film.height()) {
-            return Err(contradiction(format!(
-                "the rectangle of sample {} is not in the picture",
-                self.index
-            )));
+            return Err(contradiction(format!("the rectangle of sample {} is not in the picture", self.index)));
         }
         (given.origin, given.size) = ([x, y], [width, height]);
         Ok(sample)

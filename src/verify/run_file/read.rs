@@ -16,12 +16,8 @@ use crate::scene::{Appearance, Colors, Scene};
 use crate::text::shortened;
 use crate::verify::run_file::container::{Container, Flag, contradiction};
 use crate::verify::run_file::write::FinalPicture;
-use crate::verify::run_file::{
-    LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256,
-};
-use crate::verify::{
-    LitRecording, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay,
-};
+use crate::verify::run_file::{LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256};
+use crate::verify::{LitRecording, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay};
 
 /// An open run file. It is complete and unaltered, but its contents may not be valid.
 ///
@@ -60,11 +56,7 @@ impl<'a> RunFile<'a> {
     ///
     /// # Errors
     /// Returns an error if the requested lighting or the shape of a sample is not valid.
-    pub fn light(
-        &self,
-        run: &Run,
-        each: &mut dyn FnMut(&LitRecording),
-    ) -> Result<bool, RunFileError> {
+    pub fn light(&self, run: &Run, each: &mut dyn FnMut(&LitRecording)) -> Result<bool, RunFileError> {
         lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
     }
 
@@ -136,17 +128,12 @@ fn colors(file: &Container<'_>, spheres: usize) -> Result<Colors, RunFileError> 
     if file.has("color_rgba8") {
         return Ok(Colors::Rgba8(file.items::<u8, 4>("color_rgba8", &[spheres])?));
     }
-    let palette: Vec<_> = file
-        .list::<f32, 3>("palette")?
-        .into_iter()
-        .map(|rgb| color("palette", rgb))
-        .collect::<Result<_, _>>()?;
+    let palette: Vec<_> =
+        file.list::<f32, 3>("palette")?.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
     match palette.first() {
         Some(color) if !file.has("color_index") => Ok(Colors::One(*color)),
         None => Ok(Colors::Palette { palette, indices: Vec::new() }),
-        Some(_) => {
-            Ok(Colors::Palette { palette, indices: file.numbers("color_index", &[spheres])? })
-        }
+        Some(_) => Ok(Colors::Palette { palette, indices: file.numbers("color_index", &[spheres])? }),
     }
 }
 
@@ -171,11 +158,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     })
 }
 
-fn image(
-    file: &Container<'_>,
-    film: &Film,
-    [color, depth, normal, id]: [&str; 4],
-) -> Result<Image, RunFileError> {
+fn image(file: &Container<'_>, film: &Film, [color, depth, normal, id]: [&str; 4]) -> Result<Image, RunFileError> {
     let shape = [film.height() as usize, film.width() as usize];
     Image::from_layers(
         [film.width(), film.height()],
@@ -188,18 +171,14 @@ fn image(
 }
 
 fn rendered(file: &Container<'_>, film: &Film) -> Result<PlainRender, RunFileError> {
-    const LAYERS: [&str; 4] =
-        ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
+    const LAYERS: [&str; 4] = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
     if !file.has_text("rendered") {
         return Ok(PlainRender::None);
     }
     match file.text("rendered")? {
         "same" => Ok(PlainRender::Same),
         "other" => image(file, film, LAYERS).map(Box::new).map(PlainRender::Other),
-        other => Err(contradiction(format!(
-            "`rendered` is `{}`; it must be `same` or `other`",
-            shortened(other)
-        ))),
+        other => Err(contradiction(format!("`rendered` is `{}`; it must be `same` or `other`", shortened(other)))),
     }
 }
 
@@ -222,26 +201,14 @@ fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, Run
     let traced = rays(file, shape, "traced", "ray")?;
     let shaded = rays(file, shape, "shaded", "shading")?;
     let (t, ids) = (file.numbers("hit_t", shape)?, file.numbers("hit_id", shape)?);
-    all(t.len(), |index| TracedPixel {
-        ray: traced[index],
-        t: t[index],
-        id: ids[index],
-        shading_ray: shaded[index],
-    })
+    all(t.len(), |index| TracedPixel { ray: traced[index], t: t[index], id: ids[index], shading_ray: shaded[index] })
 }
 
 /// The ray of each pixel, if `flag` says that there is one.
-fn rays(
-    file: &Container<'_>,
-    shape: &[usize],
-    flag: &str,
-    rays: &str,
-) -> Result<Vec<Option<TracedRay>>, RunFileError> {
+fn rays(file: &Container<'_>, shape: &[usize], flag: &str, rays: &str) -> Result<Vec<Option<TracedRay>>, RunFileError> {
     let exist = file.numbers::<Flag>(flag, shape)?;
     if let Some(index) = exist.iter().position(|exists| exists.0 > 1) {
-        return Err(contradiction(format!(
-            "the array `{flag}` has a value other than 0 and 1 at index {index}"
-        )));
+        return Err(contradiction(format!("the array `{flag}` has a value other than 0 and 1 at index {index}")));
     }
     let origins = file.items(&format!("{rays}_origin"), shape)?;
     let directions = file.items(&format!("{rays}_direction"), shape)?;
@@ -262,9 +229,7 @@ fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
     let limits = file.texts().filter_map(|(key, value)| {
         Some(match (key.strip_prefix(LIMIT)?, value.parse()) {
             (name, Ok(limit)) => Ok((name.to_owned(), limit)),
-            (name, Err(_)) => {
-                Err(contradiction(format!("the limit `{name}` is not a valid number")))
-            }
+            (name, Err(_)) => Err(contradiction(format!("the limit `{name}` is not a valid number"))),
         })
     });
     let limits = limits.collect::<Result<_, _>>()?;
@@ -280,12 +245,7 @@ fn color(name: &str, rgb: [f32; 3]) -> Result<LinearRgb, RunFileError> {
 }
 
 /// The element of `all` whose name is the text with this key.
-fn named<T: Copy>(
-    file: &Container<'_>,
-    key: &str,
-    all: &[T],
-    name: fn(T) -> &'static str,
-) -> Result<T, RunFileError> {
+fn named<T: Copy>(file: &Container<'_>, key: &str, all: &[T], name: fn(T) -> &'static str) -> Result<T, RunFileError> {
     let text = file.text(key)?;
     all.iter()
         .copied()
@@ -318,11 +278,7 @@ fn surface([kind, a, b, c, opacity]: [f32; 5]) -> Option<SurfaceProperties> {
 }
 
 /// Adds the surfaces of a file with this number of spheres. If the file has none, they are the default.
-fn with_surfaces(
-    file: &Container<'_>,
-    appearance: Appearance,
-    spheres: usize,
-) -> Result<Appearance, RunFileError> {
+fn with_surfaces(file: &Container<'_>, appearance: Appearance, spheres: usize) -> Result<Appearance, RunFileError> {
     if !file.has("surfaces") {
         return Ok(appearance);
     }

@@ -42,12 +42,7 @@ pub struct FinalPicture {
 ///
 /// # Errors
 /// Returns an error if writing fails, or if the recording has another size than its film or lacks a layer.
-pub fn write(
-    scene: &Scene,
-    recording: &Recording,
-    provenance: &Provenance,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out: &mut dyn Write) -> io::Result<()> {
     write_with(scene, recording, provenance, Extras::default(), out)
 }
 
@@ -75,11 +70,9 @@ pub fn write_with(
         provenance.clone().texts().map(|(key, text)| (key.to_owned(), text.clone())).into();
     let limits = provenance.limits.iter();
     texts.extend(limits.map(|(name, limit)| (format!("{LIMIT}{name}"), limit.to_string())));
-    for (key, text) in [
-        ("camera", camera.kind.name()),
-        ("y_axis", film.y_axis().name()),
-        ("shading", primary.shading.name()),
-    ] {
+    for (key, text) in
+        [("camera", camera.kind.name()), ("y_axis", film.y_axis().name()), ("shading", primary.shading.name())]
+    {
         texts.insert(key.to_owned(), text.to_owned());
     }
     let is_rendered = match rendered {
@@ -157,8 +150,7 @@ pub fn write_with(
         let (Some(normal), Some(depth), Some(albedo), Some(variance)) = layers else {
             return Err(io::Error::other("the noisy picture lacks a layer"));
         };
-        let [size, other] =
-            [noisy, denoised].map(|image| [image.height() as usize, image.width() as usize]);
+        let [size, other] = [noisy, denoised].map(|image| [image.height() as usize, image.width() as usize]);
         arrays.extend([
             Array::new("noisy_color", &size, noisy.color(), |color| *color),
             Array::new("noisy_normal", &size, normal, |normal| *normal),
@@ -186,8 +178,7 @@ fn layers_of<'a>(
     what: &str,
     names: [&'static str; 4],
 ) -> io::Result<[Array<'a>; 4]> {
-    let (Some(depths), Some(normals), Some(ids)) = (image.depth(), image.normal(), image.id())
-    else {
+    let (Some(depths), Some(normals), Some(ids)) = (image.depth(), image.normal(), image.id()) else {
         return Err(io::Error::other(format!("the {what} lacks a layer")));
     };
     if [image.height(), image.width()].map(|n| n as usize) != shape {

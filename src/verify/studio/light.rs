@@ -24,10 +24,7 @@ impl Change {
 
     /// The union of two changes.
     pub(crate) fn union(self, other: Self) -> Self {
-        Self {
-            radiance: self.radiance.zip(other.radiance, Number::union),
-            opacity: self.opacity.union(other.opacity),
-        }
+        Self { radiance: self.radiance.zip(other.radiance, Number::union), opacity: self.opacity.union(other.opacity) }
     }
 }
 
@@ -152,8 +149,7 @@ impl Kernel<'_> {
             return Number::ONE;
         }
         let lights = 0..self.lighting().light_count;
-        let sum =
-            lights.fold(self.ambient_luminance(), |sum, light| sum + self.central_light(light));
+        let sum = lights.fold(self.ambient_luminance(), |sum, light| sum + self.central_light(light));
         // No term is negative.
         let is_none = if sum.is_zero() { Some(true) } else { sum.is_above_zero().map(|is| !is) };
         if self.choices.decide(is_none) { Number::ONE } else { sum }

@@ -46,8 +46,7 @@ impl Kernel<'_> {
     /// Whether a sphere is near in a direction of ambient light.
     pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Obstacle {
         let lighting = self.lighting();
-        let sample =
-            self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
+        let sample = self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
         let number = 2 + PAIRS.wrapping_mul(self.address.surface).wrapping_add(PAIRS - 1);
         let u = self.numbers(sample, number);
         let normal = Vector::recorded(self.before.vector(slot::NORMAL));
@@ -55,12 +54,7 @@ impl Kernel<'_> {
         self.is_hidden(candidates, direction, Number::recorded(lighting.occlusion_radius))
     }
 
-    fn is_hidden(
-        &mut self,
-        candidates: &Candidates,
-        direction: Vector,
-        distance: Number,
-    ) -> Obstacle {
+    fn is_hidden(&mut self, candidates: &Candidates, direction: Vector, distance: Number) -> Obstacle {
         let state = self.before;
         if state.has(flag::BACK) {
             let radius = Number::recorded(f32::from_bits(state.departure().emitter));
@@ -146,8 +140,7 @@ impl Entry {
 
 /// The distances at which a ray meets the planes that bound a box along an axis: the nearer and the farther one.
 fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> SlabCrossing {
-    let sizes =
-        [direction.low.abs(), direction.high.abs()].map(|size| size.max(SMALLEST_COMPONENT));
+    let sizes = [direction.low.abs(), direction.high.abs()].map(|size| size.max(SMALLEST_COMPONENT));
     let is_positive = direction.low >= 0.0;
     if !is_positive && direction.high >= 0.0 {
         // The sign of the direction is unknown. From between the planes, one of them lies behind and one ahead.
@@ -156,10 +149,7 @@ fn slab([low, high]: [f64; 2], origin: f64, direction: Interval) -> SlabCrossing
         let everything = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
         return if is_between {
             let behind = Interval { low: f64::NEG_INFINITY, high: 0.0 };
-            SlabCrossing {
-                near: behind,
-                far: Interval { low: nearest * (1.0 - 8.0 * U), high: f64::INFINITY },
-            }
+            SlabCrossing { near: behind, far: Interval { low: nearest * (1.0 - 8.0 * U), high: f64::INFINITY } }
         } else {
             SlabCrossing { near: everything, far: everything }
         };

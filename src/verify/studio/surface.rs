@@ -61,8 +61,7 @@ impl Kernel<'_> {
         let opacity = alpha * of_material;
         let weight = left_over * opacity;
         // Nothing remains behind an opaque surface: a number minus itself is zero.
-        let is_opaque =
-            vertex.opacities.iter().all(|opacity| opacity.to_bits() == 1.0_f32.to_bits());
+        let is_opaque = vertex.opacities.iter().all(|opacity| opacity.to_bits() == 1.0_f32.to_bits());
         let rest = if is_opaque { Number::ZERO } else { left_over - weight };
         let Interval { low, .. } = fade.interval();
         // The fraction is at most one, and one minus one is exactly zero.
@@ -84,16 +83,12 @@ impl Kernel<'_> {
         }
 
         let is_first = self.address.surface == 0 && !is_caught;
-        let first = if is_first {
-            color.map(|c| c.min(Number::ONE))
-        } else {
-            Vector::recorded(before.vector(slot::FIRST))
-        };
+        let first =
+            if is_first { color.map(|c| c.min(Number::ONE)) } else { Vector::recorded(before.vector(slot::FIRST)) };
         self.judge.vector(FIRST, after.vector(slot::FIRST), first)?;
         self.judge.number(LENGTH, after.number(slot::FIRST), far)?;
         self.compare_passed(&vertex)?;
-        let [found_rest, found_lit, zero, one_more] =
-            after.slots[slot::THROUGHPUT].map(f32::from_bits);
+        let [found_rest, found_lit, zero, one_more] = after.slots[slot::THROUGHPUT].map(f32::from_bits);
         let size = left_over.interval().high;
         self.judge.number_of(REST, found_rest, rest, size)?;
         self.judge.number_of(WEIGHT, found_lit, lit, size)?;

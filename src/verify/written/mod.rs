@@ -44,11 +44,7 @@ impl fmt::Display for WrittenViolation {
         let Self { pixel: [i, j], channel, found, legal: [low, high] } = self;
         let name = channel_name(*channel);
         write!(f, "pixel ({i}, {j}): {name} is {found}, but ")?;
-        if low >= high {
-            write!(f, "{low} is expected")
-        } else {
-            write!(f, "{low} to {high} are legal")
-        }
+        if low >= high { write!(f, "{low} is expected") } else { write!(f, "{low} to {high} are legal") }
     }
 }
 

@@ -32,17 +32,11 @@ pub(super) struct PictureCheck<'a> {
 }
 
 impl<'a> PictureCheck<'a> {
-    pub(super) fn new(
-        checker: &'a Checker<'a>,
-        view: &View<'_>,
-        primary: &'a PrimarySettings,
-    ) -> Self {
+    pub(super) fn new(checker: &'a Checker<'a>, view: &View<'_>, primary: &'a PrimarySettings) -> Self {
         let requested = RequestedCamera::of(view.camera);
-        let uploaded =
-            expected_view(&requested, checker.scene.origin(), checker.candidates.bounds());
+        let uploaded = expected_view(&requested, checker.scene.origin(), checker.candidates.bounds());
         let origin = DVec3::from(uploaded.origin.map(f64::from)).length();
-        let [min, max] =
-            [uploaded.scene_min, uploaded.scene_max].map(|v| DVec3::from(v.map(f64::from)));
+        let [min, max] = [uploaded.scene_min, uploaded.scene_max].map(|v| DVec3::from(v.map(f64::from)));
         let model = CameraModel::new(requested.kind, &uploaded, &view.film);
         // A device may choose another start, up to the size of the box away.
         let moved = 2.0 * U * (origin + (max - min).length());
@@ -50,12 +44,7 @@ impl<'a> PictureCheck<'a> {
     }
 
     /// Finds the legal colours of a pixel. The verdict says whether there is a single legal answer.
-    pub(super) fn legal(
-        &self,
-        pixel: [u32; 2],
-        hits: &mut LegalHits,
-        colors: &mut Vec<LegalColor>,
-    ) -> Verdict {
+    pub(super) fn legal(&self, pixel: [u32; 2], hits: &mut LegalHits, colors: &mut Vec<LegalColor>) -> Verdict {
         hits.clear();
         colors.clear();
         if !self.checker.scene.is_empty() {
@@ -135,9 +124,7 @@ impl WrittenPicture<'_> {
         }
         let pixels = size[0] as usize * size[1] as usize;
         let (found, expected) = match self.samples {
-            Samples::Encoded(bytes) => {
-                (bytes.len(), pixels * self.layout().iter().product::<usize>())
-            }
+            Samples::Encoded(bytes) => (bytes.len(), pixels * self.layout().iter().product::<usize>()),
             Samples::Linear(samples) => (samples.len(), pixels),
         };
         if found == expected {
@@ -188,10 +175,7 @@ impl LegalSample {
     /// that is not legal in the sample that contains the most channels, and the legal interval there.
     pub(super) fn judge(legal: &[Self], found: &[f64; 4]) -> Option<(usize, [f64; 2])> {
         let outside = |Self(channels): &Self| {
-            channels
-                .iter()
-                .zip(found)
-                .position(|([low, high], found)| !(low <= found && found <= high))
+            channels.iter().zip(found).position(|([low, high], found)| !(low <= found && found <= high))
         };
         if legal.iter().any(|legal| outside(legal).is_none()) {
             return None;

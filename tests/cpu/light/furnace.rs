@@ -134,8 +134,7 @@ fn metals_are_white_where_light_grazes() {
         let ray = shot.ray(pixel);
         let cosine = -cpu::trace(&shot.scene, &ray).unwrap().normal.dot(ray.direction);
         let wanted = 0.3 + 0.7 * (1.0 - cosine).powi(5);
-        let found =
-            (0..64).map(|sample| picture.sample(pixel, sample).color[0]).sum::<f64>() / 64.0;
+        let found = (0..64).map(|sample| picture.sample(pixel, sample).color[0]).sum::<f64>() / 64.0;
         assert!((found - wanted).abs() < 2e-3, "{cosine}: {found}, not {wanted}");
     }
 }
@@ -143,11 +142,7 @@ fn metals_are_white_where_light_grazes() {
 const TINT: [f32; 3] = [0.9, 0.5, 0.1];
 
 fn clear(attenuation_distance: f32) -> Material {
-    Material::Dielectric {
-        ior: 1.0,
-        roughness: 0.0,
-        attenuation_distance: Some(attenuation_distance),
-    }
+    Material::Dielectric { ior: 1.0, roughness: 0.0, attenuation_distance: Some(attenuation_distance) }
 }
 
 /// Beer's law along a chord, which no refraction bends: T^(chord/distance).
@@ -163,16 +158,12 @@ fn absorption_along_a_chord() {
         let foot = ray.origin - ray.origin.dot(ray.direction) * ray.direction;
         let half_chord = (4.0 - foot.length_squared()).max(0.0).sqrt();
         // Each sample is in the middle of its share once.
-        let mean: Vec<f64> = (0..3)
-            .map(|c| (0..16).map(|s| picture.sample(pixel, s).color[c]).sum::<f64>() / 16.0)
-            .collect();
+        let mean: Vec<f64> =
+            (0..3).map(|c| (0..16).map(|s| picture.sample(pixel, s).color[c]).sum::<f64>() / 16.0).collect();
         for (found, tint) in mean.into_iter().zip(TINT) {
             let wanted = f64::from(tint).powf(2.0 * half_chord / 1.5);
             let slope = 2.0 / 1.5 * -f64::from(tint).ln() * wanted * 2.0 / half_chord.max(0.05);
-            assert!(
-                (found - wanted).abs() < 1e-6 + 4e-4 * slope,
-                "{column}: {found}, not {wanted}"
-            );
+            assert!((found - wanted).abs() < 1e-6 + 4e-4 * slope, "{column}: {found}, not {wanted}");
         }
     }
 }
@@ -193,21 +184,17 @@ fn absorption_ends_where_glass_ends() {
 fn opacity_hides_twice() {
     let opacity = 0.3_f32;
     let a = f64::from(opacity);
-    let front = Sphere::new([0.0; 3], 1.0, rgb([0.8, 0.4, 0.0]))
-        .with_material(emissive(1.0))
-        .with_opacity(opacity);
-    let behind =
-        Sphere::new([0.0, 0.0, -20.0], 3.0, rgb([0.0, 0.5, 1.0])).with_material(emissive(2.0));
+    let front = Sphere::new([0.0; 3], 1.0, rgb([0.8, 0.4, 0.0])).with_material(emissive(1.0)).with_opacity(opacity);
+    let behind = Sphere::new([0.0, 0.0, -20.0], 3.0, rgb([0.0, 0.5, 1.0])).with_material(emissive(2.0));
     let background = rgb([0.25; 3]);
     let wanted = |behind: [f64; 3]| {
         let own = [0.8, 0.4, 0.0];
         let covered = 1.0 - (1.0 - a).powi(2);
         [0, 1, 2].map(|c| covered * own[c] + (1.0 - covered) * behind[c])
     };
-    for (spheres, behind, alpha) in [
-        (vec![front], [0.25; 3], 1.0 - (1.0 - a).powi(2)),
-        (vec![front, behind], [0.0, 1.0, 2.0], 1.0),
-    ] {
+    for (spheres, behind, alpha) in
+        [(vec![front], [0.25; 3], 1.0 - (1.0 - a).powi(2)), (vec![front, behind], [0.0, 1.0, 2.0], 1.0)]
+    {
         let shot = Shot::from(8.0, &spheres, [0.0; 3], 0.01, 8);
         let path = paths(1024, LightSampling::Multiple);
         let sky = Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false };
@@ -222,8 +209,7 @@ fn opacity_hides_twice() {
             let mean = image.alpha().unwrap().iter().map(|a| f64::from(*a)).sum::<f64>() / 64.0;
             assert!((mean - alpha).abs() < tolerance, "{mean}, not {alpha}");
             // Without a background, the same minus the visible part of the background.
-            let cut_out =
-                blocks(&shot.render(&RenderSettings { is_transparent: true, ..lighting }), 1)[0];
+            let cut_out = blocks(&shot.render(&RenderSettings { is_transparent: true, ..lighting }), 1)[0];
             let missing = found[0] - cut_out[0];
             assert!((missing - (1.0 - mean) * 0.25).abs() < 1e-6, "{missing}");
         }
@@ -233,8 +219,7 @@ fn opacity_hides_twice() {
 /// In a studio, translucent spheres cast no shadow and hide no ambient light. Only as many walls as asked are visible.
 #[test]
 fn a_studio_sees_through() {
-    let veils = [2.0, 4.0, 6.0]
-        .map(|z| Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::BLACK).with_opacity(0.5));
+    let veils = [2.0, 4.0, 6.0].map(|z| Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::BLACK).with_opacity(0.5));
     let spheres = [&veils[..], &[white([0.0; 3], 1.0)]].concat();
     let shot = Shot::from(8.0, &spheres, [0.0; 3], 0.01, 4);
     for (max_surfaces, seen) in [(64, 1.0 / 64.0), (7, 1.0 / 64.0), (6, 0.0), (3, 0.0)] {
@@ -245,8 +230,7 @@ fn a_studio_sees_through() {
         let image = shot.render(&lighting);
         for (color, alpha) in image.color().iter().zip(image.alpha().unwrap()) {
             assert!((f64::from(color[0]) - seen).abs() < 1e-4, "{max_surfaces}: {color:?}");
-            let covered =
-                if max_surfaces < 7 { 1.0 - 0.5_f32.powi(max_surfaces as i32) } else { 1.0 };
+            let covered = if max_surfaces < 7 { 1.0 - 0.5_f32.powi(max_surfaces as i32) } else { 1.0 };
             assert!((alpha - covered).abs() < 1e-6, "{max_surfaces}: {alpha}");
         }
     }
@@ -259,8 +243,7 @@ fn the_depth_cue() {
     let lamp = white([0.0; 3], 1.0).with_material(emissive(3.0));
     // The middle of the lamp is 7 units away.
     let shot = Shot::from(8.0, &[veil, lamp], [0.0; 3], 0.01, 1);
-    for (near, far, fade) in [(0.0, 7.0, 1.0), (0.0, 28.0, 0.25), (6.0, 8.0, 0.5), (7.5, 9.0, 0.0)]
-    {
+    for (near, far, fade) in [(0.0, 7.0, 1.0), (0.0, 28.0, 0.25), (6.0, 8.0, 0.5), (7.5, 9.0, 0.0)] {
         let cue = DepthCue { near, far, color: rgb([0.0, 1.0, 0.0]) };
         let studio = Studio { depth_cue: Some(cue), ..Studio::default() };
         let lighting = by(Integrator::Studio(studio), &paths(1, LightSampling::Chance));

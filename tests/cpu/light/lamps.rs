@@ -7,21 +7,14 @@ use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, RenderSettings, Sphere, cpu};
 
-use super::{
-    Shot, blocks, by, emissive, gray, ground, light, paths, rgb, standard_errors, studio, sun,
-    white,
-};
+use super::{Shot, blocks, by, emissive, gray, ground, light, paths, rgb, standard_errors, studio, sun, white};
 
 fn floor(color: LinearRgb) -> Option<Ground> {
     Some(ground(DVec3::ZERO, DVec3::new(0.0, 0.0, 2.0), color))
 }
 
 /// Settings of a studio and of paths.
-fn on_the_floor(
-    samples: u32,
-    lights: &[LightKind],
-    sampling: LightSampling,
-) -> [RenderSettings; 2] {
+fn on_the_floor(samples: u32, lights: &[LightKind], sampling: LightSampling) -> [RenderSettings; 2] {
     let in_studio = RenderSettings { ground: floor(gray(0.5)), ..studio(samples, lights) };
     let RenderSettings { lights, ground, .. } = in_studio.clone();
     [in_studio, RenderSettings { lights, ground, ..paths(samples, sampling) }]
@@ -60,8 +53,7 @@ fn expected(shot: &Shot, of_point: impl Fn(DVec3) -> f64) -> Vec<f64> {
 
 #[test]
 fn a_sphere_lamp_over_a_plane() {
-    let lamp =
-        LightKind::Sphere { center: LAMP, radius: LAMP_RADIUS, radiance: rgb([2.0, 1.0, 0.0]) };
+    let lamp = LightKind::Sphere { center: LAMP, radius: LAMP_RADIUS, radiance: rgb([2.0, 1.0, 0.0]) };
     let shot = plane(&[]);
     for lighting in on_the_floor(64, &[lamp], LightSampling::Chance) {
         let image = shot.render(&lighting);
@@ -78,8 +70,7 @@ fn a_sphere_lamp_over_a_plane() {
 /// An emissive sphere gives the same light with each sampling method. Multiple sampling does not count it twice.
 #[test]
 fn an_emissive_sphere_over_a_plane() {
-    let sphere =
-        Sphere::new(LAMP.to_array(), LAMP_RADIUS, LinearRgb::WHITE).with_material(emissive(2.0));
+    let sphere = Sphere::new(LAMP.to_array(), LAMP_RADIUS, LinearRgb::WHITE).with_material(emissive(2.0));
     let shot = plane(&[sphere]);
     for (sampling, samples) in
         [(LightSampling::Chance, 2048), (LightSampling::Direct, 64), (LightSampling::Multiple, 256)]
@@ -106,11 +97,9 @@ fn a_sun_over_a_plane() {
         let sun = sun(toward, gray(1.5), angular_radius);
         let base = RenderSettings { ground: floor(gray(0.5)), ..studio(256, &[sun]) };
         let mut lightings = vec![base.clone()];
-        for (sampling, samples) in [
-            (LightSampling::Chance, 1024),
-            (LightSampling::Direct, 256),
-            (LightSampling::Multiple, 256),
-        ] {
+        for (sampling, samples) in
+            [(LightSampling::Chance, 1024), (LightSampling::Direct, 256), (LightSampling::Multiple, 256)]
+        {
             // Chance does not hit such a small light.
             if sampling != LightSampling::Chance || angular_radius != 0.01 {
                 lightings.push(RenderSettings {
@@ -124,11 +113,7 @@ fn a_sun_over_a_plane() {
         for lighting in lightings {
             let image = shot.render(&lighting);
             let [found, ..] = blocks(&image, 1)[0];
-            assert!(
-                (found - 0.5).abs() < 1e-3,
-                "{angular_radius}, {:?}: {found}",
-                lighting.integrator
-            );
+            assert!((found - 0.5).abs() < 1e-3, "{angular_radius}, {:?}: {found}", lighting.integrator);
         }
     }
 }
@@ -137,10 +122,7 @@ fn a_sun_over_a_plane() {
 fn a_point_light_and_a_light_at_the_eye() {
     let shot = plane(&[]);
     let position = DVec3::new(0.5, 0.2, 1.5);
-    let lights = [
-        LightKind::Point { position, intensity: gray(3.0) },
-        LightKind::Head { strength: gray(0.25) },
-    ];
+    let lights = [LightKind::Point { position, intensity: gray(3.0) }, LightKind::Head { strength: gray(0.25) }];
     for lighting in on_the_floor(16, &lights, LightSampling::Multiple) {
         let image = shot.render(&lighting);
         for j in 0..16 {
@@ -211,10 +193,9 @@ fn a_matt_sphere_under_a_uniform_sky() {
 fn inside_a_lamp() {
     let lamp = LightKind::Sphere { center: DVec3::ZERO, radius: 9.0, radiance: gray(0.5) };
     let shot = Shot::new(&[white([0.3, 0.2, 0.1], 0.5)], [0.3, 0.2, 0.1], 0.2, 16);
-    for lighting in [
-        studio(256, &[lamp]),
-        RenderSettings { lights: vec![light(lamp)], ..paths(256, LightSampling::Multiple) },
-    ] {
+    for lighting in
+        [studio(256, &[lamp]), RenderSettings { lights: vec![light(lamp)], ..paths(256, LightSampling::Multiple) }]
+    {
         for color in blocks(&shot.render(&lighting), 4) {
             assert!((color[0] - 0.5).abs() < 2e-3, "{color:?}");
         }
@@ -222,8 +203,7 @@ fn inside_a_lamp() {
 }
 
 fn occluded(samples: u32, occlusion: Occlusion) -> RenderSettings {
-    let studio =
-        Studio { ambient: LinearRgb::WHITE, occlusion: Some(occlusion), ..Studio::default() };
+    let studio = Studio { ambient: LinearRgb::WHITE, occlusion: Some(occlusion), ..Studio::default() };
     by(Integrator::Studio(studio), &paths(samples, LightSampling::Chance))
 }
 
@@ -273,8 +253,7 @@ fn ambient_light_between_two_spheres() {
         let other = &spheres[1 - hit.id as usize];
         let center = DVec3::from(other.center);
         let wanted = 1.0 - hidden(ray.at(hit.t), hit.normal, center, other.radius);
-        let found = (0..samples).map(|s| picture.sample(pixel, s).color[0]).sum::<f64>()
-            / f64::from(samples);
+        let found = (0..samples).map(|s| picture.sample(pixel, s).color[0]).sum::<f64>() / f64::from(samples);
         // The bound is four standard errors of 4096 independent directions. They are placed more evenly.
         let bound = 4.0 * (wanted * (1.0 - wanted) / 4096.0).sqrt();
         assert!((found - wanted).abs() <= bound + 1e-3, "{pixel:?}: {found}, not {wanted}");
@@ -313,9 +292,7 @@ fn shadows_on_nothing() {
         ..base
     };
     // From the front and above, so that the plane y = 0 fills the rest of the picture.
-    let pose =
-        pinhole::camera::Pose::looking_at([0.0, 8.0, 20.0], [-1.5, 0.0, 0.0], [0.0, 1.0, 0.0])
-            .unwrap();
+    let pose = pinhole::camera::Pose::looking_at([0.0, 8.0, 20.0], [-1.5, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = pinhole::camera::PinholeCamera::with_vertical_fov(pose, 0.2, 1.0).unwrap();
     let shot = Shot {
         scene: pinhole::Scene::new(&spheres).unwrap(),

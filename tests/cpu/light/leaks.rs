@@ -33,8 +33,7 @@ fn all_scales_look_the_same() {
             Sphere::new([-0.5, 0.5, 0.0], 0.5, gray(0.5)),
             Sphere::new([0.5, 0.5, 0.0], 0.5, gray(0.8))
                 .with_material(Material::Lambert { specular: 0.5, roughness: 0.3 }),
-            Sphere::new([0.0, 0.5, 0.875], 0.5, gray(0.5))
-                .with_material(Material::Conductor { roughness: 0.3 }),
+            Sphere::new([0.0, 0.5, 0.875], 0.5, gray(0.5)).with_material(Material::Conductor { roughness: 0.3 }),
             Sphere::new([0.0, -floor, 0.0], floor, gray(0.5)),
         ];
         let lighting = furnace(4);
@@ -70,9 +69,7 @@ fn a_closed_shell_is_dark() {
     ] {
         for scale in SCALES {
             for place in PLACES {
-                for sampling in
-                    [LightSampling::Chance, LightSampling::Direct, LightSampling::Multiple]
-                {
+                for sampling in [LightSampling::Chance, LightSampling::Direct, LightSampling::Multiple] {
                     let inner = if scale == 1.0 { touching } else { lamp };
                     let shell = white([0.0; 3], 1.0).with_material(shell);
                     let spheres = [&[shell, inner][..], &neighbours].concat();
@@ -111,8 +108,7 @@ fn inside_a_shell() {
     for scale in SCALES {
         let shell = Sphere::new([0.0; 3], scale, gray(albedo));
         let lamp = white([0.0; 3], 0.1 * scale).with_material(emissive(100.0));
-        let shot =
-            Shot::from(0.5 * scale, &[shell, lamp], [0.4 * scale, 0.0, 0.0], 0.2 * scale, 16);
+        let shot = Shot::from(0.5 * scale, &[shell, lamp], [0.4 * scale, 0.0, 0.0], 0.2 * scale, 16);
         for sampling in [LightSampling::Direct, LightSampling::Multiple] {
             let image = shot.render(&paths(64, sampling));
             let (mut sum, mut count) = (0.0, 0.0);

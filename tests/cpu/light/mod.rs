@@ -12,9 +12,7 @@ use pinhole::geometry::ray::Ray;
 use pinhole::glam::DVec3;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling, Studio};
-use pinhole::{
-    Film, Image, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View, cpu,
-};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View, cpu};
 
 /// A colour from three numbers.
 pub(crate) fn rgb(rgb: [f32; 3]) -> LinearRgb {
@@ -99,27 +97,16 @@ impl Shot {
     }
 
     /// The same view from a given distance.
-    pub(crate) fn from(
-        distance: f64,
-        spheres: &[Sphere],
-        target: [f64; 3],
-        reach: f64,
-        side: u32,
-    ) -> Self {
+    pub(crate) fn from(distance: f64, spheres: &[Sphere], target: [f64; 3], reach: f64, side: u32) -> Self {
         let [x, y, z] = target;
         let pose = Pose::looking_at([x, y, z + distance], target, [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::new(pose, distance, [reach, reach]).unwrap();
-        Self {
-            scene: Scene::new(spheres).unwrap(),
-            camera: Box::new(camera),
-            film: Film::new(side, side).unwrap(),
-        }
+        Self { scene: Scene::new(spheres).unwrap(), camera: Box::new(camera), film: Film::new(side, side).unwrap() }
     }
 
     /// The picture, to be rendered sample by sample.
     pub(crate) fn picture<'a>(&'a self, lighting: &'a RenderSettings) -> SampledPicture<'a> {
-        SampledPicture::new(&self.scene, &View::new(self.camera.as_ref(), self.film), lighting)
-            .unwrap()
+        SampledPicture::new(&self.scene, &View::new(self.camera.as_ref(), self.film), lighting).unwrap()
     }
 
     /// The ray through the centre of a pixel.
@@ -135,11 +122,7 @@ impl Shot {
 }
 
 /// Sums of the pixels' numbers over each of `count`² blocks of a square picture.
-fn sums<const N: usize>(
-    image: &Image,
-    count: usize,
-    of: impl Fn(usize) -> [f64; N],
-) -> impl Iterator<Item = [f64; N]> {
+fn sums<const N: usize>(image: &Image, count: usize, of: impl Fn(usize) -> [f64; N]) -> impl Iterator<Item = [f64; N]> {
     let width = image.width() as usize;
     let side = width / count;
     (0..count * count).map(move |block| {

@@ -9,21 +9,15 @@ use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::light::{Ground, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Studio};
-use pinhole::{
-    Environment, Film, Image, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu,
-};
+use pinhole::{Environment, Film, Image, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu};
 
-use super::{
-    Shot, blocks, by, emissive, furnace, gray, ground, light, paths, rgb, standard_errors, sun,
-    white,
-};
+use super::{Shot, blocks, by, emissive, furnace, gray, ground, light, paths, rgb, standard_errors, sun, white};
 use crate::support::effort::{effort, tries};
 
 /// Layers are the means of samples, or the data of one ray, to the last bit of f32.
 #[test]
 fn layers_are_means_of_samples() {
-    let lamp =
-        Sphere::new([0.5, 0.0, 0.0], 0.5, rgb([4.0, 0.5, 0.25])).with_material(emissive(2.0));
+    let lamp = Sphere::new([0.5, 0.0, 0.0], 0.5, rgb([4.0, 0.5, 0.25])).with_material(emissive(2.0));
     let matt = Sphere::new([-0.5, 0.0, 0.0], 0.5, rgb([0.5, 0.25, 1.0])).with_opacity(0.5);
     let shot = Shot::new(&[matt, lamp], [0.0; 3], 1.1, 12);
     let mut lighting = furnace(7);
@@ -36,8 +30,7 @@ fn layers_are_means_of_samples() {
             let pixel = [index as u32 % 12, index as u32 / 12];
             let samples: Vec<_> = (0..7).map(|s| picture.sample(pixel, s)).collect();
             let mean = |of: &dyn Fn(&cpu::Sample) -> f64| samples.iter().map(of).sum::<f64>() / 7.0;
-            let luminance =
-                |s: &cpu::Sample| 0.2126 * s.color[0] + 0.7152 * s.color[1] + 0.0722 * s.color[2];
+            let luminance = |s: &cpu::Sample| 0.2126 * s.color[0] + 0.7152 * s.color[1] + 0.0722 * s.color[2];
             for c in 0..3 {
                 assert_eq!(image.color()[index][c], mean(&|s| s.color[c]) as f32);
                 assert_eq!(image.albedo().unwrap()[index][c], mean(&|s| s.albedo[c]) as f32);
@@ -156,9 +149,7 @@ fn albedo_is_that_of_the_first_surface() {
     let shot = Shot::from(4.0, &[veil, core], [0.0; 3], 0.1, 2);
     let studio = Integrator::Studio(Studio::default());
     let path = furnace(2);
-    for (integrator, wanted) in
-        [(path.integrator.clone(), [0.5, 0.0, 0.0]), (studio, [0.0, 0.5, 0.0])]
-    {
+    for (integrator, wanted) in [(path.integrator.clone(), [0.5, 0.0, 0.0]), (studio, [0.0, 0.5, 0.0])] {
         let lighting = by(integrator, &path);
         assert_eq!(shot.render(&lighting).albedo().unwrap(), [wanted; 4]);
     }
@@ -182,13 +173,9 @@ fn where_there_is_nothing() {
     let base = RenderSettings { background, ..paths(2, LightSampling::Multiple) };
     let pose = Pose::looking_along([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let fisheye = FisheyeCamera::new(pose, std::f64::consts::PI, 1.0).unwrap();
-    let mirror =
-        white([0.0, 0.0, -3.0], 1.0).with_material(Material::Conductor { roughness: 0.02 });
-    let shot = Shot {
-        scene: Scene::new(&[mirror]).unwrap(),
-        camera: Box::new(fisheye),
-        film: Film::new(16, 16).unwrap(),
-    };
+    let mirror = white([0.0, 0.0, -3.0], 1.0).with_material(Material::Conductor { roughness: 0.02 });
+    let shot =
+        Shot { scene: Scene::new(&[mirror]).unwrap(), camera: Box::new(fisheye), film: Film::new(16, 16).unwrap() };
     let studio = Integrator::Studio(Studio { ambient: gray(0.5), ..Studio::default() });
     for (integrator, is_visible, miss) in [
         (base.integrator.clone(), true, [0.5; 3]),
@@ -199,9 +186,7 @@ fn where_there_is_nothing() {
             let lighting = RenderSettings { sky: sky(is_visible), is_transparent, ..base.clone() };
             let lighting = by(integrator.clone(), &lighting);
             let image = shot.render(&lighting);
-            let at = |i: usize, j: usize| {
-                (image.color()[j * 16 + i], image.alpha().unwrap()[j * 16 + i])
-            };
+            let at = |i: usize, j: usize| (image.color()[j * 16 + i], image.alpha().unwrap()[j * 16 + i]);
             let hidden = |color: [f32; 3]| if is_transparent { [0.0; 3] } else { color };
             assert_eq!(at(0, 0), (hidden([0.1, 0.2, 0.3]), 0.0), "a corner of the film");
             assert_eq!(at(3, 8), (hidden(miss), 0.0), "beside the sphere");
@@ -216,13 +201,11 @@ fn where_there_is_nothing() {
 /// Surfaces with lobes, metal, glass, translucent surfaces, and emissive spheres. One of these is translucent, one is
 /// partly inside another sphere, and one coincides with another.
 fn spheres() -> Vec<Sphere> {
-    let sphere =
-        |x: f64, y: f64, z: f64, r: f64, color: [f32; 3]| Sphere::new([x, y, z], r, rgb(color));
+    let sphere = |x: f64, y: f64, z: f64, r: f64, color: [f32; 3]| Sphere::new([x, y, z], r, rgb(color));
     let glossy = Material::Lambert { specular: 0.4, roughness: 0.4 };
     vec![
         sphere(-1.0, 0.7, 0.0, 0.7, [0.8, 0.3, 0.3]).with_material(glossy),
-        sphere(0.6, 0.6, 0.2, 0.6, [0.9, 0.8, 0.4])
-            .with_material(Material::Conductor { roughness: 0.5 }),
+        sphere(0.6, 0.6, 0.2, 0.6, [0.9, 0.8, 0.4]).with_material(Material::Conductor { roughness: 0.5 }),
         sphere(-0.1, 0.3, 1.1, 0.3, [0.4, 0.8, 0.9]).with_opacity(0.6),
         sphere(0.9, 0.25, 1.2, 0.25, [0.9, 0.9, 1.0]).with_material(Material::Dielectric {
             ior: 1.5,
@@ -249,10 +232,7 @@ fn lighting(samples: u32, light_sampling: LightSampling, seed: u32) -> RenderSet
         integrator: Integrator::Path(tracing),
         sampling: pinhole::render::Sampling { seed, ..base.sampling },
         lights: [sun, point].map(light).into(),
-        sky: Sky {
-            light: SkyLight::Image { environment, strength: 0.75, rotation: 0.6 },
-            is_visible: true,
-        },
+        sky: Sky { light: SkyLight::Image { environment, strength: 0.75, rotation: 0.6 }, is_visible: true },
         ground: Some(ground(DVec3::ZERO, DVec3::Y, gray(0.6))),
         ..base
     }
@@ -277,19 +257,14 @@ fn luminances(image: &Image) -> Vec<f64> {
 fn chance_and_search_find_the_same_light() {
     let shot = shot();
     // Each has its own seed, so that common errors do not cancel.
-    let ways = [
-        (LightSampling::Chance, 8192, 1),
-        (LightSampling::Direct, 2048, 2),
-        (LightSampling::Multiple, 2048, 3),
-    ];
+    let ways = [(LightSampling::Chance, 8192, 1), (LightSampling::Direct, 2048, 2), (LightSampling::Multiple, 2048, 3)];
     let images = ways.map(|(way, samples, seed)| {
         let image = shot.render(&lighting(tries(samples), way, seed));
         (luminances(&image), standard_errors(&image, 4))
     });
     for (a, b) in [(0, 1), (0, 2), (1, 2)] {
         for block in 0..16 {
-            let [(light, error), (other, other_error)] =
-                [a, b].map(|way| (images[way].0[block], images[way].1[block]));
+            let [(light, error), (other, other_error)] = [a, b].map(|way| (images[way].0[block], images[way].1[block]));
             let bound = 4.0 * error.hypot(other_error);
             let difference = light - other;
             let ways = (ways[a].0, ways[b].0);

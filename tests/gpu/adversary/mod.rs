@@ -10,9 +10,7 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{Headless, HeadlessOptions, SampleRequest, Wait};
-use pinhole::verify::{
-    Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome,
-};
+use pinhole::verify::{Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
 use crate::any_rounding::{Adversary, Rounding};
@@ -86,9 +84,7 @@ pub(crate) type Lazy<T> = Box<dyn FnOnce() -> T + Send>;
 /// All lit scenes whose samples are judged, and random ones.
 pub(crate) fn lit_views() -> Vec<(String, Lazy<support::View>)> {
     let mut views: Vec<(String, Lazy<support::View>)> = Vec::new();
-    for (suite, of) in
-        [("paths", random_light::view as fn(u64) -> _), ("studio", random_light::studio)]
-    {
+    for (suite, of) in [("paths", random_light::view as fn(u64) -> _), ("studio", random_light::studio)] {
         for name in lit_scenes::judged(suite) {
             let full = format!("{suite}::{name}");
             views.push((full, Box::new(move || lit_scenes::view(suite, &name))));
@@ -107,11 +103,7 @@ pub(crate) fn not_accused(outcome: Outcome, words: &dyn Display) -> Result<(), F
 }
 
 /// Certifies a view that is cut to a small picture, and the picture of `render` too if `is_rendered`.
-fn certify(
-    device: &Device,
-    view: &support::View,
-    is_rendered: bool,
-) -> Result<Certificate, Failed> {
+fn certify(device: &Device, view: &support::View, is_rendered: bool) -> Result<Certificate, Failed> {
     let headless = device.as_ref()?;
     if !is_rendered {
         return certify_on(headless, view, SIDE, AccelChoice::Auto);
@@ -122,8 +114,7 @@ fn certify(
 }
 
 fn cut(film: &Film, side: u32) -> Result<Film, Failed> {
-    let film =
-        Film::new(film.width().min(side), film.height().min(side))?.with_y_axis(film.y_axis());
+    let film = Film::new(film.width().min(side), film.height().min(side))?.with_y_axis(film.y_axis());
     Ok(film)
 }
 
@@ -155,9 +146,7 @@ pub(crate) fn certify_lit_on(
     let checker = Checker::new(scene)?;
     let mut certificate = LitCertificate::default();
     let each = &mut |recording: &LitRecording| certificate.join(checker.certify_lit(recording));
-    headless
-        .record_lit(&buffers, &seen, settings, SampleRequest::middle(samples), each, &mut go_on)
-        .wait()?;
+    headless.record_lit(&buffers, &seen, settings, SampleRequest::middle(samples), each, &mut go_on).wait()?;
     Ok(certificate)
 }
 
@@ -169,8 +158,7 @@ fn found() -> Result<(), Failed> {
     let studio = certify_lit(&FAULTY, &random_light::studio(1).into())?;
     println!("{paths}\n{studio}");
     for certificate in [&paths, &studio] {
-        let mut stages: Vec<_> =
-            certificate.violations.iter().map(|violation| violation.stage).collect();
+        let mut stages: Vec<_> = certificate.violations.iter().map(|violation| violation.stage).collect();
         stages.dedup();
         println!("{stages:?}");
     }
@@ -181,8 +169,7 @@ fn found() -> Result<(), Failed> {
     }
 }
 
-static ALIKE: Device =
-    Device::new(|| open(Adversary { is_alike: true, ..Adversary::new(Rounding::EachItsOwn, 3) }));
+static ALIKE: Device = Device::new(|| open(Adversary { is_alike: true, ..Adversary::new(Rounding::EachItsOwn, 3) }));
 
 /// The bits of the distance and the id of every pixel's hit. `box_margin` is the margin of boxes for ray queries.
 pub(crate) fn hits(
@@ -195,16 +182,12 @@ pub(crate) fn hits(
     let plan = AccelPlan::new(scene.spheres(), choice, 1 << 27);
     let plan = plan.with_box_margin(box_margin);
     let buffers = headless.upload(scene, &plan.build(scene.spheres()).into()).wait()?;
-    let recording =
-        headless.record(&buffers, view, &RenderSettings::default(), &mut go_on).wait()?;
+    let recording = headless.record(&buffers, view, &RenderSettings::default(), &mut go_on).wait()?;
     Ok(recording.pixels.iter().map(|pixel| (pixel.t.to_bits(), pixel.id)).collect())
 }
 
 /// Calls `test` with a view of a whole scene.
-pub(crate) fn seen<T>(
-    scene: &Scene,
-    test: impl FnOnce(&View<'_>) -> Result<T, Failed>,
-) -> Result<T, Failed> {
+pub(crate) fn seen<T>(scene: &Scene, test: impl FnOnce(&View<'_>) -> Result<T, Failed>) -> Result<T, Failed> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let eye = center + pinhole::glam::DVec3::new(0.3, 0.2, 0.9) * size;
@@ -269,15 +252,8 @@ fn of_picture(headless: &Headless) -> Result<Deviations, Failed> {
 fn of_light(headless: &Headless) -> Result<Deviations, Failed> {
     let mut all = pinhole::verify::LitCertificate::default();
     for (name, view) in lit_views() {
-        if ["paths::lobes", "paths::metals", "paths::matt", "studio::lamps_of_all_kinds"]
-            .contains(&name.as_str())
-        {
-            all.join(certify_lit_on(
-                headless,
-                &view(),
-                &(0..8).collect::<Vec<_>>(),
-                AccelChoice::Auto,
-            )?);
+        if ["paths::lobes", "paths::metals", "paths::matt", "studio::lamps_of_all_kinds"].contains(&name.as_str()) {
+            all.join(certify_lit_on(headless, &view(), &(0..8).collect::<Vec<_>>(), AccelChoice::Auto)?);
         }
     }
     println!("{all}");

@@ -45,8 +45,7 @@ fn operands(count: usize) -> Vec<[u32; 4]> {
     (0..count)
         .map(|_| {
             let [a, b, c] = [0; 3].map(|_| number(&mut random));
-            let near =
-                |bits: u32, random: &mut fastrand::Rng| bits ^ 0x8000_0000 ^ random.u32(0..64);
+            let near = |bits: u32, random: &mut fastrand::Rng| bits ^ 0x8000_0000 ^ random.u32(0..64);
             match random.u32(0..4) {
                 0 => [a, near(a, &mut random), c, 0],
                 1 => {
@@ -60,11 +59,7 @@ fn operands(count: usize) -> Vec<[u32; 4]> {
 }
 
 /// Computes several results in kernels with the operations of an adversary.
-fn answers(
-    headless: &Headless,
-    adversary: Adversary,
-    questions: &[[u32; 4]],
-) -> [Vec<[f32; 4]>; 2] {
+fn answers(headless: &Headless, adversary: Adversary, questions: &[[u32; 4]]) -> [Vec<[f32; 4]>; 2] {
     let operations = adversary.operations(adversary.seed);
     let of = |results: &str| {
         let answer = format!(
@@ -102,10 +97,7 @@ pub(super) fn are_legal(headless: &Headless, rounding: Rounding) {
             ("b * c", second[2], exact(b) * exact(c)),
         ];
         for (at, (name, found, exactly)) in results.into_iter().enumerate() {
-            assert!(
-                is_neighbour(found, &exactly),
-                "{rounding:?}: {name} of {a:e}, {b:e}, {c:e}: {found:e}"
-            );
+            assert!(is_neighbour(found, &exactly), "{rounding:?}: {name} of {a:e}, {b:e}, {c:e}: {found:e}");
             let nearest = exactly.to_f32().value();
             otherwise[at / 2] += u32::from(found != nearest);
             inexact[at / 2] += u32::from(exact(nearest) != exactly);

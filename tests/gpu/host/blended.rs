@@ -68,8 +68,7 @@ fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Faul
     let far = f64::from(stage.far());
     let depth_of = |pixel: [u32; 2]| {
         let distance = picture.distances[at(pixel)];
-        (distance < 1e30)
-            .then(|| stage.camera.clip_depth(Stage::location(pixel), f64::from(distance)))
+        (distance < 1e30).then(|| stage.camera.clip_depth(Stage::location(pixel), f64::from(distance)))
     };
     let own = depth_of(pixel);
     let is_drawn = match fault {
@@ -136,8 +135,7 @@ fn wrong_by(stage: &Stage, composite: &Composite, fault: Fault) -> usize {
                 continue;
             };
             let is_far = expected == f64::from(stage.far());
-            seen[if picture.distances[at(pixel)] < 1e30 { 1 } else { 2 + usize::from(is_far) }] +=
-                1;
+            seen[if picture.distances[at(pixel)] < 1e30 { 1 } else { 2 + usize::from(is_far) }] += 1;
             let over = picture.colors[at(pixel)].map(f64::from);
             let kept = if fault == Fault::NoBlend { 0.0 } else { 1.0 - over[3] / 255.0 };
             let is_color = (0..4).all(|i| {
@@ -163,9 +161,7 @@ fn right(_: &'static Headless) {
 fn faults(_: &'static Headless) {
     for convention in [Convention::Perspective, Convention::InfiniteReversed] {
         let stage = Stage::new(convention);
-        for fault in
-            [Fault::NoNeighbors, Fault::FourNeighbors, Fault::Farthest, Fault::Hits, Fault::NoBlend]
-        {
+        for fault in [Fault::NoNeighbors, Fault::FourNeighbors, Fault::Farthest, Fault::Hits, Fault::NoBlend] {
             assert!(wrong(&stage, fault) > 0, "{convention:?}: {fault:?}");
         }
     }
@@ -178,8 +174,7 @@ fn faults_in_shaders(_: &'static Headless) {
         let of = |stage: &Stage| {
             let options = CompositeOptions::lit(FORMAT, stage.composite_depth(DEPTH));
             let device = &stage.host.device;
-            let composite =
-                Composite::edited(device, &options, vec![fault.edit.clone()]).wait().unwrap();
+            let composite = Composite::edited(device, &options, vec![fault.edit.clone()]).wait().unwrap();
             wrong_by(stage, &composite, Fault::None)
         };
         let found: usize = stages.iter().flatten().map(of).sum();

@@ -3,16 +3,14 @@
 use libtest_mimic::Trial;
 use pinhole::camera::{DepthOrder, HostCamera};
 use pinhole::gpu::{
-    ColorTarget, Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest,
-    GpuError, Headless, HostDepth, RendererOptions, TargetEncoding, Targets, Wait, wgpu,
+    ColorTarget, Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, GpuError, Headless,
+    HostDepth, RendererOptions, TargetEncoding, Targets, Wait, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::{Film, LinearRgb, Scene};
 use wgpu::TextureFormat;
 
-use super::stage::{
-    FIRST, RANGE, SIZE, Stage, TARGET, at, at_target, begin, pixels, pose, projection, settings,
-};
+use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, at, at_target, begin, pixels, pose, projection, settings};
 use super::triangle::{There, Triangle, triangle_at};
 use crate::host_program::{Drawing, Host, view_of};
 use crate::support::hosts::{Convention, view};
@@ -105,8 +103,7 @@ fn judge(stage: &Stage, drawn: Draw) -> Wrong {
         let change = |distance: f64| (camera.clip_depth(location, distance) - start).abs();
         // The last rounding is the rounding of the format. The others are those of the quotient, which is at most 2.5
         // ULP wrong, of the four products and sums of its numerator, and of its rounded parameters.
-        let rounding =
-            |distance: f64| HALF_ULP * (found.abs() + start.abs() + 12.0 * change(distance));
+        let rounding = |distance: f64| HALF_ULP * (found.abs() + start.abs() + 12.0 * change(distance));
         let expected = camera.clip_depth(location, f64::from(distance));
         let error = (found - expected).abs() / rounding(f64::from(distance));
         wrong.conversion = wrong.conversion.max(error);
@@ -284,12 +281,7 @@ fn refused(_: &'static Headless) {
 }
 
 /// Number of pixels with a wrong id.
-fn wrongly_hidden(
-    stage: &Stage,
-    format: TextureFormat,
-    first_pixel: [u32; 2],
-    cleared: f32,
-) -> usize {
+fn wrongly_hidden(stage: &Stage, format: TextureFormat, first_pixel: [u32; 2], cleared: f32) -> usize {
     let color = stage.attachment(TextureFormat::Rgba8Unorm, 1);
     let depth = stage.attachment(format, 1);
     let triangle = Triangle::new(stage, color.format(), format, 1);
@@ -329,9 +321,7 @@ fn wrongly_hidden(
 fn hides(_: &'static Headless) {
     for convention in Convention::ALL {
         let stage = Stage::new(convention);
-        for format in
-            [TextureFormat::Depth32Float, TextureFormat::Depth24Plus, TextureFormat::Depth16Unorm]
-        {
+        for format in [TextureFormat::Depth32Float, TextureFormat::Depth24Plus, TextureFormat::Depth16Unorm] {
             let wrongly_hidden = wrongly_hidden(&stage, format, FIRST, stage.far());
             assert_eq!(wrongly_hidden, 0, "{convention:?}, {format:?}");
         }
@@ -343,15 +333,9 @@ fn hiding_faults(_: &'static Headless) {
         let stage = Stage::new(convention);
         let format = TextureFormat::Depth32Float;
         for first_pixel in [[FIRST[0] + 1, FIRST[1]], [FIRST[0], FIRST[1] - 1]] {
-            assert!(
-                wrongly_hidden(&stage, format, first_pixel, stage.far()) > 0,
-                "{first_pixel:?}"
-            );
+            assert!(wrongly_hidden(&stage, format, first_pixel, stage.far()) > 0, "{first_pixel:?}");
         }
-        assert!(
-            wrongly_hidden(&stage, format, FIRST, 1.0 - stage.far()) > 0,
-            "cleared to the near plane"
-        );
+        assert!(wrongly_hidden(&stage, format, FIRST, 1.0 - stage.far()) > 0, "cleared to the near plane");
     }
 }
 

@@ -89,12 +89,7 @@ fn picture(
     layers.all().map(|layer| stage.host.read(layer))
 }
 
-fn scene(
-    stage: &Stage,
-    renderer: &Renderer,
-    spheres: Spheres,
-    choice: AccelChoice,
-) -> SceneBuffers {
+fn scene(stage: &Stage, renderer: &Renderer, spheres: Spheres, choice: AccelChoice) -> SceneBuffers {
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
     let bytes = stage.host.device.limits().max_storage_buffer_binding_size;
     stage.host.scene(renderer, &scene, choice, bytes)
@@ -117,8 +112,8 @@ fn random_spheres(count: usize, seed: u64) -> Spheres {
 
 /// The number of bytes that differ between the pictures with and without a limit, for one stage.
 fn different(stage: &Stage, seed: u64, edits: &[ShaderEdit]) -> usize {
-    let [without, with] = [false, true]
-        .map(|is_limited| renderer(stage, is_limited, if is_limited { edits } else { &[] }));
+    let [without, with] =
+        [false, true].map(|is_limited| renderer(stage, is_limited, if is_limited { edits } else { &[] }));
     let mut random = fastrand::Rng::with_seed(seed);
     let depths = [random_depth(stage, &mut random), own_depth(stage)];
     let of_the_stage: Spheres = stage
@@ -134,8 +129,7 @@ fn different(stage: &Stage, seed: u64, edits: &[ShaderEdit]) -> usize {
         (random_spheres(500, seed), AccelChoice::Tree),
         (random_spheres(30_000, seed), AccelChoice::Auto),
     ] {
-        let [a, b] =
-            [&without, &with].map(|shared| scene(stage, &shared.renderer, spheres.clone(), choice));
+        let [a, b] = [&without, &with].map(|shared| scene(stage, &shared.renderer, spheres.clone(), choice));
         for depth in &depths {
             let (a, b) = (picture(stage, &without, &a, depth), picture(stage, &with, &b, depth));
             let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&a[3]);
@@ -181,8 +175,7 @@ fn near(_: &'static Headless) {
     for stage in stages() {
         let fault = planted("limit").find(|fault| fault.name == "misses_not_hidden").unwrap();
         let renderer = renderer(&stage, true, &[fault.edit]);
-        let scene =
-            scene(&stage, &renderer.renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
+        let scene = scene(&stage, &renderer.renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
         let [_, limits, _, ids] = picture(&stage, &renderer, &scene, &own_depth(&stage));
         let limits: Vec<f32> = bytemuck::pod_collect_to_vec(&limits);
         let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&ids);

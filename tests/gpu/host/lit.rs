@@ -2,8 +2,8 @@
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{
-    ColorTarget, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState, Recolor,
-    Renderer, RendererOptions, SceneBuffers, Wait, wgpu,
+    ColorTarget, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState, Recolor, Renderer,
+    RendererOptions, SceneBuffers, Wait, wgpu,
 };
 use pinhole::image::Layer;
 use pinhole::internals::ShaderEdit;
@@ -29,8 +29,7 @@ pub(super) fn trials() -> Vec<Trial> {
     ]
 }
 
-const LAYERS: LayerSet =
-    LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
+const LAYERS: LayerSet = LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
 
 pub(super) struct Show {
     pub(super) host: Host,
@@ -45,12 +44,8 @@ impl Show {
 
     pub(super) fn edited(size: [u32; 2], edits: Vec<ShaderEdit>) -> Self {
         let host = Host::new();
-        let options = RendererOptions {
-            color: ColorTarget::Linear32,
-            data_layers: true,
-            edits,
-            ..RendererOptions::default()
-        };
+        let options =
+            RendererOptions { color: ColorTarget::Linear32, data_layers: true, edits, ..RendererOptions::default() };
         let renderer = LitRenderer::new(Renderer::new(&host.device, &options).wait().unwrap());
         let layers = host.layers(size, wgpu::TextureFormat::Rgba32Float);
         Self { host, renderer, layers }
@@ -81,12 +76,7 @@ impl Show {
         })
     }
 
-    fn set(
-        &self,
-        picture: &mut LitPicture,
-        scene: &SceneBuffers,
-        view: &View,
-    ) -> Result<bool, GpuError> {
+    fn set(&self, picture: &mut LitPicture, scene: &SceneBuffers, view: &View) -> Result<bool, GpuError> {
         let Host { device, queue } = &self.host;
         picture.set(&self.renderer, device, queue, scene, &view.seen(), &view.settings).wait()
     }
@@ -195,8 +185,7 @@ fn changes(headless: &'static Headless) {
 }
 
 fn nearer_camera(view: &View) -> Box<dyn pinhole::camera::Camera> {
-    let pose =
-        pinhole::camera::Pose::looking_at([0.5, 1.5, 6.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let pose = pinhole::camera::Pose::looking_at([0.5, 1.5, 6.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let aspect = view.film.aspect();
     Box::new(pinhole::camera::PinholeCamera::with_vertical_fov(pose, 0.6, aspect).unwrap())
 }
@@ -292,8 +281,7 @@ fn other_scene(headless: &'static Headless) {
 
     let recolor = Recolor::new(&show.host.device).wait().unwrap();
     let new = vec![[200, 40, 9, 255]; count];
-    let update =
-        SceneUpdate { first: 0, colors: Some(NewColors::Rgba8(&new)), ..SceneUpdate::default() };
+    let update = SceneUpdate { first: 0, colors: Some(NewColors::Rgba8(&new)), ..SceneUpdate::default() };
     view.scene.apply(&update).unwrap();
     let mut encoder = show.host.encoder();
     let Host { device, queue } = &show.host;
@@ -325,7 +313,6 @@ fn refused(_: &'static Headless) {
     assert!(matches!(refused, GpuError::Target { layer: "color", .. }), "{refused}");
     let clear = named("studio_opacity", 3);
     let Host { device, queue } = &show.host;
-    let without =
-        SceneBuffers::new(show.renderer.renderer(), device, queue, &clear.scene).wait().unwrap();
+    let without = SceneBuffers::new(show.renderer.renderer(), device, queue, &clear.scene).wait().unwrap();
     assert_eq!(show.picture(&without, &clear).unwrap_err(), GpuError::NoOccluders);
 }

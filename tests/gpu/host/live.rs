@@ -5,9 +5,7 @@ use std::sync::Arc;
 use libtest_mimic::Trial;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::cpu::Search;
-use pinhole::gpu::{
-    GpuError, Headless, LitState, LivePicture, LiveProgress, SceneBuffers, Wait, wgpu,
-};
+use pinhole::gpu::{GpuError, Headless, LitState, LivePicture, LiveProgress, SceneBuffers, Wait, wgpu};
 use pinhole::internals::{LiveReference, ShaderEdit};
 use pinhole::{Film, View};
 
@@ -84,11 +82,7 @@ impl Stage {
         })
     }
 
-    fn record(
-        &self,
-        picture: &mut LivePicture,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> LiveProgress {
+    fn record(&self, picture: &mut LivePicture, encoder: &mut wgpu::CommandEncoder) -> LiveProgress {
         let (renderer, queue) = (&self.show.renderer, &self.show.host.queue);
         picture.record(renderer, queue, encoder, &self.scene).unwrap()
     }
@@ -99,10 +93,7 @@ impl Stage {
         let Host { device, queue } = &self.show.host;
         let view = View::new(camera, self.view.film);
         let settings = &self.view.settings;
-        picture
-            .set(&self.show.renderer, device, queue, &self.scene, &view, settings)
-            .wait()
-            .unwrap();
+        picture.set(&self.show.renderer, device, queue, &self.scene, &view, settings).wait().unwrap();
         let mut encoder = self.show.host.encoder();
         let progress = self.record(picture, &mut encoder);
         assert!(progress.rays > 0 && !progress.was_lost, "{progress:?}");
@@ -161,15 +152,10 @@ fn at_rest(headless: &'static Headless) {
     let color: Vec<[f32; 4]> = stage.show.host.read(&stage.show.layers.color);
     let mut view = named("studio_near_occlusion", 256);
     view.settings.sampling.filter = pinhole::PixelFilter::Box;
-    let wanted = headless
-        .render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR)
-        .wait()
-        .unwrap();
+    let wanted = headless.render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR).wait().unwrap();
     // Within a pixel of an edge the two differ: only one of them is smooth there.
-    let close = color
-        .iter()
-        .zip(wanted.color())
-        .filter(|(found, wanted)| (0..3).all(|c| (found[c] - wanted[c]).abs() < 0.06));
+    let close =
+        color.iter().zip(wanted.color()).filter(|(found, wanted)| (0..3).all(|c| (found[c] - wanted[c]).abs() < 0.06));
     let part = close.count() as f64 / wanted.color().len() as f64;
     assert!(part > 0.8, "{part}");
 }
@@ -216,10 +202,7 @@ fn lost(_: &'static Headless) {
 fn refused(_: &'static Headless) {
     for (name, what) in [("path_matt_under_a_sky", "studio"), ("studio_opacity", "opaque")] {
         let refused = Stage::new(name, Vec::new()).picture().unwrap_err();
-        assert!(
-            matches!(refused, GpuError::NotLive { needs } if needs.contains(what)),
-            "{refused}"
-        );
+        assert!(matches!(refused, GpuError::NotLive { needs } if needs.contains(what)), "{refused}");
     }
     let mut stage = Stage::new("studio_key_and_fill", Vec::new());
     let mut picture = stage.picture().unwrap();

@@ -3,8 +3,8 @@
 use libtest_mimic::Trial;
 use pinhole::camera::PanoramaCamera;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, Frame, GpuError, Headless, PickError, Picker,
-    Renderer, RendererOptions, TargetTextures, Targets, Wait, wgpu,
+    Composite, CompositeOptions, CompositePicture, Frame, GpuError, Headless, PickError, Picker, Renderer,
+    RendererOptions, TargetTextures, Targets, Wait, wgpu,
 };
 use pinhole::{Film, Scene, View};
 use wgpu::{TextureFormat, TextureUsages};
@@ -37,16 +37,12 @@ fn every_pixel(headless: &'static Headless) {
     let camera = PanoramaCamera::new(pose());
     let view = View::new(&camera, Film::new(SIZE[0], SIZE[1]).unwrap());
     let scene = Scene::new(&stage.spheres).unwrap();
-    let uploaded = pinhole::gpu::SceneBuffers::new(&renderer, device, &stage.host.queue, &scene)
-        .wait()
-        .unwrap();
+    let uploaded = pinhole::gpu::SceneBuffers::new(&renderer, device, &stage.host.queue, &scene).wait().unwrap();
     frame.set_view(&stage.host.queue, &uploaded, &view, &settings()).unwrap();
-    let expected =
-        headless.render(&scene, &view, &settings(), pinhole::LayerSet::COLOR).wait().unwrap();
+    let expected = headless.render(&scene, &view, &settings(), pinhole::LayerSet::COLOR).wait().unwrap();
 
     for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba8UnormSrgb] {
-        let composite =
-            Composite::new(device, &CompositeOptions::without_depth(format)).wait().unwrap();
+        let composite = Composite::new(device, &CompositeOptions::without_depth(format)).wait().unwrap();
         let mut picture = CompositePicture::new(&composite, device, &targets).wait().unwrap();
         for first in [[0, 0], FIRST] {
             if first == FIRST {
@@ -108,13 +104,9 @@ fn textures(_: &'static Headless) {
         }
     }
     // A texture that cannot be drawn is also refused without depth.
-    let composite =
-        Composite::new(device, &CompositeOptions::without_depth(TextureFormat::Rgba8Unorm))
-            .wait()
-            .unwrap();
+    let composite = Composite::new(device, &CompositeOptions::without_depth(TextureFormat::Rgba8Unorm)).wait().unwrap();
     let wrong = view_of(&stage.layers.depth);
-    let error =
-        CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None }).wait();
+    let error = CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None }).wait();
     assert!(matches!(error, Err(GpuError::Target { layer: "color", .. })), "{error:?}");
 }
 
@@ -128,8 +120,7 @@ fn picks(_: &'static Headless) {
             let mut encoder = stage.host.encoder();
             stage.trace(&mut encoder);
             let pixel = [random.u32(0..SIZE[0]), random.u32(0..SIZE[1])];
-            let mut record =
-                |targets: &Targets<'_>| picker.record(&mut encoder, targets, &stage.view(), pixel);
+            let mut record = |targets: &Targets<'_>| picker.record(&mut encoder, targets, &stage.view(), pixel);
             stage.layers.with(true, &mut record).unwrap();
             asked.push(pixel);
             // Nothing is there before the submission.

@@ -6,8 +6,8 @@ use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, HostCamera, Pose};
 use pinhole::glam::{DMat4, DVec2, DVec3};
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth,
-    Renderer, RendererOptions, SceneBuffers, Targets, Wait, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth, Renderer,
+    RendererOptions, SceneBuffers, Targets, Wait, wgpu,
 };
 use pinhole::{LinearRgb, RenderSettings, Scene, Shading, Sphere};
 use wgpu::TextureFormat;
@@ -125,17 +125,8 @@ impl Stage {
         let scene = SceneBuffers::new(renderer, device, queue, &of_spheres).wait().unwrap();
         let layers = host.layers(SIZE, options.color.texture_format());
         let frame = layers.frame(renderer, device, true);
-        let mut stage = Self {
-            host,
-            convention,
-            camera,
-            to_clip: projection * to_view,
-            spheres,
-            shared,
-            scene,
-            frame,
-            layers,
-        };
+        let mut stage =
+            Self { host, convention, camera, to_clip: projection * to_view, spheres, shared, scene, frame, layers };
         let film = Film::new(SIZE[0], SIZE[1]).unwrap();
         let seen = pinhole::View::new(&stage.camera, film);
         stage.frame.set_view(&stage.host.queue, &stage.scene, &seen, &settings()).unwrap();
@@ -157,12 +148,7 @@ impl Stage {
         self.host.texture_for(TARGET, format, sample_count, usage)
     }
 
-    pub(super) fn composite(
-        &self,
-        format: TextureFormat,
-        depth: TextureFormat,
-        samples: u32,
-    ) -> Composite {
+    pub(super) fn composite(&self, format: TextureFormat, depth: TextureFormat, samples: u32) -> Composite {
         let mut options = CompositeOptions::new(format, self.composite_depth(depth));
         options.sample_count = samples;
         Composite::new(&self.host.device, &options).wait().unwrap()
@@ -174,8 +160,7 @@ impl Stage {
 
     pub(super) fn picture(&self, composite: &Composite) -> CompositePicture {
         let device = &self.host.device;
-        let picture =
-            |targets: &Targets<'_>| CompositePicture::new(composite, device, targets).wait();
+        let picture = |targets: &Targets<'_>| CompositePicture::new(composite, device, targets).wait();
         self.layers.with(true, picture).unwrap()
     }
 
@@ -233,8 +218,7 @@ impl Stage {
     }
 
     pub(super) fn location(pixel: [u32; 2]) -> DVec2 {
-        let [x, y] =
-            [0, 1].map(|axis| (f64::from(pixel[axis]) + 0.5) / f64::from(SIZE[axis]) * 2.0 - 1.0);
+        let [x, y] = [0, 1].map(|axis| (f64::from(pixel[axis]) + 0.5) / f64::from(SIZE[axis]) * 2.0 - 1.0);
         DVec2::new(x, -y)
     }
 

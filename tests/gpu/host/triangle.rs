@@ -30,12 +30,7 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    pub(super) fn new(
-        stage: &Stage,
-        color: TextureFormat,
-        depth: TextureFormat,
-        samples: u32,
-    ) -> Self {
+    pub(super) fn new(stage: &Stage, color: TextureFormat, depth: TextureFormat, samples: u32) -> Self {
         let device = &stage.host.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("triangle"),
@@ -82,8 +77,7 @@ impl Triangle {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let corners =
-            CORNERS.map(|corner| (stage.to_clip * corner.extend(1.0)).as_vec4().to_array());
+        let corners = CORNERS.map(|corner| (stage.to_clip * corner.extend(1.0)).as_vec4().to_array());
         stage.host.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&corners));
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("triangle"),
@@ -151,8 +145,7 @@ fn expected(stage: &Stage, pixel: [u32; 2], resolution: f64) -> Option<[u8; 4]> 
         (Some((_, color)), There::Nothing) => Some(color),
         (None, There::Triangle(_)) => Some(COLOR),
         (Some((depth, color)), There::Triangle(point)) => {
-            let ahead =
-                (stage.depth_of(point) - depth) * if stage.far() == 1.0 { 1.0 } else { -1.0 };
+            let ahead = (stage.depth_of(point) - depth) * if stage.far() == 1.0 { 1.0 } else { -1.0 };
             (ahead.abs() > resolution).then_some(if ahead > 0.0 { color } else { COLOR })
         }
     }

@@ -35,8 +35,8 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 fn own() -> Vec<Trial> {
-    let agreements = lit_scenes::all()
-        .map(|(name, view)| Trial::test(format!("light::agreement::{name}"), move || agree(&view)));
+    let agreements =
+        lit_scenes::all().map(|(name, view)| Trial::test(format!("light::agreement::{name}"), move || agree(&view)));
     let others = [
         trial("light::batches_do_not_change_samples", batches),
         trial("light::denoising_is_the_reference's", denoising),
@@ -56,28 +56,24 @@ fn agree(view: &View) -> Result<(), Failed> {
 fn agree_with(view: &View, wanted: &Image) -> Result<(), Failed> {
     let found = view.picture(headless()?, LayerSet::ALL);
     let colors = found.color().iter().zip(wanted.color());
-    let differences: Vec<f64> = colors
-        .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).abs())).fold(0.0, f64::max))
-        .collect();
-    let squares =
-        found.color().iter().zip(wanted.color()).flat_map(|(a, b)| {
-            (0..3).map(move |c| f64::from(a[c].min(1.0) - b[c].min(1.0)).powi(2))
-        });
+    let differences: Vec<f64> =
+        colors.map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).abs())).fold(0.0, f64::max)).collect();
+    let squares = found
+        .color()
+        .iter()
+        .zip(wanted.color())
+        .flat_map(|(a, b)| (0..3).map(move |c| f64::from(a[c].min(1.0) - b[c].min(1.0)).powi(2)));
     let count = view.film.pixel_count() as f64;
     let mean_square = squares.sum::<f64>() / (3.0 * count);
     let psnr = -10.0 * mean_square.max(1e-20).log10();
     let other = differences.iter().filter(|difference| **difference > SAME_WAY).count();
     let worst = differences.iter().copied().fold(0.0, f64::max);
     let brightest = wanted.color().iter().flatten().copied().fold(0.0, f32::max);
-    println!(
-        "{psnr:.1} dB, {other} pixels went another way, worst {worst:.2e}, brightest {brightest}"
-    );
+    println!("{psnr:.1} dB, {other} pixels went another way, worst {worst:.2e}, brightest {brightest}");
     let alphas = found.alpha().unwrap_or_default().iter().zip(wanted.alpha().unwrap_or_default());
     let alpha = alphas.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     if psnr < LEAST_PSNR || other as f64 > MAX_OTHER * count || alpha > 0.05 {
-        return Err(
-            format!("{psnr} dB, {other} pixels differ, by {worst}; alpha by {alpha}").into()
-        );
+        return Err(format!("{psnr} dB, {other} pixels differ, by {worst}; alpha by {alpha}").into());
     }
     if found.samples() != wanted.samples() || found.id() != wanted.id() {
         return Err("samples or ids differ".into());
@@ -112,9 +108,7 @@ fn denoising(device: &'static Headless) {
     let reference = view.picture(device, LayerSet::ALL);
     let error = |image: &Image| {
         let squares = image.color().iter().zip(reference.color());
-        squares
-            .map(|(a, b)| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>())
-            .sum::<f64>()
+        squares.map(|(a, b)| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>()).sum::<f64>()
     };
     assert!(error(&quiet) < 0.5 * error(&noisy), "{} of {}", error(&quiet), error(&noisy));
 }
@@ -143,9 +137,7 @@ fn occluders(device: &'static Headless) {
     };
     let scene = &view.scene;
     let mut images = Vec::new();
-    for (choice, structure) in
-        [(AccelChoice::Tree, Structure::WideTree), (AccelChoice::List, Structure::List)]
-    {
+    for (choice, structure) in [(AccelChoice::Tree, Structure::WideTree), (AccelChoice::List, Structure::List)] {
         let plan = plan_for(scene, &view.settings, choice);
         let occluders = plan.occluders.as_ref().unwrap();
         assert_eq!((plan.accel.structure, occluders.structure), (structure, structure));
@@ -164,8 +156,7 @@ fn occluders(device: &'static Headless) {
         assert!(plan.occluders.is_none(), "{}", settings.integrator.name());
     }
     // If all spheres are opaque, one structure suffices.
-    let opaque =
-        Scene::from_f32(scene.spheres().to_vec(), LinearRgb::from_srgb8([128; 3])).unwrap();
+    let opaque = Scene::from_f32(scene.spheres().to_vec(), LinearRgb::from_srgb8([128; 3])).unwrap();
     assert!(plan_for(&opaque, &view.settings, AccelChoice::Tree).occluders.is_none());
 }
 
@@ -195,8 +186,7 @@ fn not_recorded(device: &'static Headless) {
     let certificate = device.verify(&path.scene, &view, &RenderSettings::studio()).wait();
     assert_eq!(certificate.err(), refused("studio"));
     let (settings, request) = (RenderSettings::default(), SampleRequest::middle(&[0]));
-    let light =
-        device.record_lit(&buffers, &view, &settings, request, &mut |_| {}, &mut go_on).wait();
+    let light = device.record_lit(&buffers, &view, &settings, request, &mut |_| {}, &mut go_on).wait();
     assert_eq!(light.err(), Some(GpuError::NotLit));
 }
 
@@ -211,10 +201,8 @@ fn several_layers(_: &'static Headless) {
             [0.02 * column - 12.5, 2.0, 0.02 * row - 12.0, radius]
         })
         .collect();
-    let surface = SurfaceProperties {
-        material: Material::Emissive { strength: 400.0 },
-        ..SurfaceProperties::default()
-    };
+    let surface =
+        SurfaceProperties { material: Material::Emissive { strength: 400.0 }, ..SurfaceProperties::default() };
     let scene = Scene::from_f64(&lamps, LinearRgb::WHITE).unwrap().with_surface(surface);
     let pose = Pose::looking_at([0.0, 1.0, 4.0], [0.0, 0.0, 11.0], [0.0, 1.0, 0.0]).unwrap();
     let mut settings = RenderSettings::path();

@@ -23,10 +23,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
-        trial(
-            "light::passes::what_is_finished_within_a_batch_says_how_many_samples_it_has",
-            unfinished,
-        ),
+        trial("light::passes::what_is_finished_within_a_batch_says_how_many_samples_it_has", unfinished),
         trial(
             "light::passes::what_is_finished_within_a_pass_over_whole_samples_has_whole_samples",
             unfinished_in_one_pass,
@@ -76,9 +73,8 @@ fn one_pass(headless: &'static Headless) {
         let mut all = vec![&view.settings, &sharp, &caught];
         all.dedup();
         for (index, settings) in all.into_iter().enumerate() {
-            let [one, several] = [headless, &several].map(|device| {
-                device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).wait().unwrap()
-            });
+            let [one, several] = [headless, &several]
+                .map(|device| device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).wait().unwrap());
             let differ = one.color().iter().zip(several.color()).filter(|(a, b)| !a.iter().eq(*b));
             let first: Vec<_> = differ.clone().take(3).collect();
             let count = differ.count();
@@ -111,12 +107,10 @@ fn structures(device: &'static Headless) {
         ("path_glass", 64),
     ] {
         let view = sampled(name, samples);
-        let pictures = [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List]
-            .map(|choice| {
-                let buffers =
-                    device.upload(&view.scene, &view.planned(device, choice)).wait().unwrap();
-                view.watched(device, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
-            });
+        let pictures = [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List].map(|choice| {
+            let buffers = device.upload(&view.scene, &view.planned(device, choice)).wait().unwrap();
+            view.watched(device, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
+        });
         assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{name}");
     }
 }
@@ -139,10 +133,7 @@ fn sums(headless: &'static Headless) {
             film = one.clone();
         };
         let request = SampleRequest::middle(&samples);
-        headless
-            .record_lit(&buffers, &view.seen(), settings, request, &mut each, &mut go_on)
-            .wait()
-            .unwrap();
+        headless.record_lit(&buffers, &view.seen(), settings, request, &mut each, &mut go_on).wait().unwrap();
         let wanted: Vec<[f32; 3]> = film
             .after
             .iter()

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use naga::{
-    Arena, BinaryOperator, Block, Expression, Function, Handle, MathFunction, Range, ScalarKind,
-    Span, Statement, TypeInner, UniqueArena, VectorSize,
+    Arena, BinaryOperator, Block, Expression, Function, Handle, MathFunction, Range, ScalarKind, Span, Statement,
+    TypeInner, UniqueArena, VectorSize,
 };
 
 use super::ORDERS;
@@ -109,8 +109,7 @@ impl<'a> Rewriter<'a> {
     }
 
     fn of(&self, old: Handle<Expression>) -> Handle<Expression> {
-        self.map[old.index()]
-            .unwrap_or_else(|| panic!("{:?} is not there yet", self.old.expressions[old]))
+        self.map[old.index()].unwrap_or_else(|| panic!("{:?} is not there yet", self.old.expressions[old]))
     }
 
     fn block(&mut self, old: &Block) -> Block {
@@ -190,12 +189,7 @@ impl<'a> Rewriter<'a> {
         handle
     }
 
-    fn call(
-        &mut self,
-        name: &str,
-        arguments: Vec<Handle<Expression>>,
-        block: &mut Block,
-    ) -> Handle<Expression> {
+    fn call(&mut self, name: &str, arguments: Vec<Handle<Expression>>, block: &mut Block) -> Handle<Expression> {
         let function = *self.context.operations.get(name).unwrap_or_else(|| panic!("no {name}"));
         self.end_emit(block);
         let result = self.new.append(Expression::CallResult(function), Span::UNDEFINED);
@@ -208,9 +202,7 @@ impl<'a> Rewriter<'a> {
     fn size(&self, old: Handle<Expression>) -> Option<usize> {
         match *self.info[old].ty.inner_with(self.context.types) {
             TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => Some(1),
-            TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => {
-                Some(size as usize)
-            }
+            TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => Some(size as usize),
             TypeInner::Matrix { .. } => panic!("no kernel has matrices"),
             _ => None,
         }
@@ -232,9 +224,7 @@ impl<'a> Rewriter<'a> {
         let expression = &self.old.expressions[old];
         let is_rewritten = self.random.f64() < self.context.share;
         let new = match (self.size(old).filter(|_| is_rewritten), expression) {
-            (Some(size), Expression::Binary { op, left, right }) => {
-                self.binary(*op, [*left, *right], size, block)
-            }
+            (Some(size), Expression::Binary { op, left, right }) => self.binary(*op, [*left, *right], size, block),
             (Some(_), Expression::Math { fun, arg, arg1, arg2, .. }) => {
                 self.math(*fun, [Some(*arg), *arg1, *arg2], block)
             }
@@ -285,14 +275,11 @@ impl<'a> Rewriter<'a> {
             return None;
         }
         let factors = |term: Handle<Expression>| match &self.old.expressions[term] {
-            Expression::Binary { op: BinaryOperator::Multiply, left, right } => {
-                Some([*left, *right])
-            }
+            Expression::Binary { op: BinaryOperator::Multiply, left, right } => Some([*left, *right]),
             _ => None,
         };
-        let negated = |rewriter: &mut Self, expr| {
-            rewriter.emit(Expression::Unary { op: naga::UnaryOperator::Negate, expr })
-        };
+        let negated =
+            |rewriter: &mut Self, expr| rewriter.emit(Expression::Unary { op: naga::UnaryOperator::Negate, expr });
         let (factors, other, is_right) = match (factors(left), factors(right)) {
             (_, Some(factors)) => (factors, left, true),
             (Some(factors), _) => (factors, right, false),
@@ -322,9 +309,7 @@ impl<'a> Rewriter<'a> {
             MathFunction::Length if size > 1 => format!("length_{order}_{how}"),
             MathFunction::Normalize => format!("normalize_{order}_{how}"),
             MathFunction::Cross => "cross".to_owned(),
-            MathFunction::Mix => {
-                sized(if self.random.bool() { "mix_both" } else { "mix_difference" }, size)
-            }
+            MathFunction::Mix => sized(if self.random.bool() { "mix_both" } else { "mix_difference" }, size),
             MathFunction::Sqrt => sized("sqrt", size),
             MathFunction::Exp => sized("exp", size),
             MathFunction::Pow => sized("pow", size),
@@ -342,8 +327,7 @@ impl<'a> Rewriter<'a> {
             | MathFunction::Sign => return None,
             other => panic!("no kernel has {other:?}"),
         };
-        let arguments: Vec<_> =
-            arguments.into_iter().flatten().map(|argument| self.operand(argument, size)).collect();
+        let arguments: Vec<_> = arguments.into_iter().flatten().map(|argument| self.operand(argument, size)).collect();
         Some(self.call(&name, arguments, block))
     }
 

@@ -24,14 +24,8 @@ pub(crate) enum Rounding {
 }
 
 impl Rounding {
-    pub(crate) const ALL: [Self; 6] = [
-        Self::Random,
-        Self::Up,
-        Self::Down,
-        Self::AwayFromZero,
-        Self::TowardZero,
-        Self::EachItsOwn,
-    ];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Random, Self::Up, Self::Down, Self::AwayFromZero, Self::TowardZero, Self::EachItsOwn];
 }
 
 /// A device that returns legal results other than the nearest.
@@ -71,15 +65,10 @@ impl Adversary {
     pub(crate) fn operations(self, seed: u32) -> String {
         let Self { rounding, fault, .. } = self;
         let mode = Rounding::ALL.iter().position(|other| *other == rounding).unwrap();
-        let constants: String = [
-            ("MODE", mode as u32),
-            ("SEED", seed),
-            ("DIVIDE_STEPS", 2),
-            ("ROOT_STEPS", 4),
-            ("FAULT", fault),
-        ]
-        .map(|(name, value)| format!("const {name}: u32 = {value}u;\n"))
-        .concat();
+        let constants: String =
+            [("MODE", mode as u32), ("SEED", seed), ("DIVIDE_STEPS", 2), ("ROOT_STEPS", 4), ("FAULT", fault)]
+                .map(|(name, value)| format!("const {name}: u32 = {value}u;\n"))
+                .concat();
         let operations = [include_str!("arithmetic.wgsl"), include_str!("steps.wgsl")].concat();
         constants + &operations + &vectors()
     }
@@ -88,16 +77,13 @@ impl Adversary {
 /// Rewrites a module with calls in place of its operations.
 fn rewrite(source: &str, seed: u64, share: f64) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
-    let mut module =
-        naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let mut module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let info = validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
     let name_of = |function: &naga::Function| function.name.clone().unwrap_or_default();
     let operations: HashMap<_, _> = module
         .functions
         .iter()
-        .filter_map(|(handle, function)| {
-            Some((name_of(function).strip_prefix("adv_")?.to_owned(), handle))
-        })
+        .filter_map(|(handle, function)| Some((name_of(function).strip_prefix("adv_")?.to_owned(), handle)))
         .collect();
     let types = module.types.clone();
     let context = Context { types: &types, operations: &operations, seed, share };
@@ -117,8 +103,7 @@ fn rewrite(source: &str, seed: u64, share: f64) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
     let info = validator.validate(&module).map_err(|error| format!("{error:?}"))?;
     let flags = naga::back::wgsl::WriterFlags::empty();
-    let text =
-        naga::back::wgsl::write_string(&module, &info, flags).map_err(|error| error.to_string())?;
+    let text = naga::back::wgsl::write_string(&module, &info, flags).map_err(|error| error.to_string())?;
     Ok(text)
 }
 

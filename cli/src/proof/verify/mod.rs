@@ -67,11 +67,7 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
         let (count, all) = (certificate.undecided(), certificate.verdicts.len());
         return Err(undecided(&format!("{count} of {all} pixels have several legal answers")));
     }
-    let count = format!(
-        "{} of {} pixels",
-        certificate.count(Verdict::Violation),
-        certificate.verdicts.len()
-    );
+    let count = format!("{} of {} pixels", certificate.count(Verdict::Violation), certificate.verdicts.len());
     none_illegal("the picture is", &count, certificate.violations.first())
 }
 
@@ -99,8 +95,7 @@ fn verdict_of_light(certificate: &LitCertificate) -> Result<(), Failure> {
             stages.undecided, stages.checked
         )));
     }
-    let count =
-        format!("{} of {} stages", certificate.violation_count, certificate.stages().checked);
+    let count = format!("{} of {} stages", certificate.violation_count, certificate.stages().checked);
     none_illegal(what, &count, certificate.violations.first())
 }
 

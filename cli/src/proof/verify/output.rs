@@ -116,20 +116,12 @@ impl VerifyOutputs {
             let mut files = Vec::new();
             if let Some(path) = &self.json {
                 progress::stage("writing");
-                let json = serde_json::to_string_pretty(report)
-                    .context("the report cannot be written as JSON")?
-                    + "\n";
+                let json = serde_json::to_string_pretty(report).context("the report cannot be written as JSON")? + "\n";
                 files.push((path, unnamed(path, json.as_bytes())?));
             }
             if let Some(path) = &self.page {
                 progress::stage("drawing the report");
-                let page = page(
-                    run,
-                    certificate,
-                    report,
-                    kept.shown.as_ref(),
-                    self.run.as_deref().map(Path::display),
-                )?;
+                let page = page(run, certificate, report, kept.shown.as_ref(), self.run.as_deref().map(Path::display))?;
                 files.push((path, unnamed(path, page.as_bytes())?));
             }
             if let Some(path) = &self.save {

@@ -61,9 +61,8 @@ pub(crate) fn page(
     let image = &run.recording.image;
     let (color, depth) = (image.color(), image.depth().unwrap_or_default());
     let depths = depths(depth, verdicts);
-    let light = |lit: &FinalPicture| {
-        blocks.drawn(|block| mean(block.map(|i| LinearRgb::from_srgb8(lit.srgb[i]).to_array())))
-    };
+    let light =
+        |lit: &FinalPicture| blocks.drawn(|block| mean(block.map(|i| LinearRgb::from_srgb8(lit.srgb[i]).to_array())));
     let css = |verdict: &Verdict| {
         let [r, g, b] = verdict_color(*verdict);
         (verdict.name(), format!("#{r:02x}{g:02x}{b:02x}"))
@@ -76,9 +75,7 @@ pub(crate) fn page(
         pictures: PagePictures {
             color: blocks.drawn(|block| mean(block.map(|i| color[i])))?,
             // Each block shows its smallest depth.
-            depth: blocks.drawn(|block| {
-                depth_color(block.map(|i| depth[i]).fold(f32::INFINITY, f32::min), depths)
-            })?,
+            depth: blocks.drawn(|block| depth_color(block.map(|i| depth[i]).fold(f32::INFINITY, f32::min), depths))?,
             verdicts: (!verdicts.is_empty())
                 .then(|| blocks.drawn(|block| mask_color(block, verdicts, &run.recording.pixels)))
                 .transpose()?,
@@ -134,10 +131,7 @@ impl Blocks {
     }
 
     /// Draws a picture, as the data URI of a PNG. `color` gets the indices of the film's pixels in each block.
-    fn drawn(
-        &self,
-        color: impl Fn(&mut dyn Iterator<Item = usize>) -> [u8; 3] + Sync,
-    ) -> Result<String> {
+    fn drawn(&self, color: impl Fn(&mut dyn Iterator<Item = usize>) -> [u8; 3] + Sync) -> Result<String> {
         let [width, height] = self.shown();
         let range = |axis: usize, index: u32| {
             let start = index * self.step;
@@ -188,11 +182,7 @@ fn depth_color(depth: f32, depths: Option<[f32; 2]>) -> [u8; 3] {
 }
 
 /// The colour of the worst verdict of a block, so that violations remain visible at the reduced size.
-fn mask_color(
-    block: &mut dyn Iterator<Item = usize>,
-    verdicts: &[Verdict],
-    pixels: &[TracedPixel],
-) -> [u8; 3] {
+fn mask_color(block: &mut dyn Iterator<Item = usize>, verdicts: &[Verdict], pixels: &[TracedPixel]) -> [u8; 3] {
     let judged = block.filter_map(|i| {
         let verdict = verdicts.get(i)?;
         let rank = Verdict::ALL.iter().position(|of| of == verdict);
@@ -220,12 +210,9 @@ mod tests {
 
     #[test]
     fn large_pictures_are_made_smaller() {
-        for (size, step, shown) in [
-            ([1, 1], 1, [1, 1]),
-            ([2048, 3], 1, [2048, 3]),
-            ([4096, 4096], 2, [2048, 2048]),
-            ([4097, 1], 3, [1366, 1]),
-        ] {
+        for (size, step, shown) in
+            [([1, 1], 1, [1, 1]), ([2048, 3], 1, [2048, 3]), ([4096, 4096], 2, [2048, 2048]), ([4097, 1], 3, [1366, 1])]
+        {
             let blocks = Blocks::new(size);
             assert_eq!((blocks.step, blocks.shown()), (step, shown), "{size:?}");
         }

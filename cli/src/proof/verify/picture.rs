@@ -45,15 +45,12 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     threads::start()?;
     let of_picture = || path.display().to_string();
     let file = picture::read(&read(path)?).with_context(of_picture)?;
-    let text = file.certificate.as_deref().ok_or_else(|| {
-        anyhow!("{}: the picture has no certificate; render it with --certify", path.display())
-    })?;
+    let text = file
+        .certificate
+        .as_deref()
+        .ok_or_else(|| anyhow!("{}: the picture has no certificate; render it with --certify", path.display()))?;
     let certificate = PictureCertificate::from_text(text).with_context(of_picture)?;
-    let written = FilePicture {
-        size: file.size,
-        samples: file.samples,
-        per_pixel: certificate.samples_per_pixel,
-    };
+    let written = FilePicture { size: file.size, samples: file.samples, per_pixel: certificate.samples_per_pixel };
     certified::check_samples(&certificate, &written).with_context(of_picture)?;
     let (job, flags) = job(path, scene, &certificate, &written.samples)?;
     let mut input = job.source.load()?;
@@ -86,9 +83,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             outcome: judged.outcome(),
             command: command_line(),
         };
-        let text = serde_json::to_string_pretty(&report)
-            .context("the report cannot be written as JSON")?
-            + "\n";
+        let text = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
         name_all(vec![(json, unnamed(json, text.as_bytes())?)])?;
     }
     judged.verdict()

@@ -42,14 +42,10 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
         tell(format_args!("note: {note}"));
     }
     if input.eyes.is_some() {
-        tell(
-            "note: the camera has two eyes; only the view from the middle between them is checked",
-        );
+        tell("note: the camera has two eyes; only the view from the middle between them is checked");
     }
     let is_lit = !input.settings.integrator.is_primary();
-    for (flag, is_given) in
-        [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())]
-    {
+    for (flag, is_given) in [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())] {
         if is_given && !is_lit {
             return Err(Failure::usage(format!(
                 "{flag} needs a scene with the integrator `studio` or `path`; remove {flag}"
@@ -102,8 +98,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
 }
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {
-    let AdapterReport { name, backend, device_type, driver, driver_info } =
-        AdapterReport::of(headless.adapter_info());
+    let AdapterReport { name, backend, device_type, driver, driver_info } = AdapterReport::of(headless.adapter_info());
     let limits = headless.device().limits();
     let limits = [
         ("max_buffer_size", limits.max_buffer_size),
@@ -218,15 +213,11 @@ const DENOISED_SIDE: u32 = 160;
 const DENOISED_SAMPLES: u32 = 4;
 
 /// Renders a small noisy picture, and denoises it on the device.
-pub(crate) fn render_denoised(
-    headless: &Headless,
-    input: &Input,
-    choice: AccelChoice,
-) -> Result<[Image; 2], Failure> {
+pub(crate) fn render_denoised(headless: &Headless, input: &Input, choice: AccelChoice) -> Result<[Image; 2], Failure> {
     let mut settings = input.settings.unfinished();
     settings.sampling.samples = settings.sampling.samples.min(DENOISED_SAMPLES);
-    let film = shrunk(&input.film, DENOISED_SIDE)
-        .context("the picture is too narrow for its denoiser to be checked")?;
+    let film =
+        shrunk(&input.film, DENOISED_SIDE).context("the picture is too narrow for its denoiser to be checked")?;
     let view = View::new(input.camera.as_ref(), film);
     let request = PictureRequest::new(&input.scene, &view, &settings, GUIDES);
     let plan = |choice| headless.plan(&request, choice);
@@ -235,8 +226,7 @@ pub(crate) fn render_denoised(
             let buffers = upload(headless, &input.scene, plan)?;
             progress::stage("checking the denoiser");
             let watch = &mut |_: &_| interrupt::decide();
-            let noisy =
-                headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch).wait()?.image;
+            let noisy = headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch).wait()?.image;
             let quiet = headless.denoise(&noisy).wait()?;
             Ok([noisy, quiet])
         })
@@ -259,11 +249,7 @@ fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
 const SHOWN_SAMPLES: u32 = 16;
 
 /// Renders the scene with its light and few samples, in the view that is checked.
-pub(crate) fn render_lit(
-    headless: &Headless,
-    input: &Input,
-    choice: AccelChoice,
-) -> Result<FinalPicture, Failure> {
+pub(crate) fn render_lit(headless: &Headless, input: &Input, choice: AccelChoice) -> Result<FinalPicture, Failure> {
     let mut settings = input.settings.clone();
     let wanted = settings.sampling.samples;
     settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
@@ -292,9 +278,7 @@ fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> Final
     let (color, alpha) = (image.color(), image.alpha());
     let srgb = (0..color.len()).map(|i| {
         to_srgb8(match (alpha, encoding.background) {
-            (Some(alpha), Some(background)) => {
-                encoding.display_over(color[i], alpha[i], background)
-            }
+            (Some(alpha), Some(background)) => encoding.display_over(color[i], alpha[i], background),
             _ => encoding.display(color[i]),
         })
     });

@@ -12,8 +12,8 @@ use pinhole::internals::text::one_line;
 use pinhole::verify::denoised::{self, DenoiseCertificate};
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
-    Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome,
-    Recording, StageCounts, UploadError, Verdict, Violation,
+    Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome, Recording, StageCounts,
+    UploadError, Verdict, Violation,
 };
 
 /// The JSON document.
@@ -87,10 +87,7 @@ impl<'a> Report<'a> {
         let outcome = certificate.outcome().max(of_light).max(of_denoiser);
         Self {
             version: one_line(&provenance.version),
-            adapter: Adapter {
-                adapter: AdapterReport::of_run(provenance),
-                limits: &provenance.limits,
-            },
+            adapter: Adapter { adapter: AdapterReport::of_run(provenance), limits: &provenance.limits },
             scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
             picture: Picture {
                 width: recording.film.width(),
@@ -109,8 +106,7 @@ impl<'a> Report<'a> {
             violations: listed(&certificate.violations),
             paths: light.filter(|light| !light.is_studio).map(LightReport::new),
             studio: light.filter(|light| light.is_studio).map(LightReport::new),
-            denoiser: denoiser
-                .map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
+            denoiser: denoiser.map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
@@ -142,15 +138,11 @@ impl<'a> Report<'a> {
             (false, ..) if self.outcome == Outcome::Undecided => {
                 "undecided: no violation was found, but too many answers could be others".to_owned()
             }
-            (false, Some(_), _) => {
-                "NOT legal: the data on the device are not those of this scene and view".to_owned()
-            }
+            (false, Some(_), _) => "NOT legal: the data on the device are not those of this scene and view".to_owned(),
             (false, None, 0) if self.light().is_none_or(LightReport::is_without_fault) => {
                 "NOT legal: violations in the denoised picture".to_owned()
             }
-            (false, None, 0) if self.studio.is_some() => {
-                "NOT legal: violations in the light of the studio".to_owned()
-            }
+            (false, None, 0) if self.studio.is_some() => "NOT legal: violations in the light of the studio".to_owned(),
             (false, None, 0) => "NOT legal: violations in the light paths".to_owned(),
             (false, None, 1) => "NOT legal: 1 violation".to_owned(),
             (false, None, count) => format!("NOT legal: {count} violations"),
@@ -254,9 +246,7 @@ impl JudgedShare {
         let LitShare { samples, of_samples, pixels, of_pixels, .. } = self.share;
         // The share is rounded down, so that 100 % means all pixels.
         let percent = (self.fraction * 1e6).floor() / 1e4;
-        format!(
-            "{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)"
-        )
+        format!("{percent} % of the samples of its light ({samples} of {of_samples} in {pixels} of {of_pixels} pixels)")
     }
 }
 
@@ -280,11 +270,7 @@ pub(crate) struct OpenPixel {
 }
 
 /// The first ties and silhouettes.
-pub(crate) fn open_pixels(
-    checker: &Checker<'_>,
-    recording: &Recording,
-    certificate: &Certificate,
-) -> Vec<OpenPixel> {
+pub(crate) fn open_pixels(checker: &Checker<'_>, recording: &Recording, certificate: &Certificate) -> Vec<OpenPixel> {
     let width = recording.film.width() as usize;
     let of = |verdict| {
         let all = certificate.verdicts.iter().enumerate();
@@ -314,9 +300,7 @@ impl DenoiserReport<'_> {
     fn line(&self) -> String {
         let DenoiseCertificate { pixels, undecided, violation_count, .. } = self.certificate;
         let legal = pixels - undecided - violation_count;
-        format!(
-            "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n"
-        )
+        format!("denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n")
     }
 }
 

@@ -8,10 +8,7 @@
 //! * `memory=BYTES`: allocations that would exceed this sum are refused.
 //!
 //! Only one device of a process may be open at a time.
-#![allow(
-    unsafe_code,
-    reason = "Vulkan's layers are called with pointers, and call functions by pointers"
-)]
+#![allow(unsafe_code, reason = "Vulkan's layers are called with pointers, and call functions by pointers")]
 
 use std::collections::HashMap;
 use std::ffi::{CStr, c_char, c_void};
@@ -268,9 +265,7 @@ unsafe fn own(name: *const c_char) -> vk::PFN_vkVoidFunction {
         b"vkAllocateMemory" => allocate_memory as *const c_void,
         b"vkFreeMemory" => free_memory as *const c_void,
         b"vkWaitSemaphores" | b"vkWaitSemaphoresKHR" => wait_semaphores as *const c_void,
-        b"vkGetSemaphoreCounterValue" | b"vkGetSemaphoreCounterValueKHR" => {
-            counter_value as *const c_void
-        }
+        b"vkGetSemaphoreCounterValue" | b"vkGetSemaphoreCounterValueKHR" => counter_value as *const c_void,
         b"vkWaitForFences" => wait_fences as *const c_void,
         b"vkGetFenceStatus" => fence_status as *const c_void,
         b"vkQueueWaitIdle" => queue_wait_idle as *const c_void,
@@ -288,10 +283,7 @@ unsafe extern "system" fn get_instance_proc_addr(
     unsafe { own(name).or_else(|| next.and_then(|(find, _)| find(instance, name))) }
 }
 
-unsafe extern "system" fn get_device_proc_addr(
-    device: vk::Device,
-    name: *const c_char,
-) -> vk::PFN_vkVoidFunction {
+unsafe extern "system" fn get_device_proc_addr(device: vk::Device, name: *const c_char) -> vk::PFN_vkVoidFunction {
     let next = state().next_of_device;
     unsafe { own(name).or_else(|| next.and_then(|(find, _)| find(device, name))) }
 }
@@ -313,9 +305,7 @@ pub struct Negotiation {
 /// # Safety
 /// The pointer must be that of the loader to its structure.
 #[unsafe(no_mangle)]
-pub unsafe extern "system" fn vkNegotiateLoaderLayerInterfaceVersion(
-    negotiation: *mut Negotiation,
-) -> vk::Result {
+pub unsafe extern "system" fn vkNegotiateLoaderLayerInterfaceVersion(negotiation: *mut Negotiation) -> vk::Result {
     let negotiation = unsafe { &mut *negotiation };
     negotiation.version = 2;
     negotiation.of_instance = Some(get_instance_proc_addr);

@@ -121,15 +121,13 @@ fn arrays_to_certify() -> Vec<(&'static str, Vec<u8>)> {
     let (size, of_vectors) = ("(30, 40)", "(30, 40, 3)");
     let id = |dtype: &str, bytes: &[u8]| npy(dtype, false, size, bytes);
     let zero = [0; 4];
-    let depth =
-        |other: f32| npy("<f4", false, size, &pixels(1_f32.to_le_bytes(), other.to_le_bytes()));
+    let depth = |other: f32| npy("<f4", false, size, &pixels(1_f32.to_le_bytes(), other.to_le_bytes()));
     let vectors_of = |value, other| npy("<f4", false, of_vectors, &vectors(value, other));
     let along = [0.0, 0.0, -1.0];
     let directions = vectors_of(along, along);
     let origins = npy("<f4", false, "(3,)", &[0; 12]);
-    let rays = |directions: &[u8], origins: &[u8]| {
-        zip(&[("directions.npy", directions), ("origins.npy", origins)], false)
-    };
+    let rays =
+        |directions: &[u8], origins: &[u8]| zip(&[("directions.npy", directions), ("origins.npy", origins)], false);
     vec![
         ("id.npy", id("<u4", &pixels(zero, zero))),
         ("small-id.npy", npy("<u4", false, "(1, 2)", &[0; 8])),

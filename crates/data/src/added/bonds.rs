@@ -89,14 +89,12 @@ impl Bonds {
         added.bonds = bonds.len();
         let most = count.saturating_mul(MOST_ADDED[0]).saturating_add(MOST_ADDED[1]);
         for [a, b] in bonds {
-            let ((from, ball_a), (to, ball_b)) =
-                (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
+            let ((from, ball_a), (to, ball_b)) = (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
             let radius = STICK * ball_a.min(ball_b);
             let (length, middle) = ((to - from).length(), 0.5 * (from + to));
             let along = (to - from) / length;
             // The stick leaves a ball at this distance from its centre. Deeper parts of the stick cannot be seen.
-            let [out_a, out_b] =
-                [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
+            let [out_a, out_b] = [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
             let halves = [
                 (a, from + out_a * along, middle, 0.5 * length - out_a),
                 (b, to - out_b * along, middle, 0.5 * length - out_b),
@@ -117,9 +115,7 @@ impl Bonds {
             }
         }
         if data.cell.is_some() {
-            added
-                .notes
-                .push("bonds across the borders of the periodic cell are not drawn".to_owned());
+            added.notes.push("bonds across the borders of the periodic cell are not drawn".to_owned());
         }
         Ok(())
     }
@@ -128,9 +124,7 @@ impl Bonds {
 fn check(what: &str, value: f64) -> Result<(), AddError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(()),
-        false => Err(AddError(format!(
-            "`bonds`: the {what} is {value}; it must be finite and greater than 0"
-        ))),
+        false => Err(AddError(format!("`bonds`: the {what} is {value}; it must be finite and greater than 0"))),
     }
 }
 
@@ -266,9 +260,7 @@ mod tests {
     fn all_pairs(points: &[DVec3], reach: f64) -> Vec<[u32; 2]> {
         let count = points.len() as u32;
         let of = |a: u32| (a + 1..count).map(move |b| [a, b]);
-        let near = |&[a, b]: &[u32; 2]| {
-            points[a as usize].distance_squared(points[b as usize]) <= reach * reach
-        };
+        let near = |&[a, b]: &[u32; 2]| points[a as usize].distance_squared(points[b as usize]) <= reach * reach;
         (0..count).flat_map(of).filter(near).collect()
     }
 

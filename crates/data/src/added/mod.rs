@@ -45,8 +45,7 @@ impl Additions {
             _ => None,
         });
         let factor_of = |name: &String| bonds::radius_factor(Some(name));
-        let factors: Vec<f64> =
-            labels.map(|labels| labels.names.iter().map(factor_of).collect()).unwrap_or_default();
+        let factors: Vec<f64> = labels.map(|labels| labels.names.iter().map(factor_of).collect()).unwrap_or_default();
         let indices = labels.map_or(&[][..], |labels| &labels.indices);
         let other = bonds::radius_factor(None);
         let factor = |row: usize| {

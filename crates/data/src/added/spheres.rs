@@ -127,11 +127,7 @@ impl AddedSpheres {
     }
 
     /// The surface properties of all spheres; `None` if all have the same.
-    fn surfaces(
-        &self,
-        appearance: &Appearance,
-        count: usize,
-    ) -> Option<(Vec<SurfaceProperties>, Vec<u32>)> {
+    fn surfaces(&self, appearance: &Appearance, count: usize) -> Option<(Vec<SurfaceProperties>, Vec<u32>)> {
         let matt = SurfaceProperties::default();
         let has_own = self.runs.iter().any(|(_, look)| matches!(look, Look::Own(_)));
         let former = appearance.surface_indices();
@@ -165,12 +161,7 @@ pub(super) fn string_count(length: f64, radius: f64, spacing: f64) -> f64 {
 }
 
 /// Spheres in the middles of `count` equal parts of a line. Distances are also equal where two strings meet.
-pub(super) fn string_between(
-    from: DVec3,
-    to: DVec3,
-    radius: f64,
-    count: usize,
-) -> impl Iterator<Item = [f64; 4]> {
+pub(super) fn string_between(from: DVec3, to: DVec3, radius: f64, count: usize) -> impl Iterator<Item = [f64; 4]> {
     (0..count).map(move |index| {
         let center = from.lerp(to, (index as f64 + 0.5) / count as f64);
         [center.x, center.y, center.z, radius]

@@ -122,8 +122,7 @@ impl Atoms {
             _ => (0..self.spheres.len()).filter(is_backbone).map(residue_of).collect(),
         };
         let is_carbon = |atom: &usize| backbones.contains(&residue_of(*atom));
-        let (carbon, calcium): (Vec<_>, Vec<_>) =
-            self.doubtful.iter().partition(|atom| is_carbon(atom));
+        let (carbon, calcium): (Vec<_>, Vec<_>) = self.doubtful.iter().partition(|atom| is_carbon(atom));
         let named = |atoms: &[usize]| {
             let mut names: Vec<_> = atoms.iter().map(|atom| self.residue.indices[*atom]).collect();
             names.sort_unstable();
@@ -216,8 +215,7 @@ impl Atoms {
             let values = self.entity.into_values();
             loaded.columns.push(Column { name: "entity".to_owned(), values });
         }
-        loaded.notes =
-            unknown.iter().map(UnknownSpecies::note).chain(doubtful).chain(left_out).collect();
+        loaded.notes = unknown.iter().map(UnknownSpecies::note).chain(doubtful).chain(left_out).collect();
         loaded.unknown = unknown;
         loaded
     }
@@ -301,9 +299,7 @@ struct Location {
 /// same place in the chain, its atoms are not kept.
 fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
     let mut residues: HashMap<_, Vec<Location>> = HashMap::new();
-    for Candidate { key, residue, letter, occupancy, .. } in
-        atoms.clone().filter(|a| a.letter != b' ')
-    {
+    for Candidate { key, residue, letter, occupancy, .. } in atoms.clone().filter(|a| a.letter != b' ') {
         let locations = residues.entry(key).or_default();
         match locations.iter_mut().find(|location| location.letter == letter) {
             Some(location) => location.occupancy = location.occupancy.max(occupancy),
@@ -331,8 +327,7 @@ fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
     }
     atoms
         .map(|atom| {
-            atom.letter == b' '
-                || rank(&atom).is_some_and(|rank| best.get(&(atom.key, atom.name)) == Some(&rank))
+            atom.letter == b' ' || rank(&atom).is_some_and(|rank| best.get(&(atom.key, atom.name)) == Some(&rank))
         })
         .collect()
 }
@@ -342,17 +337,14 @@ fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
 ///
 /// # Errors
 /// Returns an error if lengths and angles cannot be those of a cell.
-pub(super) fn cell_edges(
-    lengths: [f64; 3],
-    angles: [f64; 3],
-) -> Result<Option<[[f64; 3]; 3]>, String> {
+pub(super) fn cell_edges(lengths: [f64; 3], angles: [f64; 3]) -> Result<Option<[[f64; 3]; 3]>, String> {
     let all = |values: [f64; 3], wanted| values.iter().all(|value| same(*value, wanted));
     // Programs write zeros for a structure without a cell.
     if all(lengths, 0.0) || (all(lengths, 1.0) && all(angles, 90.0)) {
         return Ok(None);
     }
-    let possible = lengths.iter().all(|length| *length > 0.0)
-        && angles.iter().all(|angle| 0.0 < *angle && *angle < 180.0);
+    let possible =
+        lengths.iter().all(|length| *length > 0.0) && angles.iter().all(|angle| 0.0 < *angle && *angle < 180.0);
     let edges = edges_of(lengths, angles.map(cos_degrees)).filter(|_| possible);
     edges.map(Some).ok_or_else(|| {
         format!(
@@ -364,16 +356,11 @@ pub(super) fn cell_edges(
 
 /// The edges with these lengths and these cosines of the angles, the first along x and the second in the plane of x and
 /// y; `None` if they lie in one plane.
-pub(super) fn edges_of(
-    [a, b, c]: [f64; 3],
-    [alpha, beta, gamma]: [f64; 3],
-) -> Option<[[f64; 3]; 3]> {
+pub(super) fn edges_of([a, b, c]: [f64; 3], [alpha, beta, gamma]: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     let sin_gamma = (1.0 - gamma * gamma).sqrt();
     let y = (alpha - beta * gamma) / sin_gamma;
     let z_squared = 1.0 - beta * beta - y * y;
-    (z_squared > 0.0).then(|| {
-        [[a, 0.0, 0.0], [b * gamma, b * sin_gamma, 0.0], [c * beta, c * y, c * z_squared.sqrt()]]
-    })
+    (z_squared > 0.0).then(|| [[a, 0.0, 0.0], [b * gamma, b * sin_gamma, 0.0], [c * beta, c * y, c * z_squared.sqrt()]])
 }
 
 /// The cosine of an angle in degrees: exactly 0 at a right angle, which most cells have.

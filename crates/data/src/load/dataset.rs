@@ -123,12 +123,7 @@ impl Dataset {
 
     /// Removes notes made obsolete by colours or radii from elsewhere: for all spheres, or for the species for which
     /// `is_given` is true.
-    pub fn correct_notes(
-        &mut self,
-        has_colors: bool,
-        has_radii: bool,
-        is_given: impl Fn(&str) -> bool,
-    ) {
+    pub fn correct_notes(&mut self, has_colors: bool, has_radii: bool, is_given: impl Fn(&str) -> bool) {
         let Some(unknown) = self.unknown.take() else { return };
         let (former, left) = (unknown.note(), unknown.after(has_colors, has_radii, is_given));
         // A path may stand before the note.
@@ -176,12 +171,9 @@ impl Dataset {
 
     /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.
     pub fn colored_spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
-        let color_of = move |index: usize| {
-            self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color)
-        };
-        let opacity_of = |index: usize| {
-            self.opacities.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(1.0)
-        };
+        let color_of =
+            move |index: usize| self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color);
+        let opacity_of = |index: usize| self.opacities.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(1.0);
         let colored = move |(index, mut sphere): (usize, Sphere)| {
             sphere.color = color_of(index);
             sphere.with_opacity(opacity_of(index))

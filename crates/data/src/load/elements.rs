@@ -109,12 +109,7 @@ impl UnknownSpecies {
     }
 
     /// The species that still lack something after all colours, all radii, or those of some names were given.
-    pub(super) fn after(
-        &self,
-        has_colors: bool,
-        has_radii: bool,
-        is_given: impl Fn(&str) -> bool,
-    ) -> Option<Self> {
+    pub(super) fn after(&self, has_colors: bool, has_radii: bool, is_given: impl Fn(&str) -> bool) -> Option<Self> {
         let names = self.names.iter().filter(|name| !is_given(name)).cloned().collect();
         Self::new(names, self.lacks_color && !has_colors, self.lacks_radius && !has_radii)
     }
@@ -141,8 +136,7 @@ mod tests {
 
     #[test]
     fn the_table_has_plausible_radii_and_the_known_gaps() {
-        let gaps: Vec<_> =
-            (1..).zip(VAN_DER_WAALS).filter(|(_, r)| *r == 0.0).map(|(z, _)| z).collect();
+        let gaps: Vec<_> = (1..).zip(VAN_DER_WAALS).filter(|(_, r)| *r == 0.0).map(|(z, _)| z).collect();
         assert_eq!(gaps, [61, 84, 85, 86, 87, 88]);
         assert!(VAN_DER_WAALS.iter().all(|r| *r == 0.0 || (1.2..=3.5).contains(r)));
     }

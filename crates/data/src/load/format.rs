@@ -66,8 +66,7 @@ pub(super) enum Frames {
     },
 }
 
-type FindPositions =
-    fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
+type FindPositions = fn(&mut dyn Bytes, Option<usize>, Option<Topology>) -> Result<FrameIndex, LoadError>;
 
 /// Reads frames of binary data, with the facts that are known about the file.
 pub(super) trait FrameReader: fmt::Debug + Send + Sync {

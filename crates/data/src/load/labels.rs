@@ -89,10 +89,7 @@ impl LabelsBuilder {
 
     /// Keeps some atoms and the names that they use. Returns the former index of each of these names.
     pub(super) fn retain(&mut self, keep: &[bool]) -> Vec<u32> {
-        let mut labels = Labels {
-            names: std::mem::take(&mut self.names),
-            indices: std::mem::take(&mut self.indices),
-        };
+        let mut labels = Labels { names: std::mem::take(&mut self.names), indices: std::mem::take(&mut self.indices) };
         let former = labels.keep(keep);
         (self.names, self.indices) = (labels.names, labels.indices);
         former
@@ -150,9 +147,6 @@ mod tests {
         assert_eq!(indices, [0, 1, 2, 3, 4, 1, 4, 5]);
         let former = labels.retain(&[false, true, false, false, true, true, true, false]);
         assert_eq!(former, [1, 4]);
-        assert_eq!(
-            (labels.names, labels.indices),
-            (vec!["a".into(), "eight888".into()], vec![0, 1, 0, 1])
-        );
+        assert_eq!((labels.names, labels.indices), (vec!["a".into(), "eight888".into()], vec![0, 1, 0, 1]));
     }
 }

@@ -13,16 +13,8 @@ pub(super) fn wrong_start(format: &str, message: impl std::fmt::Display) -> Load
 }
 
 /// The error of a position that is not finite. `byte` is its offset, or that of all positions if they are compressed.
-pub(super) fn wrong_position(
-    byte: u64,
-    frame: usize,
-    atom: usize,
-    axis: char,
-    found: f64,
-) -> LoadError {
-    let message = format!(
-        "frame {frame}: the {axis} coordinate of atom {atom} is {found}; a position must be finite"
-    );
+pub(super) fn wrong_position(byte: u64, frame: usize, atom: usize, axis: char, found: f64) -> LoadError {
+    let message = format!("frame {frame}: the {axis} coordinate of atom {atom} is {found}; a position must be finite");
     LoadError::byte(byte, message)
 }
 
@@ -111,11 +103,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads this number of bytes, which the file must have.
-    pub(super) fn bytes(
-        &mut self,
-        count: u64,
-        what: impl Into<String>,
-    ) -> Result<Vec<u8>, LoadError> {
+    pub(super) fn bytes(&mut self, count: u64, what: impl Into<String>) -> Result<Vec<u8>, LoadError> {
         self.check(count, what)?;
         let mut bytes = Vec::new();
         let reserved = usize::try_from(count).ok().and_then(|n| bytes.try_reserve_exact(n).ok());
@@ -228,8 +216,7 @@ fn any_number(text: &[u8]) -> Option<f64> {
 /// PLDI 1990.)
 #[inline]
 fn short_decimal(text: &[u8]) -> Option<f64> {
-    const TENS: [f64; 16] =
-        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    const TENS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
     let (is_negative, digits) = match text {
         [b'-', digits @ ..] => (true, digits),
         digits => (false, digits),

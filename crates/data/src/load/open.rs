@@ -37,11 +37,7 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
 ///
 /// # Errors
 /// Returns an error if the bytes cannot be read, their format is not known, or an option does not apply to it.
-pub fn from_bytes(
-    bytes: &[u8],
-    name: impl AsRef<Path>,
-    options: &Options,
-) -> Result<Dataset, LoadError> {
+pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let format = match options.format {
         Some(format) => format,
         None if is_gzip(bytes) => {
@@ -70,9 +66,7 @@ impl Format {
     fn read_plain(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         match self.method {
             ReadMethod::Whole(read) => read(bytes, options),
-            ReadMethod::Frames(frames) => {
-                read_from_memory(bytes, frames, options, open_topology(options)?)
-            }
+            ReadMethod::Frames(frames) => read_from_memory(bytes, frames, options, open_topology(options)?),
         }
     }
 }
@@ -216,11 +210,7 @@ mod tests {
         let xyz = b"1\n\nO 0 0 0\n";
         for name in ["a.xyz", "a.XYZ", "a", "a.txt"] {
             let loaded = from_bytes(xyz, name, &Options::default()).unwrap();
-            assert_eq!(
-                (loaded.spheres.len(), loaded.colors.map(|c| c.len())),
-                (1, Some(1)),
-                "{name}"
-            );
+            assert_eq!((loaded.spheres.len(), loaded.colors.map(|c| c.len())), (1, Some(1)), "{name}");
         }
     }
 }

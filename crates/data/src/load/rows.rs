@@ -93,14 +93,9 @@ impl Rows<'_> {
             parts.iter_mut().zip(slices).for_each(|(part, slice)| part.indices.push(slice));
         }
         // The error names the first of several bad lines.
-        let names = parallel::map_parts(parts, |part| part.read(fields))
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()?;
+        let names = parallel::map_parts(parts, |part| part.read(fields)).into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut numbers = numbers.into_iter();
-        let mut labels = indices
-            .into_iter()
-            .enumerate()
-            .map(|(text, indices)| merged(&names, text, indices, &ends));
+        let mut labels = indices.into_iter().enumerate().map(|(text, indices)| merged(&names, text, indices, &ends));
         let columns = fields.iter().filter_map(|field| match field.kind {
             Kind::Number => Some(TableColumn::numbers(&field.name, numbers.next()?)),
             Kind::Text => Some(TableColumn::labels(&field.name, labels.next()?)),
@@ -153,8 +148,7 @@ struct Piece<'a> {
 impl Piece<'_> {
     /// Reads all lines, and returns the different texts of each text column. Indices count from 0 in every piece.
     fn read(mut self, fields: &[Field]) -> Result<Vec<Vec<String>>, LoadError> {
-        let mut labels: Vec<LabelsBuilder> =
-            self.indices.iter().map(|_| LabelsBuilder::default()).collect();
+        let mut labels: Vec<LabelsBuilder> = self.indices.iter().map(|_| LabelsBuilder::default()).collect();
         for (row, line) in Lines::new(self.text).enumerate() {
             let number = self.lines_before + row + 1;
             let mut values = Values { rest: line };
@@ -167,8 +161,7 @@ impl Piece<'_> {
                 match field.kind {
                     Kind::Number => {
                         let parsed = self::number(value);
-                        let parsed = parsed
-                            .ok_or_else(|| not_a_number(value, number, column, &field.name))?;
+                        let parsed = parsed.ok_or_else(|| not_a_number(value, number, column, &field.name))?;
                         self.numbers[next_number][row] = parsed;
                         next_number += 1;
                     }
@@ -194,8 +187,7 @@ impl Piece<'_> {
 pub(super) fn missing(line: usize, name: &str, column: usize, columns: usize) -> LoadError {
     let (what, column) = (shortened(name), column + 1);
     let values = if columns == 1 { "column" } else { "columns" };
-    let message =
-        format!("{what}, which is column {column}, is missing; the line has {columns} {values}");
+    let message = format!("{what}, which is column {column}, is missing; the line has {columns} {values}");
     LoadError::line(line, message)
 }
 
@@ -217,17 +209,10 @@ pub(super) fn not_a_number(value: &[u8], line: usize, column: usize, name: &str)
 }
 
 /// Joins the texts of all pieces, and renumbers the indices.
-fn merged(
-    names: &[Vec<Vec<String>>],
-    text: usize,
-    mut indices: Vec<u32>,
-    ends: &[usize],
-) -> Labels {
+fn merged(names: &[Vec<Vec<String>>], text: usize, mut indices: Vec<u32>, ends: &[usize]) -> Labels {
     let mut all = LabelsBuilder::default();
-    let renumbered: Vec<Vec<u32>> = names
-        .iter()
-        .map(|piece| piece[text].iter().map(|name| all.index(name.as_bytes())).collect())
-        .collect();
+    let renumbered: Vec<Vec<u32>> =
+        names.iter().map(|piece| piece[text].iter().map(|name| all.index(name.as_bytes())).collect()).collect();
     let slices = parallel::split_mut(&mut indices, ends.iter().copied());
     parallel::for_each(slices.into_iter().zip(renumbered).collect(), |(slice, renumbered)| {
         for index in slice {
@@ -354,8 +339,7 @@ mod tests {
             assert_eq!(names, ["species", "x", "mark", "y", "name"]);
             assert_eq!(whole[1].1, ColumnValues::Numbers(wanted.0));
             let ColumnValues::Labels(labels) = &whole[4].1 else { panic!("no text") };
-            let found: Vec<_> =
-                labels.indices.iter().map(|i| labels.names[*i as usize].clone()).collect();
+            let found: Vec<_> = labels.indices.iter().map(|i| labels.names[*i as usize].clone()).collect();
             assert_eq!(found, wanted.1);
         }
     }
@@ -364,8 +348,7 @@ mod tests {
     fn the_first_bad_line_is_named() {
         let good = "H 1 2 3 n\n".repeat(20);
         for size in [1, 30, 1 << 20] {
-            let refused =
-                |text: &str| rows(text).read_in_pieces(&fields(), size).unwrap_err().to_string();
+            let refused = |text: &str| rows(text).read_in_pieces(&fields(), size).unwrap_err().to_string();
             assert_eq!(
                 refused(&format!("{good}H 1 2 x n\nH z\n{good}H y\n")),
                 "line 23, column 4: y is `x`, which is not a number"

@@ -43,9 +43,7 @@ impl Source {
     /// Returns this source, at the start of the file, for a reader that visits places far from each other.
     pub(super) fn in_small_pieces(self) -> io::Result<Self> {
         let mut source = match self {
-            Self::Plain(plain) => {
-                Self::Plain(BufReader::with_capacity(SMALL_PIECE, plain.into_inner()))
-            }
+            Self::Plain(plain) => Self::Plain(BufReader::with_capacity(SMALL_PIECE, plain.into_inner())),
             gzip => gzip,
         };
         source.rewind()?;
@@ -96,8 +94,7 @@ pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8
 
 /// The path without the ending `.gz`, which says nothing about the compressed data.
 pub(super) fn without_gz(path: &Path) -> PathBuf {
-    let is_gz =
-        path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("gz"));
+    let is_gz = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("gz"));
     if is_gz { path.with_extension("") } else { path.to_path_buf() }
 }
 
@@ -234,11 +231,7 @@ impl<'a> LineReader<'a> {
             let block = &buffer[..buffer.len().min(BLOCK)];
             let wanted = lines - found;
             let count = memchr::memchr_iter(b'\n', block).count();
-            let last = if count < wanted {
-                None
-            } else {
-                memchr::memchr_iter(b'\n', block).nth(wanted - 1)
-            };
+            let last = if count < wanted { None } else { memchr::memchr_iter(b'\n', block).nth(wanted - 1) };
             let end = last.map_or(block.len(), |last| last + 1);
             is_within = block[end - 1] != b'\n';
             found += count.min(wanted);
@@ -260,9 +253,7 @@ mod tests {
 
     #[test]
     fn names_of_compressed_files() {
-        for (name, inner) in
-            [("a.xyz.gz", "a.xyz"), ("a.xyz", "a.xyz"), ("b/a.GZ", "b/a"), ("gz", "gz")]
-        {
+        for (name, inner) in [("a.xyz.gz", "a.xyz"), ("a.xyz", "a.xyz"), ("b/a.GZ", "b/a"), ("gz", "gz")] {
             assert_eq!(without_gz(Path::new(name)), Path::new(inner), "{name}");
         }
     }

@@ -20,18 +20,13 @@ const ATTEMPTS: usize = 40;
 pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f64> {
     let finite = || (0..count).map(&center).filter(|center| center.is_finite());
     let (low, high) = finite()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), center| {
-            (low.min(center), high.max(center))
-        });
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), center| (low.min(center), high.max(center)));
     let size = high - low;
     if !(size.is_finite() && size.max_element() > 0.0) {
         return None;
     }
-    let asked: Vec<DVec3> = (0..count)
-        .step_by(count.div_ceil(ASKED).max(1))
-        .map(&center)
-        .filter(|c| c.is_finite())
-        .collect();
+    let asked: Vec<DVec3> =
+        (0..count).step_by(count.div_ceil(ASKED).max(1)).map(&center).filter(|c| c.is_finite()).collect();
     // Along a side that is much shorter than the largest, spheres lie in one layer.
     let sides = size.to_array().into_iter().filter(|side| *side > 1e-6 * size.max_element());
     let (volume, dimensions) = sides.fold((1.0, 0), |(volume, n), side| (volume * side, n + 1));
@@ -101,9 +96,7 @@ mod tests {
     use super::*;
 
     fn lattice(side: i32, spacing: f64) -> Vec<DVec3> {
-        let place = |i| {
-            DVec3::new(f64::from(i % side), f64::from(i / side % side), f64::from(i / side / side))
-        };
+        let place = |i| DVec3::new(f64::from(i % side), f64::from(i / side % side), f64::from(i / side / side));
         (0..side.pow(3)).map(|i| spacing * place(i)).collect()
     }
 
@@ -118,8 +111,7 @@ mod tests {
         };
         near(radius_of(&lattice(12, 3.0)), 1.5);
         // The spheres lie in one layer, or in one row.
-        let flat: Vec<_> =
-            (0..900).map(|i| DVec3::new(f64::from(i % 30), f64::from(i / 30), 4.0)).collect();
+        let flat: Vec<_> = (0..900).map(|i| DVec3::new(f64::from(i % 30), f64::from(i / 30), 4.0)).collect();
         near(radius_of(&flat), 0.5);
         let row: Vec<_> = (0..50).map(|i| DVec3::new(0.0, f64::from(i) * 0.1, 0.0)).collect();
         near(radius_of(&row), 0.05);

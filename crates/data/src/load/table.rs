@@ -77,21 +77,17 @@ impl Table {
         let found_radii = if have_radii { None } else { self.radii()? };
         let gives_radii = have_radii || found_radii.is_some();
         let species = self.species();
-        let elements = species
-            .as_ref()
-            .map(|labels| labels.names.iter().map(|name| appearance(name)).collect::<Vec<_>>());
-        // Names such as A and B are not elements, and have neither radii nor colours of their own.
         let elements =
-            elements.filter(|elements| elements.iter().any(|element| element.is_element));
+            species.as_ref().map(|labels| labels.names.iter().map(|name| appearance(name)).collect::<Vec<_>>());
+        // Names such as A and B are not elements, and have neither radii nor colours of their own.
+        let elements = elements.filter(|elements| elements.iter().any(|element| element.is_element));
         let element_of = species
             .as_ref()
             .zip(elements.as_ref())
             .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
         match (found_radii, options.radius, &element_of) {
             (Some((column, _)), Some(_), _) => {
-                let message = format!(
-                    "the column {column} has radii; remove the radius that is given for all spheres"
-                );
+                let message = format!("the column {column} has radii; remove the radius that is given for all spheres");
                 return Err(LoadError::new(message).of_kind(LoadErrorKind::TwoRadii));
             }
             (Some((_, radii)), None, _) => set_radii(&mut spheres, |row| radii[row]),
@@ -106,9 +102,8 @@ impl Table {
                 set_radii(&mut spheres, |_| radius);
             }
         }
-        let by_element = element_of
-            .as_ref()
-            .map(|element_of| parallel::map(spheres.len(), |row| element_of(row).color));
+        let by_element =
+            element_of.as_ref().map(|element_of| parallel::map(spheres.len(), |row| element_of(row).color));
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
             named.filter(|(_, element)| !element.is_element).map(|(name, _)| name.clone())
@@ -125,8 +120,7 @@ impl Table {
         loaded.notes = notes;
         let species = species.map(|labels| TableColumn::labels("species", labels));
         let columns = species.into_iter().chain(self.columns);
-        loaded.columns =
-            columns.map(|TableColumn { name, values, .. }| Column { name, values }).collect();
+        loaded.columns = columns.map(|TableColumn { name, values, .. }| Column { name, values }).collect();
         Ok(loaded)
     }
 
@@ -140,9 +134,7 @@ impl Table {
     }
 
     fn position(&self, names: &[&str]) -> Option<usize> {
-        names
-            .iter()
-            .find_map(|name| self.columns.iter().position(|column| column.plain_name() == *name))
+        names.iter().find_map(|name| self.columns.iter().position(|column| column.plain_name() == *name))
     }
 
     /// Takes the first column with one of these names out of the table.
@@ -152,8 +144,7 @@ impl Table {
 
     /// Takes the first complete set of three columns out of the table.
     fn take_set(&mut self, sets: Sets) -> Option<[TableColumn; 3]> {
-        let set =
-            sets.iter().find(|set| set.iter().all(|name| self.position(&[*name]).is_some()))?;
+        let set = sets.iter().find(|set| set.iter().all(|name| self.position(&[*name]).is_some()))?;
         let [first, second, third] = set.map(|name| self.take(&[name]));
         Some([first?, second?, third?])
     }
@@ -186,8 +177,7 @@ impl Table {
             return Some(colors);
         }
         let set = self.take_set(COLORS)?;
-        let full =
-            set.iter().map(|column| column.full).reduce(|a, b| a.zip(b).map(|(a, b)| a.max(b)))?;
+        let full = set.iter().map(|column| column.full).reduce(|a, b| a.zip(b).map(|(a, b)| a.max(b)))?;
         let numbers = set.each_ref().map(|column| match &column.values {
             ColumnValues::Numbers(numbers) => numbers.as_slice(),
             ColumnValues::Labels(_) => &[],
@@ -202,24 +192,23 @@ impl Table {
             65535.0
         });
         let [red, green, blue] = numbers;
-        let is_valid = red.len() == green.len()
-            && green.len() == blue.len()
-            && all().all(|value| (0.0..=full).contains(&value));
+        let is_valid =
+            red.len() == green.len() && green.len() == blue.len() && all().all(|value| (0.0..=full).contains(&value));
         if !is_valid || (red.is_empty() && !set[0].is_empty()) {
             let [red, green, blue] = set.each_ref().map(|column| &column.name);
             notes.push(format!(
                 "the columns {}, {}, {} are not used as colors, because they have values that are not \
                  numbers from 0 to 1, 255 or 65535",
-                shortened(red), shortened(green), shortened(blue)
+                shortened(red),
+                shortened(green),
+                shortened(blue)
             ));
             self.columns.extend(set);
             return None;
         }
         let byte = |value: f64| (value / full * 255.0).round() as u8;
         let rows = red.iter().zip(green).zip(blue);
-        Some(
-            rows.map(|((r, g), b)| LinearRgb::from_srgb8([byte(*r), byte(*g), byte(*b)])).collect(),
-        )
+        Some(rows.map(|((r, g), b)| LinearRgb::from_srgb8([byte(*r), byte(*g), byte(*b)])).collect())
     }
 
     fn opacities(&mut self, notes: &mut Vec<String>) -> Option<Vec<f32>> {
@@ -280,9 +269,7 @@ impl Table {
             // Another note already says why the column is not used.
             if !notes.iter().any(|note| note.contains(&name)) {
                 found += 1;
-                notes.push(format!(
-                    "the column {name} is not used; to use it, add --{what}-by {name}"
-                ));
+                notes.push(format!("the column {name} is not used; to use it, add --{what}-by {name}"));
             }
         }
     }
@@ -315,11 +302,7 @@ fn center(spheres: &SphereArray, row: usize) -> DVec3 {
 }
 
 /// The radius of spheres whose file has none, with a note.
-pub(super) fn guessed_radius(
-    count: usize,
-    center: impl Fn(usize) -> DVec3,
-    notes: &mut Vec<String>,
-) -> f64 {
+pub(super) fn guessed_radius(count: usize, center: impl Fn(usize) -> DVec3, notes: &mut Vec<String>) -> f64 {
     // A single sphere, or spheres that are all in one place, may have any size: the camera comes as near as it must.
     let radius = spacing::radius(count, center).unwrap_or(1.0);
     // Three digits are enough to be pasted.
@@ -351,9 +334,7 @@ fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
         ColumnValues::Labels(labels) => {
             let found = labels.names.first().map(|name| shortened(name)).unwrap_or_default();
             let column = shortened(&column.name);
-            Err(LoadError::new(format!(
-                "the column {column} has text, such as `{found}`, where numbers must be"
-            )))
+            Err(LoadError::new(format!("the column {column} has text, such as `{found}`, where numbers must be")))
         }
     }
 }
@@ -398,8 +379,7 @@ const RADII: &[&str] = &["radius", "radii", "particle.radius", "sphere.radius"];
 const DIAMETERS: &[&str] = &["diameter", "diameters", "particle.diameter"];
 const OPACITIES: &[&str] = &["opacity", "alpha", "color.3", "colors.3", "rgba.3", "color.a"];
 const TRANSPARENCIES: &[&str] = &["transparency"];
-const ELEMENTS: &[&str] =
-    &["species", "element", "elements", "symbol", "symbols", "type.symbol", "particle.type"];
+const ELEMENTS: &[&str] = &["species", "element", "elements", "symbol", "symbols", "type.symbol", "particle.type"];
 const COLOR_NAMES: &[&str] = &["color", "colour", "colors"];
 
 /// The name of a column in lower case, with dots between words.

@@ -9,8 +9,7 @@ use crate::load::{Column, ColumnValues, Labels};
 use pinhole::internals::text::{listed, one_line, shortened};
 use pinhole::scene::sphere_array::SphereArray;
 
-const NO_COLUMN: &str =
-    "this compares two fixed values; one of them must be a column, without quotation marks";
+const NO_COLUMN: &str = "this compares two fixed values; one of them must be a column, without quotation marks";
 
 /// The data on which expressions are evaluated.
 struct Data<'a> {
@@ -65,9 +64,9 @@ impl<'a> Data<'a> {
         let found = |name: &str| column(name, self.spheres, self.columns);
         match &operand.value {
             Value::Text(_) => Ok(Side::Text),
-            Value::Column(name) => found(name)
-                .map(Side::Column)
-                .map_err(|error| self.error(operand, error.to_string())),
+            Value::Column(name) => {
+                found(name).map(Side::Column).map_err(|error| self.error(operand, error.to_string()))
+            }
             Value::Word(word) => match (number(word), found(word)) {
                 (Some(number), _) => Ok(Side::Number(number)),
                 (None, Ok(found)) => Ok(Side::Column(found)),
@@ -86,20 +85,13 @@ impl<'a> Data<'a> {
         if let Some((name, labels)) = texts(&right_side) {
             return self.compare_text(name, labels, (left, &left_side), operator.mirrored());
         }
-        let [a, b] = [
-            self.numbers(left, left_side, &right.value)?,
-            self.numbers(right, right_side, &left.value)?,
-        ];
+        let [a, b] = [self.numbers(left, left_side, &right.value)?, self.numbers(right, right_side, &left.value)?];
         Ok(match (a, b) {
             (Numbers::Column(a), Numbers::Column(b)) => {
                 a.iter().zip(b.iter()).map(|(a, b)| operator.holds(*a, *b)).collect()
             }
-            (Numbers::Column(a), Numbers::One(b)) => {
-                a.iter().map(|a| operator.holds(*a, b)).collect()
-            }
-            (Numbers::One(a), Numbers::Column(b)) => {
-                b.iter().map(|b| operator.holds(a, *b)).collect()
-            }
+            (Numbers::Column(a), Numbers::One(b)) => a.iter().map(|a| operator.holds(*a, b)).collect(),
+            (Numbers::One(a), Numbers::Column(b)) => b.iter().map(|b| operator.holds(a, *b)).collect(),
             (Numbers::One(_), Numbers::One(_)) => {
                 return Err(self.error(left, NO_COLUMN));
             }
@@ -107,12 +99,7 @@ impl<'a> Data<'a> {
     }
 
     /// Returns the numbers of one side of a comparison in which neither side is a column of text.
-    fn numbers(
-        &self,
-        operand: &Operand,
-        side: Side<'a>,
-        other: &Value,
-    ) -> Result<Numbers<'a>, SelectError> {
+    fn numbers(&self, operand: &Operand, side: Side<'a>, other: &Value) -> Result<Numbers<'a>, SelectError> {
         let problem = match side {
             Side::Number(number) => return Ok(Numbers::One(number)),
             Side::Column(NamedColumn { values, .. }) => match values {
@@ -123,9 +110,7 @@ impl<'a> Data<'a> {
                     return Ok(Numbers::Column(Cow::Owned(values)));
                 }
                 // Columns of text were handled before.
-                Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => {
-                    NO_COLUMN.to_owned()
-                }
+                Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => NO_COLUMN.to_owned(),
             },
             Side::Unknown(error) => error.to_string(),
             Side::Text => {
@@ -178,9 +163,7 @@ impl<'a> Data<'a> {
         let is_equality = operator.is_equality();
         if !is_equality && wanted_number.is_none() {
             let name = one_line(name);
-            let problem = format!(
-                "`{name}` holds text, which is compared only with == and !=, or with a number"
-            );
+            let problem = format!("`{name}` holds text, which is compared only with == and !=, or with a number");
             return Err(self.error(other, problem));
         }
         let is_equal = |label: &String| {

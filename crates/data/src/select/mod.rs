@@ -76,11 +76,7 @@ impl Selection {
     ///
     /// # Errors
     /// Returns an error if the expression names a column that the data lacks, or compares text with numbers.
-    pub fn matches(
-        &self,
-        spheres: &SphereArray,
-        columns: &[Column],
-    ) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+    pub fn matches(&self, spheres: &SphereArray, columns: &[Column]) -> Result<(Vec<bool>, Vec<String>), SelectError> {
         evaluate::evaluate(&self.expression, &self.text, spheres, columns)
     }
 

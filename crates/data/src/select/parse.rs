@@ -200,9 +200,7 @@ impl<'a> Parser<'a> {
         }
         if self.depth == DEEPEST {
             self.at = open;
-            return Err(self.error(format!(
-                "parentheses lie in more than {DEEPEST} others; simplify the expression"
-            )));
+            return Err(self.error(format!("parentheses lie in more than {DEEPEST} others; simplify the expression")));
         }
         self.depth += 1;
         let inside = self.any(is_negated)?;
@@ -228,7 +226,9 @@ impl<'a> Parser<'a> {
         if self.operator()?.is_some() {
             self.at = before;
             self.rest();
-            return Err(self.error("a comparison has two sides; join two comparisons with `and`, such as 1 < z and z < 3"));
+            return Err(
+                self.error("a comparison has two sides; join two comparisons with `and`, such as 1 < z and z < 3")
+            );
         }
         let operator = if is_negated { operator.opposite() } else { operator };
         Ok(Expression::Compare(Comparison { sides: [left, right], operator }))
@@ -254,8 +254,7 @@ impl<'a> Parser<'a> {
             Some('|') => Value::Column(format!("|{}|", self.quoted('|')?.trim())),
             _ => {
                 let word = self.word();
-                let is_joint =
-                    ["and", "or", "not"].iter().any(|joint| word.eq_ignore_ascii_case(joint));
+                let is_joint = ["and", "or", "not"].iter().any(|joint| word.eq_ignore_ascii_case(joint));
                 if word.is_empty() || is_joint {
                     return Err(self.wanted(WANTED));
                 }

@@ -47,12 +47,9 @@ fn files_with_other_bytes_in_one_place() {
         ("gsd", gsd::file(2, &chunks()), Options::default()),
     ];
     for line in include_str!("binary.txt").lines().filter(|line| !line.starts_with('#')) {
-        let [format, at, bytes, words] = line.splitn(4, ' ').collect::<Vec<_>>()[..] else {
-            panic!("{line}")
-        };
+        let [format, at, bytes, words] = line.splitn(4, ' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
         let (_, good, options) = good.iter().find(|(name, ..)| *name == format).unwrap();
-        let (at, bytes) =
-            (at.parse::<usize>().unwrap(), HEXLOWER.decode(bytes.as_bytes()).unwrap());
+        let (at, bytes) = (at.parse::<usize>().unwrap(), HEXLOWER.decode(bytes.as_bytes()).unwrap());
         let mut file = good.clone();
         file[at..at + bytes.len()].copy_from_slice(&bytes);
         let message = refused(read(format, &file, options));
@@ -99,13 +96,11 @@ fn every_layout_of_dcd() {
 #[test]
 fn cells_of_dcd_in_three_variants() {
     let edges = |cell| {
-        let edges =
-            read_dcd(&dcd::file(Layout { cell: Some(cell), ..dcd::PLAIN }), 0).unwrap().cell;
+        let edges = read_dcd(&dcd::file(Layout { cell: Some(cell), ..dcd::PLAIN }), 0).unwrap().cell;
         edges.map(|edges| edges.as_flattened().iter().map(|v| (v * 1e6).round() / 1e6).collect())
     };
     // The cells are given by degrees, cosines and a matrix; one file has none.
-    let slanted: Option<Vec<f64>> =
-        Some(vec![10.0, 0.0, 0.0, 10.0, 17.320508, 0.0, 0.0, 0.0, 30.0]);
+    let slanted: Option<Vec<f64>> = Some(vec![10.0, 0.0, 0.0, 10.0, 17.320508, 0.0, 0.0, 0.0, 30.0]);
     assert_eq!(edges([10.0, 60.0, 20.0, 90.0, 90.0, 30.0]), slanted);
     assert_eq!(edges([10.0, 0.5, 20.0, 0.0, 0.0, 30.0]), slanted);
     let matrix = edges([10.0, -2.0, 20.0, -3.0, 4.0, 30.0]);
@@ -144,8 +139,7 @@ fn a_topology_must_be_there_and_fit() {
     let message = refused(read("dcd", &dcd::file(dcd::PLAIN), &options));
     assert!(message.starts_with("frame 0 has 4 atoms, but the topology "), "{message}");
     assert!(message.contains("3.xyz has 3; use a file of the same system"), "{message}");
-    let nowhere =
-        refused(read("dcd", &dcd::file(dcd::PLAIN), &Options::default().with_topology("no.pdb")));
+    let nowhere = refused(read("dcd", &dcd::file(dcd::PLAIN), &Options::default().with_topology("no.pdb")));
     assert!(nowhere.starts_with("the topology no.pdb: the file cannot be read: "), "{nowhere}");
 }
 
@@ -190,15 +184,11 @@ fn trr_files() {
         check_gromacs(&first, 0, gromacs::ATOMS);
         assert_eq!((first.frames, first.cell), (Some(2), Some(CELL)));
         let names: Vec<_> = first.columns.iter().map(|column| column.name.as_str()).collect();
-        let expected =
-            ["species", "velocity.x", "velocity.y", "velocity.z", "force.x", "force.y", "force.z"];
+        let expected = ["species", "velocity.x", "velocity.y", "velocity.z", "force.x", "force.y", "force.z"];
         assert_eq!(names, expected);
         for (name, factor) in [("velocity.y", 10.0), ("force.y", 0.1)] {
             let Some(ColumnValues::Numbers(found)) = first.column(name) else { panic!("{name}") };
-            assert!(
-                (found[1] - factor * gromacs::coordinate(0, 4)).abs() < 1e-6,
-                "{name} {found:?}"
-            );
+            assert!((found[1] - factor * gromacs::coordinate(0, 4)).abs() < 1e-6, "{name} {found:?}");
         }
         assert_eq!(first.notes, ["1 frames without positions are left out"]);
         let last = read("trr", &file, &options.clone().with_frame(1)).unwrap();
@@ -298,21 +288,14 @@ fn gsd_frames_inherit_from_the_first() {
         let bytes = gsd::file(version, &chunks());
         assert_eq!(Format::of_content(&bytes).unwrap().name, "gsd");
         let first = gsd_frame(&bytes, 0);
-        assert_eq!(
-            spheres(&first),
-            [[0.0, 1.0, 2.0, 1.0], [3.0, 4.0, 5.0, 1.5], [6.0, 7.0, 8.0, 2.0]]
-        );
+        assert_eq!(spheres(&first), [[0.0, 1.0, 2.0, 1.0], [3.0, 4.0, 5.0, 1.5], [6.0, 7.0, 8.0, 2.0]]);
         assert_eq!(names(&first), ["species", "image.x", "image.y", "image.z", "energy"]);
         let cell = [[10.0, 0.0, 0.0], [10.0, 20.0, 0.0], [7.5, 3.75, 30.0]];
         assert_eq!((first.frames, first.cell, &first.colors), (Some(3), Some(cell), &None));
-        let unused =
-            "these parts of the file are not used: bonds, log/temperature, particles/orientation";
+        let unused = "these parts of the file are not used: bonds, log/temperature, particles/orientation";
         assert_eq!(first.notes, [unused]);
         let species = first.labels("species").unwrap();
-        assert_eq!(
-            (species.names.as_slice(), &*species.indices),
-            (&["A".into(), "poly".into()][..], &[1, 0, 1][..])
-        );
+        assert_eq!((species.names.as_slice(), &*species.indices), (&["A".into(), "poly".into()][..], &[1, 0, 1][..]));
         assert_eq!(first.column("image.y"), Some(&ColumnValues::Numbers(vec![-3.0, 0.0, 3.0])));
         let second = gsd_frame(&bytes, 1);
         assert_eq!(spheres(&second)[2], [106.0, 107.0, 108.0, 2.0]);
@@ -321,10 +304,7 @@ fn gsd_frames_inherit_from_the_first() {
         // A frame with another number of particles has the defaults.
         let third = gsd_frame(&bytes, 2);
         assert_eq!(spheres(&third), [[200.0, 201.0, 202.0, 0.5], [203.0, 204.0, 205.0, 0.5]]);
-        assert_eq!(
-            (names(&third), &*third.labels("species").unwrap().indices),
-            (vec!["species"], &[0, 0][..])
-        );
+        assert_eq!((names(&third), &*third.labels("species").unwrap().indices), (vec!["species"], &[0, 0][..]));
     }
 }
 
@@ -368,33 +348,13 @@ fn bad_gsd_files() {
         refused(read("gsd", b"1\n\nO 0 0 0\n", &Options::default())),
         "this is not a gsd file: it is shorter than the header of 256 bytes"
     );
-    let nan = bad(chunk(
-        0,
-        "particles/position",
-        3,
-        Data::F64([[0.0; 8], [f64::NAN; 8]].concat()[..9].to_vec()),
-    ));
-    assert!(
-        nan.contains("frame 0: the z coordinate of atom 2 is NaN; a position must be finite"),
-        "{nan}"
-    );
+    let nan = bad(chunk(0, "particles/position", 3, Data::F64([[0.0; 8], [f64::NAN; 8]].concat()[..9].to_vec())));
+    assert!(nan.contains("frame 0: the z coordinate of atom 2 is NaN; a position must be finite"), "{nan}");
     for (changed, expected) in [
-        (
-            chunk(0, "particles/position", 3, Data::F32(vec![0.0; 6])),
-            "has 2 × 3 numbers, but must have 3 × 3",
-        ),
-        (
-            chunk(0, "particles/typeid", 1, Data::U32(vec![0, 1, 2])),
-            "particle 2 has the type 2, but there are 2 types",
-        ),
-        (
-            chunk(0, "particles/diameter", 1, Data::F32(vec![1.0, 0.0, 1.0])),
-            "row 1: diameter is 0; a radius must be",
-        ),
-        (
-            chunk(0, "configuration/box", 1, Data::F32(vec![1.0; 5])),
-            "the box is not six finite numbers",
-        ),
+        (chunk(0, "particles/position", 3, Data::F32(vec![0.0; 6])), "has 2 × 3 numbers, but must have 3 × 3"),
+        (chunk(0, "particles/typeid", 1, Data::U32(vec![0, 1, 2])), "particle 2 has the type 2, but there are 2 types"),
+        (chunk(0, "particles/diameter", 1, Data::F32(vec![1.0, 0.0, 1.0])), "row 1: diameter is 0; a radius must be"),
+        (chunk(0, "configuration/box", 1, Data::F32(vec![1.0; 5])), "the box is not six finite numbers"),
         (chunk(0, "particles/N", 1, Data::U32(vec![u32::MAX])), "but must have 4294967295 × 3"),
     ] {
         let message = bad(changed);
@@ -402,10 +362,7 @@ fn bad_gsd_files() {
     }
     let alone = gsd::file(2, &[chunk(0, "particles/N", 1, Data::U32(vec![u32::MAX]))]);
     let message = refused(read("gsd", &alone, &Options::default()));
-    assert!(
-        message.contains("declares 4294967295 particles, but has no particles/position"),
-        "{message}"
-    );
+    assert!(message.contains("declares 4294967295 particles, but has no particles/position"), "{message}");
     let none = refused(read("gsd", &gsd::file(2, &[]), &Options::default()));
     assert_eq!(none, "this is not a gsd file: the file has no frames");
 }
@@ -414,8 +371,7 @@ fn bad_gsd_files() {
 #[test]
 fn gsd_chunks_over_each_other() {
     let mut all = chunks();
-    const NAMES: [&str; 4] =
-        ["log/particles/a", "log/particles/b", "log/particles/c", "log/particles/d"];
+    const NAMES: [&str; 4] = ["log/particles/a", "log/particles/b", "log/particles/c", "log/particles/d"];
     all.truncate(11);
     all.extend(NAMES.map(|name| chunk(0, name, 60, Data::F64(vec![0.0; 180]))));
     let mut bytes = gsd::file(2, &all);
@@ -433,11 +389,7 @@ fn gsd_chunks_over_each_other() {
 fn a_cut_gsd_file_has_the_frames_before() {
     let good = gsd::file(2, &chunks());
     let cut = gsd_frame(&good[..good.len() - 1], 1);
-    assert!(
-        cut.notes[1].contains("frame 2: the chunk particles/position has 2 × 3 numbers"),
-        "{:?}",
-        cut.notes
-    );
+    assert!(cut.notes[1].contains("frame 2: the chunk particles/position has 2 × 3 numbers"), "{:?}", cut.notes);
     let options = Options::default().with_frame(2);
     let message = refused(read("gsd", &good[..good.len() - 1], &options));
     assert!(message.contains("it is cut off or still being written"), "{message}");

@@ -48,8 +48,7 @@ fn options(arguments: &str) -> Options {
     let mut options = Options::default();
     options.frame = flag("--frame").map(|frame| frame.parse().unwrap());
     options.radius = flag("--radius").map(|radius| radius.parse().unwrap());
-    options.columns = flag("--columns")
-        .map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
+    options.columns = flag("--columns").map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect());
     options
 }
 
@@ -80,9 +79,7 @@ fn written(loaded: &Dataset) -> String {
     let columns: String = columns.collect();
     let mut lines = vec![format!("{} spheres of f{width};{columns}", loaded.spheres.len())];
     let white = LinearRgb::WHITE;
-    for (index, Sphere { center: [x, y, z], radius, .. }) in
-        loaded.spheres.with_color(white).enumerate()
-    {
+    for (index, Sphere { center: [x, y, z], radius, .. }) in loaded.spheres.with_color(white).enumerate() {
         let mut line = format!("{x} {y} {z} radius {radius}");
         if let Some(colors) = &loaded.colors {
             let srgb = colors[index].to_srgb8();

@@ -28,8 +28,7 @@ fn file() -> Vec<u8> {
 
 #[test]
 fn both_precisions_both_byte_orders_both_layouts() {
-    let by_column: Vec<f32> =
-        (0..4).flat_map(|column| ROWS.iter().map(move |row| row[column])).collect();
+    let by_column: Vec<f32> = (0..4).flat_map(|column| ROWS.iter().map(move |row| row[column])).collect();
     let wide = SphereArray::F64(ROWS.map(|row| row.map(f64::from)).to_vec());
     let narrow = SphereArray::F32(ROWS.to_vec());
     for (by_columns, numbers) in [(false, ROWS.as_flattened()), (true, &by_column)] {
@@ -110,19 +109,10 @@ fn archives() {
         "the archive has the arrays `a`, `b`; name the one with the centers `positions`, or `spheres` if it has radii \
          as well"
     );
-    assert_eq!(
-        error(&zip(&[("a.txt", &file)], true)),
-        "the archive has no array; save the spheres with numpy.savez"
-    );
-    assert_eq!(
-        error(&zip(&[], true)),
-        "the archive has no array; save the spheres with numpy.savez"
-    );
+    assert_eq!(error(&zip(&[("a.txt", &file)], true)), "the archive has no array; save the spheres with numpy.savez");
+    assert_eq!(error(&zip(&[], true)), "the archive has no array; save the spheres with numpy.savez");
     let flat = npy("<f4", false, "(8,)", &[0; 32]);
-    assert!(
-        error(&zip(&[("a.npy", &flat)], true))
-            .starts_with("array `a`: the array has the shape (8,)")
-    );
+    assert!(error(&zip(&[("a.npy", &flat)], true)).starts_with("array `a`: the array has the shape (8,)"));
     assert!(error(b"not a zip").starts_with("this is not a complete .npz file: "));
     assert!(error(&file).starts_with("this is not a complete .npz file: "));
     let whole = zip(&[("a.npy", &file)], false);
@@ -144,12 +134,10 @@ fn colors(loaded: &Dataset) -> Vec<[u8; 3]> {
 #[test]
 fn every_type_of_numbers() {
     const WHOLE: [[u8; 4]; 2] = [[1, 2, 3, 4], [5, 6, 7, 8]];
-    let by_column: Vec<u8> =
-        (0..4).flat_map(|column| WHOLE.iter().map(move |row| row[column])).collect();
+    let by_column: Vec<u8> = (0..4).flat_map(|column| WHOLE.iter().map(move |row| row[column])).collect();
     let expected = SphereArray::F64(WHOLE.map(|row| row.map(f64::from)).to_vec());
     for (is_by_column, numbers) in [(false, WHOLE.as_flattened()), (true, &by_column)] {
-        let all =
-            |encode: &dyn Fn(u8) -> Vec<u8>| numbers.iter().flat_map(|x| encode(*x)).collect();
+        let all = |encode: &dyn Fn(u8) -> Vec<u8>| numbers.iter().flat_map(|x| encode(*x)).collect();
         let half = |x: u8| {
             let exponent = x.ilog2() as u16;
             (exponent + 15) << 10 | (u16::from(x) << (10 - exponent)) & 0x3ff
@@ -184,11 +172,7 @@ fn more_columns_are_a_value_or_colors() {
     let six = of("(2, 6)", &[0., 0., 0., 1., 0.5, 0., 4., 0., 0., 0., 0., 1.]);
     assert_eq!(six.spheres, SphereArray::F64(vec![[0., 0., 0., 2.], [4., 0., 0., 2.]]));
     assert_eq!(colors(&six), [[255, 128, 0], [0, 0, 255]]);
-    assert!(
-        six.notes[0].contains("the radius 2, with which neighbors about touch"),
-        "{:?}",
-        six.notes
-    );
+    assert!(six.notes[0].contains("the radius 2, with which neighbors about touch"), "{:?}", six.notes);
     let seven = of("(1, 7)", &[1., 2., 3., 4., 255., 0., 17.]);
     assert_eq!((seven.spheres.len(), colors(&seven)), (1, vec![[255, 0, 17]]));
     let three = of("(2, 3)", &[0., 0., 0., 0., 3., 0.]);
@@ -205,10 +189,7 @@ fn fields_have_names() {
     assert_eq!(loaded.opacities, Some(vec![0.2, 0.4]));
     assert_eq!(loaded.labels("kind").unwrap().names, ["Ab", "z"]);
     assert_eq!(numbers(&loaded, "alive"), [0.0, 1.0]);
-    assert_eq!(
-        loaded.notes,
-        ["these fields are not used, because they are neither numbers nor text: phase"]
-    );
+    assert_eq!(loaded.notes, ["these fields are not used, because they are neither numbers nor text: phase"]);
 }
 
 #[test]
@@ -258,13 +239,9 @@ fn archives_of_several_arrays() {
     let both = zip(&[("positions.npy", &positions), ("radii.npy", &radii)], false);
     let error = npz::read(&both, Some(1.0)).unwrap_err().to_string();
     assert!(error.contains("the column radii has radii; remove the radius"), "{error}");
-    let zero =
-        zip(&[("positions.npy", &positions), ("radius.npy", &floats("(2,)", &[1., 0.]))], false);
+    let zero = zip(&[("positions.npy", &positions), ("radius.npy", &floats("(2,)", &[1., 0.]))], false);
     let error = npz::read(&zero, None).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "array `positions`: row 1: radius is 0; a radius must be finite and greater than 0"
-    );
+    assert_eq!(error, "array `positions`: row 1: radius is 0; a radius must be finite and greater than 0");
 }
 
 /// The archive's checksum finds a flipped bit in the numbers.

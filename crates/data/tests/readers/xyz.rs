@@ -118,9 +118,7 @@ fn columns_are_used_or_noted() {
         loaded(&format!("1\nProperties=species:S:1:pos:R:3:{columns}\nO 0 0 0 {values}\n"))
     };
     let srgb = |loaded: &Dataset| loaded.colors.as_ref().unwrap()[0].to_srgb8();
-    for (columns, values) in
-        [("colour:R:3", "1 0 0.2"), ("rgb:I:3", "255 0 51"), ("color:R:4", "1 0 0.2 0.5")]
-    {
+    for (columns, values) in [("colour:R:3", "1 0 0.2"), ("rgb:I:3", "255 0 51"), ("color:R:4", "1 0 0.2 0.5")] {
         assert_eq!(srgb(&one(columns, values)), [255, 0, 51], "{columns}");
     }
     assert_eq!(one("color:R:4", "1 0 0.2 0.5").opacities, Some(vec![0.5]));
@@ -132,10 +130,8 @@ fn columns_are_used_or_noted() {
     let plain = loaded("1\n\nO 0 0 0 7 8\n");
     assert_eq!(
         plain.notes,
-        [
-            "columns 5 to 6 are not used, because the file does not name them; line 2 can do so with \
-             Properties=species:S:1:pos:R:3:NAME:R:1"
-        ]
+        ["columns 5 to 6 are not used, because the file does not name them; line 2 can do so with \
+             Properties=species:S:1:pos:R:3:NAME:R:1"]
     );
 }
 
@@ -149,8 +145,7 @@ fn xyz_text(frames: usize, random: &mut Rng) -> String {
     (0..frames).fold(String::new(), |mut text, frame| {
         let atoms = random.usize(0..5);
         let blank = if random.bool() { "\n  \r\n" } else { "" };
-        write!(text, "{blank}{atoms}\r\nframe {frame} {}\n", "x".repeat(random.usize(0..3000)))
-            .unwrap();
+        write!(text, "{blank}{atoms}\r\nframe {frame} {}\n", "x".repeat(random.usize(0..3000))).unwrap();
         for _ in 0..atoms {
             let [x, y, z] = [(); 3].map(|()| random.f64());
             writeln!(text, "{} {x} {y} {z}", if random.bool() { "H" } else { "C" }).unwrap();
@@ -165,11 +160,8 @@ fn pdb_text(frames: usize, random: &mut Rng) -> String {
         writeln!(text, "MODEL     {:4}", frame + 1).unwrap();
         for atom in 0..random.usize(1..5) {
             let [x, y, z] = [(); 3].map(|()| random.f64() * 9.0);
-            writeln!(
-                text,
-                "ATOM  {atom:5}  CA  ALA A{atom:4}    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00           C"
-            )
-            .unwrap();
+            writeln!(text, "ATOM  {atom:5}  CA  ALA A{atom:4}    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00           C")
+                .unwrap();
         }
         text += "ENDMDL\n";
     }
@@ -183,9 +175,7 @@ fn frames_are_those_of_the_whole_text() {
     for seed in 0..20 {
         let mut random = Rng::with_seed(seed);
         let count = random.usize(1..8);
-        for (name, text) in
-            [("a.xyz", xyz_text(count, &mut random)), ("a.pdb", pdb_text(count, &mut random))]
-        {
+        for (name, text) in [("a.xyz", xyz_text(count, &mut random)), ("a.pdb", pdb_text(count, &mut random))] {
             let text = if random.bool() { format!("\u{feff}{text}") } else { text };
             let path = written(&folder, name, &text);
             let mut trajectory = Trajectory::open(&path, &Options::default()).unwrap();
@@ -203,10 +193,7 @@ fn frames_are_those_of_the_whole_text() {
                 assert!(trajectory.frame_bytes(frame).unwrap() > 0);
             }
             let none = trajectory.frame(count).unwrap_err().to_string();
-            assert!(
-                none.starts_with(&format!("there is no frame {count}; the file has {count} frame")),
-                "{none}"
-            );
+            assert!(none.starts_with(&format!("there is no frame {count}; the file has {count} frame")), "{none}");
             assert_eq!(trajectory.frame_bytes(count), None);
             let none = load::open(&path, &Options::default().with_frame(count)).unwrap_err();
             assert!(none.to_string().starts_with(&format!("there is no frame {count};")), "{none}");

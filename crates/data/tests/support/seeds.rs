@@ -76,9 +76,7 @@ fn dcd(folder: &Path) -> Vec<Seed> {
 }
 
 fn trr(folder: &Path) -> Vec<Seed> {
-    [false, true]
-        .map(|is_double| with_topology(gromacs::trr(is_double), folder, gromacs::ATOMS))
-        .into()
+    [false, true].map(|is_double| with_topology(gromacs::trr(is_double), folder, gromacs::ATOMS)).into()
 }
 
 fn xtc(folder: &Path) -> Vec<Seed> {

@@ -50,8 +50,7 @@ impl<'a> Canvas<'a> {
         let alpha = over + below * (1.0 - over);
         for (channel, byte) in color.into_iter().enumerate() {
             let (new, old) = (f32::from(byte), self.sample(start, channel));
-            let blended =
-                if over >= 1.0 { new } else { (new * over + old * below * (1.0 - over)) / alpha };
+            let blended = if over >= 1.0 { new } else { (new * over + old * below * (1.0 - over)) / alpha };
             self.set(start, channel, blended);
         }
         if self.channels == 4 {
@@ -144,9 +143,7 @@ impl Block {
     /// Adds a frame of this line width around the outside of a rectangle.
     pub(super) fn frame(&mut self, [left, top, right, bottom]: [f32; 4], line: f32) {
         let (l, t, r, b) = (left - line, top - line, right + line, bottom + line);
-        for rect in
-            [[l, t, r, top], [l, bottom, r, b], [l, top, left, bottom], [right, top, r, bottom]]
-        {
+        for rect in [[l, t, r, top], [l, bottom, r, b], [l, top, left, bottom], [right, top, r, bottom]] {
             self.rect(rect, Paint::Ink);
         }
     }
@@ -202,9 +199,7 @@ fn pixels([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> [i64; 4]
 /// Fills a rectangle. Pixels that it covers in part are blended.
 pub(super) fn fill(rect: [f32; 4], color: [u8; 3], opacity: f32, canvas: &mut Canvas<'_>) {
     let [left, top, right, bottom] = pixels(rect, canvas);
-    let part = |low: f32, high: f32, pixel: i64| {
-        (high.min(pixel as f32 + 1.0) - low.max(pixel as f32)).clamp(0.0, 1.0)
-    };
+    let part = |low: f32, high: f32, pixel: i64| (high.min(pixel as f32 + 1.0) - low.max(pixel as f32)).clamp(0.0, 1.0);
     for y in top..bottom {
         for x in left..right {
             let coverage = part(rect[0], rect[2], x) * part(rect[1], rect[3], y);

@@ -69,12 +69,7 @@ pub(super) fn width(text: &str, em: f32) -> f32 {
 
 /// Draws one line of text by calling `cover` with pixels and their coverage. `x` is the start of the text, and
 /// `baseline` the line on which letters stand.
-pub(super) fn draw(
-    text: &str,
-    [x, baseline]: [f32; 2],
-    em: f32,
-    mut cover: impl FnMut(i64, i64, f32),
-) {
+pub(super) fn draw(text: &str, [x, baseline]: [f32; 2], em: f32, mut cover: impl FnMut(i64, i64, f32)) {
     let Some(font) = FONT.as_ref() else { return };
     let units = font.units_per_em().unwrap_or(1.0);
     let mut x = x;
@@ -88,8 +83,7 @@ pub(super) fn draw(
         if let Some(outlined) = font.outline_glyph(placed) {
             let bounds = outlined.px_bounds();
             let (left, top) = (bounds.min.x as i64, bounds.min.y as i64);
-            outlined
-                .draw(|x, y, coverage| cover(left + i64::from(x), top + i64::from(y), coverage));
+            outlined.draw(|x, y, coverage| cover(left + i64::from(x), top + i64::from(y), coverage));
         }
     }
 }

@@ -155,11 +155,7 @@ fn row(block: &mut Block, (name, color): &Entry, [x, y]: [f32; 2], em: f32) {
             let center = [x + 0.5 * em, y];
             // A thin outline shows a disk whose colour is like the background.
             let line = (0.06 * em).max(0.6);
-            block.shapes.push(Shape::Disk {
-                center,
-                radius: RADIUS * em + line,
-                paint: Paint::Ink,
-            });
+            block.shapes.push(Shape::Disk { center, radius: RADIUS * em + line, paint: Paint::Ink });
             let paint = Paint::Color(*color);
             block.shapes.push(Shape::Disk { center, radius: RADIUS * em, paint });
             block.text(name, [x + INDENT * em, baseline], em);

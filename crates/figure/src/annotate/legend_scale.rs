@@ -109,14 +109,7 @@ pub(super) fn horizontal(
 }
 
 /// Draws ticks from an edge of a bar, and returns the end of the long ticks.
-fn draw_ticks(
-    block: &mut Block,
-    ticks: &Ticks,
-    edge: f32,
-    em: f32,
-    middle_of: impl Fn(f64) -> f32,
-    lies: bool,
-) -> f32 {
+fn draw_ticks(block: &mut Block, ticks: &Ticks, edge: f32, em: f32, middle_of: impl Fn(f64) -> f32, lies: bool) -> f32 {
     let line = line_width(em);
     let [short, long] = [0.22, 0.38].map(|length| edge + line + (length * em).round());
     let minor = ticks.minor.iter().map(|value| (value, short));
@@ -156,11 +149,9 @@ fn pixel_at(scale: &ColorScale, value: f64, count: usize) -> usize {
 /// tick has exactly the colour of the tick's number.
 fn bar_colors(scale: &ColorScale, count: usize, ticks: &Ticks) -> Vec<[u8; 3]> {
     let position = |pixel: usize| pixel as f64 / count.saturating_sub(1).max(1) as f64;
-    let mut colors: Vec<[u8; 3]> =
-        (0..count).map(|pixel| scale.color_at(position(pixel))).collect();
+    let mut colors: Vec<[u8; 3]> = (0..count).map(|pixel| scale.color_at(position(pixel))).collect();
     for value in ticks.labeled.iter().map(|(value, _)| value).chain(&ticks.minor) {
-        if let (Some(position), Some(color)) = (scale.scale().position(*value), scale.color(*value))
-        {
+        if let (Some(position), Some(color)) = (scale.scale().position(*value), scale.color(*value)) {
             colors[pixel_of(position, count)] = color;
         }
     }
@@ -179,9 +170,7 @@ mod tests {
     fn scales() -> Vec<ColorScale> {
         let ranges = [([-3.0, 17.5], false), ([0.0, 1.0], false), ([0.02, 400.0], true)];
         let maps = ["viridis", "vik_r", "okabe-ito"].map(|map| map.parse::<MapName>().unwrap());
-        let of = |(range, is_log), map: &MapName| {
-            ColorScale::new(Scale::new(range, is_log).unwrap(), map.colors())
-        };
+        let of = |(range, is_log), map: &MapName| ColorScale::new(Scale::new(range, is_log).unwrap(), map.colors());
         ranges.into_iter().flat_map(|range| maps.iter().map(move |map| of(range, map))).collect()
     }
 

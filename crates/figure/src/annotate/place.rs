@@ -48,12 +48,7 @@ pub(super) fn draw(
 }
 
 /// The top left corner of a block in whole pixels.
-pub(super) fn origin(
-    blocks: &[(Position, Block)],
-    index: usize,
-    em: f32,
-    [width, height]: [u32; 2],
-) -> [i64; 2] {
+pub(super) fn origin(blocks: &[(Position, Block)], index: usize, em: f32, [width, height]: [u32; 2]) -> [i64; 2] {
     let (margin, gap) = (MARGIN * em, GAP * em);
     let [width, height] = [width as f32, height as f32];
     let (position, block) = &blocks[index];
@@ -80,28 +75,15 @@ pub(super) fn origin(
     [x, y].map(|place| place.max(0.0).round() as i64)
 }
 
-fn draw_block(
-    block: &Block,
-    origin: [i64; 2],
-    em: f32,
-    color: Option<[u8; 3]>,
-    panel: Panel,
-    canvas: &mut Canvas<'_>,
-) {
+fn draw_block(block: &Block, origin: [i64; 2], em: f32, color: Option<[u8; 3]>, panel: Panel, canvas: &mut Canvas<'_>) {
     let (left, top, padding) = (origin[0] as f32, origin[1] as f32, (PADDING * em).round());
-    let behind = [
-        left - padding,
-        top - padding,
-        (left + block.width + padding).ceil(),
-        (top + block.height + padding).ceil(),
-    ];
+    let behind =
+        [left - padding, top - padding, (left + block.width + padding).ceil(), (top + block.height + padding).ceil()];
     let lumas = lumas(behind, canvas);
     let mean = lumas.iter().sum::<f32>() / lumas.len().max(1) as f32;
     // Black or white is easy to read on light or dark grounds. A middle grey counts as light.
     let ink = color.unwrap_or(if mean < 0.45 { WHITE } else { BLACK });
-    let ink_luma =
-        (0.2126 * f32::from(ink[0]) + 0.7152 * f32::from(ink[1]) + 0.0722 * f32::from(ink[2]))
-            / 255.0;
+    let ink_luma = (0.2126 * f32::from(ink[0]) + 0.7152 * f32::from(ink[1]) + 0.0722 * f32::from(ink[2])) / 255.0;
     let unreadable = lumas.iter().filter(|luma| (*luma - ink_luma).abs() < 0.4).count();
     let has_panel = match panel {
         Panel::Always => true,
@@ -119,10 +101,7 @@ fn draw_block(
 fn lumas([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> Vec<f32> {
     let [width, height] = canvas.size();
     let clamped = |x: f32, most: u32| (x.max(0.0) as u32).min(most);
-    let (columns, rows) = (
-        clamped(left, width)..clamped(right, width),
-        clamped(top, height)..clamped(bottom, height),
-    );
+    let (columns, rows) = (clamped(left, width)..clamped(right, width), clamped(top, height)..clamped(bottom, height));
     let pixels = columns.len() as f32 * rows.len() as f32;
     let step = (pixels / 40_000.0).sqrt().ceil().max(1.0) as usize;
     let mut lumas = Vec::new();
@@ -235,10 +214,7 @@ pub struct PositionError {
 
 /// A position as a file gives it.
 #[derive(serde::Deserialize, serde::Serialize)]
-#[serde(
-    untagged,
-    expecting = "expected a position in quotes such as \"top-left\", or two fractions [x, y]"
-)]
+#[serde(untagged, expecting = "expected a position in quotes such as \"top-left\", or two fractions [x, y]")]
 enum PositionValue {
     Name(String),
     At([f32; 2]),

@@ -64,9 +64,7 @@ pub struct ScaleBarPlan {
 #[non_exhaustive]
 pub enum AnnotationError {
     /// A legend is wanted, but colours do not come from a column.
-    #[error(
-        "a legend shows what colors mean, but no column gives colors; color the spheres by a column"
-    )]
+    #[error("a legend shows what colors mean, but no column gives colors; color the spheres by a column")]
     NoKey,
     /// A scale bar is impossible.
     #[error(transparent)]

@@ -41,8 +41,7 @@ pub fn pixels_per_unit(view: &View<'_>, point: DVec3) -> Result<f64, ScaleBarErr
     }
     let vectors = view.camera.vectors();
     // Any length gives the same quotient; this one loses few digits.
-    let across = 0.5 * vectors.right * (point - vectors.origin).length().max(1.0)
-        / vectors.forward.length().max(1.0);
+    let across = 0.5 * vectors.right * (point - vectors.origin).length().max(1.0) / vectors.forward.length().max(1.0);
     let behind = || {
         let what = "a scale bar has no meaning here, because the middle of the scene lies behind the camera";
         ScaleBarError(what.to_owned())

@@ -49,28 +49,19 @@ fn linear([low, high]: [f64; 2], most: usize) -> Ticks {
         let count = (last - first + 1.0).clamp(0.0, 1000.0) as usize;
         (0..count).map(|i| ((first + i as f64) * step).clamp(low, high)).collect()
     };
-    let fitting =
-        factors.map(|factor| factor * power).into_iter().map(|step| (step, ticks_of(step)));
-    let (step, values) = fitting
-        .into_iter()
-        .find(|(_, ticks)| ticks.len() <= most)
-        .unwrap_or((span, vec![low, high]));
+    let fitting = factors.map(|factor| factor * power).into_iter().map(|step| (step, ticks_of(step)));
+    let (step, values) = fitting.into_iter().find(|(_, ticks)| ticks.len() <= most).unwrap_or((span, vec![low, high]));
     let largest = low.abs().max(high.abs());
     let is_plain = (1e-3..1e5).contains(&largest) || largest / step > 1e5;
     let exponent = if is_plain { 0 } else { exponent_of(largest) };
     // The division has two steps, because a power below the smallest normal number loses digits.
-    let scaled =
-        |value: f64| value / 10_f64.powi(exponent / 2) / 10_f64.powi(exponent - exponent / 2);
+    let scaled = |value: f64| value / 10_f64.powi(exponent / 2) / 10_f64.powi(exponent - exponent / 2);
     // The fewest decimals that write the step exactly.
     let is_whole = |value: f64| (value - value.round()).abs() < 1e-6 * value;
     let decimals = (0..=12).find(|digits| is_whole(scaled(step) * 10_f64.powi(*digits)));
     let decimals = decimals.unwrap_or(3) as usize;
     let text = |value: f64| minus(&format!("{:.decimals$}", scaled(value)));
-    Ticks {
-        labeled: values.iter().map(|value| (*value, text(*value))).collect(),
-        minor: Vec::new(),
-        exponent,
-    }
+    Ticks { labeled: values.iter().map(|value| (*value, text(*value))).collect(), minor: Vec::new(), exponent }
 }
 
 /// Ticks at powers of ten and, within less than two powers, at 2 and 5 times these. `None` for fewer than two.
@@ -103,11 +94,7 @@ fn logarithmic([low, high]: [f64; 2], most: usize) -> Option<Ticks> {
         }
     };
     let shown: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
-    let minor = if decades <= 6 {
-        of(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 1)
-    } else {
-        of(&[1.0], 1)
-    };
+    let minor = if decades <= 6 { of(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 1) } else { of(&[1.0], 1) };
     let minor = minor.into_iter().map(|(_, value)| value.clamp(low, high));
     Some(Ticks {
         minor: minor.filter(|value| !shown.contains(value)).collect(),
@@ -200,9 +187,7 @@ mod tests {
 
     #[test]
     fn round_numbers() {
-        for (value, round) in
-            [(1.0, 1.0), (9.9, 5.0), (0.049, 0.02), (2000.0, 2000.0), (5e-9, 5e-9)]
-        {
+        for (value, round) in [(1.0, 1.0), (9.9, 5.0), (0.049, 0.02), (2000.0, 2000.0), (5e-9, 5e-9)] {
             assert!((round_down(value) / round - 1.0).abs() < 1e-12, "{value}");
         }
     }

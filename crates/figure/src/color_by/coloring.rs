@@ -28,10 +28,7 @@ impl ColorBy {
         if let Some(map) = &self.map {
             return map.is_palette();
         }
-        if self.is_log
-            || self.limits != super::Limits::default()
-            || BUILT_IN.contains(&&*found.name)
-        {
+        if self.is_log || self.limits != super::Limits::default() || BUILT_IN.contains(&&*found.name) {
             return false;
         }
         let mut different: Vec<f64> = Vec::new();
@@ -47,18 +44,13 @@ impl ColorBy {
         !different.is_empty()
     }
 
-    pub(super) fn color_numbers(
-        &self,
-        column: &str,
-        values: &[f64],
-    ) -> Result<Coloring, ColorByError> {
+    pub(super) fn color_numbers(&self, column: &str, values: &[f64]) -> Result<Coloring, ColorByError> {
         let mut notes = Vec::new();
         let scale = self.scale(column, values.iter().copied(), &mut notes)?;
         let map = self.map.unwrap_or(MapName::VIRIDIS).reversed_if(self.is_reversed);
         let scale = ColorScale::new(scale, map.colors());
         let missing_index = scale.colors().len();
-        let indices =
-            values.iter().map(|value| scale.index(*value).unwrap_or(missing_index) as u32);
+        let indices = values.iter().map(|value| scale.index(*value).unwrap_or(missing_index) as u32);
         let indices = indices.collect();
         let missing = values.iter().filter(|value| !is_shown(**value, self.is_log)).count();
         self.note_missing(column, missing, self.is_log, &mut notes);
@@ -130,23 +122,13 @@ impl ColorBy {
         Ok(scale)
     }
 
-    pub(super) fn note_missing(
-        &self,
-        column: &str,
-        missing: usize,
-        is_log: bool,
-        notes: &mut Vec<String>,
-    ) {
+    pub(super) fn note_missing(&self, column: &str, missing: usize, is_log: bool, notes: &mut Vec<String>) {
         if missing == 0 {
             return;
         }
         let what = if is_log { "number greater than 0" } else { "value" };
-        let (spheres, are) =
-            if missing == 1 { ("sphere has", "is") } else { ("spheres have", "are") };
-        notes.push(format!(
-            "{missing} {spheres} no {what} in `{column}` and {are} shown in {}",
-            hex(self.missing)
-        ));
+        let (spheres, are) = if missing == 1 { ("sphere has", "is") } else { ("spheres have", "are") };
+        notes.push(format!("{missing} {spheres} no {what} in `{column}` and {are} shown in {}", hex(self.missing)));
     }
 }
 
@@ -171,11 +153,7 @@ const NONE: u32 = u32::MAX;
 impl ColorBy {
     /// Colours texts. Texts are ordered as whole numbers if all are whole numbers, and otherwise alphabetically, so
     /// that they have the same colours in every frame with the same texts. Empty texts are missing values.
-    pub(super) fn color_labels(
-        &self,
-        column: &str,
-        labels: &Labels,
-    ) -> Result<Coloring, ColorByError> {
+    pub(super) fn color_labels(&self, column: &str, labels: &Labels) -> Result<Coloring, ColorByError> {
         self.refuse_scale(|| format!("`{column}` holds text"))?;
         let mut counts = vec![0_usize; labels.names.len()];
         for label in &labels.indices {
@@ -190,17 +168,12 @@ impl ColorBy {
             category_of[*label] = category as u32;
         }
         let of = |label: &u32| category_of.get(*label as usize).copied().unwrap_or(NONE);
-        let categories =
-            used.iter().map(|label| (one_line(&labels.names[*label]), counts[*label])).collect();
+        let categories = used.iter().map(|label| (one_line(&labels.names[*label]), counts[*label])).collect();
         let indices = labels.indices.iter().map(of).collect();
         self.color_categories(column, categories, indices, 0)
     }
 
-    pub(super) fn color_whole_numbers(
-        &self,
-        column: &str,
-        values: &[f64],
-    ) -> Result<Coloring, ColorByError> {
+    pub(super) fn color_whole_numbers(&self, column: &str, values: &[f64]) -> Result<Coloring, ColorByError> {
         let palette = self.map.unwrap_or(MapName::OKABE_ITO).name();
         self.refuse_scale(|| format!("`{palette}` is a palette for categories"))?;
         let refused = |why: String| {
@@ -210,10 +183,8 @@ impl ColorBy {
             ))
         };
         let mut categories: Vec<(f64, usize)> = Vec::new();
-        let given: Option<Vec<f64>> = self
-            .categories
-            .as_ref()
-            .map(|names| names.iter().filter_map(|name| name.parse().ok()).collect());
+        let given: Option<Vec<f64>> =
+            self.categories.as_ref().map(|names| names.iter().filter_map(|name| name.parse().ok()).collect());
         let mut others = 0;
         for value in values {
             if value.is_nan() {
@@ -229,9 +200,7 @@ impl ColorBy {
             match categories.binary_search_by(|(known, _)| known.total_cmp(&(value + 0.0))) {
                 Ok(place) => categories[place].1 += 1,
                 Err(_) if categories.len() == MOST_NUMBERS => {
-                    return Err(refused(format!(
-                        "`{column}` has more than {MOST_NUMBERS} different numbers"
-                    )));
+                    return Err(refused(format!("`{column}` has more than {MOST_NUMBERS} different numbers")));
                 }
                 Err(place) => categories.insert(place, (value + 0.0, 1)),
             }
@@ -246,8 +215,7 @@ impl ColorBy {
     }
 
     fn refuse_scale(&self, why: impl Fn() -> String) -> Result<(), ColorByError> {
-        let given =
-            [("a logarithmic scale", self.is_log), ("a range", self.limits != Limits::default())];
+        let given = [("a logarithmic scale", self.is_log), ("a range", self.limits != Limits::default())];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((what, _)) => Err(ColorByError::Values(format!(
                 "{what} applies only to numbers on a color map, but {}; remove it",
@@ -332,8 +300,7 @@ fn given_categories(
     indices: &mut [u32],
     others: &mut usize,
 ) -> Vec<(String, usize)> {
-    let places: HashMap<&str, usize> =
-        given.iter().enumerate().map(|(place, name)| (name.as_str(), place)).collect();
+    let places: HashMap<&str, usize> = given.iter().enumerate().map(|(place, name)| (name.as_str(), place)).collect();
     let mut counts = vec![0; given.len()];
     let renumbered: Vec<u32> = found
         .iter()

@@ -113,9 +113,8 @@ impl ColorBy {
         if loaded.colors.is_some() {
             return None;
         }
-        let are_kinds = |name: &&str| {
-            loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()))
-        };
+        let are_kinds =
+            |name: &&str| loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()));
         KINDS.into_iter().find(are_kinds).map(Self::column)
     }
 
@@ -124,8 +123,6 @@ impl ColorBy {
     #[must_use]
     pub fn note_of_kinds(&self, key: &str) -> String {
         let column = &self.column;
-        format!(
-            "there are no colors; the spheres are colored by {column}; {key} gives all one color"
-        )
+        format!("there are no colors; the spheres are colored by {column}; {key} gives all one color")
     }
 }

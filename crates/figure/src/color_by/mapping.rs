@@ -169,8 +169,7 @@ pub(super) fn opacities(column: &str, values: &[f64], notes: &mut Vec<String>) -
         ));
     }
     if missing > 0 {
-        notes
-            .push(format!("spheres without a value in `{column}` are opaque; there are {missing}"));
+        notes.push(format!("spheres without a value in `{column}` are opaque; there are {missing}"));
     }
     levels
 }
@@ -199,14 +198,10 @@ pub(super) fn strengths(
         .iter()
         .map(strength)
         .filter(|strength| *strength > 0.0)
-        .fold(None, |ends: Option<[f64; 2]>, s| {
-            Some(ends.map_or([s; 2], |[a, b]| [a.min(s), b.max(s)]))
-        });
+        .fold(None, |ends: Option<[f64; 2]>, s| Some(ends.map_or([s; 2], |[a, b]| [a.min(s), b.max(s)])));
     let dark = values.iter().filter(|value| strength(value) <= 0.0).count();
     if dark > 0 {
-        notes.push(format!(
-            "{dark} spheres emit no light, because `{column}` is not a number greater than 0"
-        ));
+        notes.push(format!("{dark} spheres emit no light, because `{column}` is not a number greater than 0"));
     }
     let bright = values.iter().filter(|value| **value * by.factor > STRONGEST).count();
     if bright > 0 {
@@ -228,10 +223,7 @@ pub(super) fn strengths(
         0 => 0.0,
         level => (low * (ratio * f64::from(level - 1) / 254.0).exp()).min(high) as f32,
     };
-    Ok(Strengths {
-        strengths: (0..=255).map(of_level).collect(),
-        indices: values.iter().map(level).collect(),
-    })
+    Ok(Strengths { strengths: (0..=255).map(of_level).collect(), indices: values.iter().map(level).collect() })
 }
 
 pub(super) fn check_factor(column: &str, value: f64) -> Result<(), ColorByError> {

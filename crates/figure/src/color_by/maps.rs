@@ -13,10 +13,10 @@ const ENTRIES: usize = 256;
 /// licence in `maps/LICENSE-crameri`. `scripts/make-maps.py` made the tables: 256 colours of three bytes in 8-bit sRGB
 /// for each name, in this order.
 const CRAMERI: [&str; 39] = [
-    "acton", "bam", "bamako", "batlow", "batlowK", "batlowW", "berlin", "bilbao", "broc", "buda",
-    "bukavu", "cork", "davos", "devon", "fes", "glasgow", "grayC", "hawaii", "imola", "lajolla",
-    "lapaz", "lipari", "lisbon", "managua", "navia", "nuuk", "oleron", "oslo", "roma", "tofino",
-    "tokyo", "turku", "vanimo", "vik", "bamO", "brocO", "corkO", "romaO", "vikO",
+    "acton", "bam", "bamako", "batlow", "batlowK", "batlowW", "berlin", "bilbao", "broc", "buda", "bukavu", "cork",
+    "davos", "devon", "fes", "glasgow", "grayC", "hawaii", "imola", "lajolla", "lapaz", "lipari", "lisbon", "managua",
+    "navia", "nuuk", "oleron", "oslo", "roma", "tofino", "tokyo", "turku", "vanimo", "vik", "bamO", "brocO", "corkO",
+    "romaO", "vikO",
 ];
 
 static CRAMERI_COLORS: &[u8; 39 * ENTRIES * 3] = include_bytes!("maps/crameri.rgb");
@@ -107,8 +107,7 @@ impl FromStr for MapName {
         if let Some(name) = Self::all().find(|name| name.eq_ignore_ascii_case(&stem)) {
             return Ok(Self { name, is_reversed: text.ends_with("_r") });
         }
-        let likeness =
-            |name: &str| strsim::jaro_winkler(&name.to_lowercase(), &stem.to_lowercase());
+        let likeness = |name: &str| strsim::jaro_winkler(&name.to_lowercase(), &stem.to_lowercase());
         let nearest = Self::all().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
         let nearest = nearest.filter(|name| likeness(name) > 0.75);
         Err(MapError { name: one_line(text), nearest })
@@ -216,21 +215,12 @@ const PALETTES: [Palette; 5] = [
         name: "okabe-ito",
         colors: &[0xe69f00, 0x56b4e9, 0x009e73, 0xcc79a7, 0x0072b2, 0xd55e00, 0xf0e442, 0x000000],
     },
-    Palette {
-        name: "tol-bright",
-        colors: &[0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377],
-    },
+    Palette { name: "tol-bright", colors: &[0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377] },
     Palette {
         name: "tol-muted",
-        colors: &[
-            0xcc6677, 0x332288, 0xddcc77, 0x117733, 0x88ccee, 0x882255, 0x44aa99, 0x999933,
-            0xaa4499,
-        ],
+        colors: &[0xcc6677, 0x332288, 0xddcc77, 0x117733, 0x88ccee, 0x882255, 0x44aa99, 0x999933, 0xaa4499],
     },
-    Palette {
-        name: "tol-vibrant",
-        colors: &[0xee7733, 0x0077bb, 0x33bbee, 0xee3377, 0xcc3311, 0x009988],
-    },
+    Palette { name: "tol-vibrant", colors: &[0xee7733, 0x0077bb, 0x33bbee, 0xee3377, 0xcc3311, 0x009988] },
     Palette {
         name: "tol-light",
         colors: &[0x77aadd, 0xee8866, 0xeedd88, 0xffaabb, 0x99ddff, 0x44bb99, 0xbbcc33, 0xaaaa00],

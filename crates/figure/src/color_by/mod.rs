@@ -108,11 +108,7 @@ impl ColorBy {
     /// # Errors
     /// Returns an error if there is no such column, if it has no value that can be shown, if the range is wrong, or if
     /// an option does not apply to text.
-    pub fn apply(
-        &self,
-        spheres: &SphereArray,
-        columns: &[Column],
-    ) -> Result<Coloring, ColorByError> {
+    pub fn apply(&self, spheres: &SphereArray, columns: &[Column]) -> Result<Coloring, ColorByError> {
         let found = column::column(&self.column, spheres, columns)?;
         match found.values.as_ref() {
             ColumnValues::Labels(labels) => self.color_labels(&found.name, labels),

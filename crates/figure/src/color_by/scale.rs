@@ -175,9 +175,7 @@ impl From<Limits> for [Limit; 2] {
 
 /// The error of a text that is not a limit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{text}` is not a number; write a number, a percentile such as 2%, or nothing for the end of the data"
-)]
+#[error("`{text}` is not a number; write a number, a percentile such as 2%, or nothing for the end of the data")]
 #[non_exhaustive]
 pub struct LimitError {
     /// The text as given.
@@ -348,10 +346,7 @@ mod tests {
         assert_eq!(resolved("0%,100%", &values, false), Some([0.0, 10.0]));
         assert_eq!(resolved("50%,", &[7.0], false), Some([7.0, 7.0]));
         let wrong: Limits = "-1%,5".parse().unwrap();
-        assert_eq!(
-            wrong.resolve(values.into_iter(), false),
-            Err(ScaleError::Percentile { percent: -1.0 })
-        );
+        assert_eq!(wrong.resolve(values.into_iter(), false), Err(ScaleError::Percentile { percent: -1.0 }));
     }
 
     #[test]

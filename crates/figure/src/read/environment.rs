@@ -31,25 +31,19 @@ pub fn read(bytes: &[u8]) -> Result<Environment, LoadError> {
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         return read_exr(bytes);
     }
-    Err(LoadError::new(
-        "this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them",
-    ))
+    Err(LoadError::new("this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them"))
 }
 
 /// The largest number of texels that a file may have: 16,384 × 8192.
 pub const MAX_TEXELS: u64 = 1 << 27;
 
 fn cut_off(format: &str, bytes: usize) -> LoadError {
-    let message = format!(
-        "the {format} file is incomplete: it ends after {bytes} bytes, before its image does"
-    );
+    let message = format!("the {format} file is incomplete: it ends after {bytes} bytes, before its image does");
     LoadError::new(message).of_kind(LoadErrorKind::CutOff)
 }
 
 fn damaged(format: &str, message: &str) -> LoadError {
-    LoadError::new(format!(
-        "the {format} file is damaged or of a kind that cannot be read: {message}"
-    ))
+    LoadError::new(format!("the {format} file is damaged or of a kind that cannot be read: {message}"))
 }
 
 /// Limit on the number of texels that a file may declare for each of its bytes. Both formats stay below it: 172
@@ -61,11 +55,7 @@ const SMALL: u64 = 1 << 20;
 
 /// Allocates a black image. Its size comes from a header that may be wrong, so the size is refused if a file of
 /// `bytes` bytes cannot hold it.
-fn black(
-    [width, height]: [u64; 2],
-    format: &'static str,
-    bytes: usize,
-) -> Result<Vec<[f32; 3]>, LoadError> {
+fn black([width, height]: [u64; 2], format: &'static str, bytes: usize) -> Result<Vec<[f32; 3]>, LoadError> {
     let texels = width.saturating_mul(height);
     if texels > MAX_TEXELS {
         return Err(LoadError::new(format!(
@@ -76,11 +66,8 @@ fn black(
         return Err(cut_off(format, bytes));
     }
     let mut room = Vec::new();
-    room.try_reserve_exact(texels as usize).map_err(|_| {
-        LoadError::new(format!(
-            "there is not enough memory for {texels} texels; use a smaller image"
-        ))
-    })?;
+    room.try_reserve_exact(texels as usize)
+        .map_err(|_| LoadError::new(format!("there is not enough memory for {texels} texels; use a smaller image")))?;
     room.resize(texels as usize, [0.0; 3]);
     Ok(room)
 }
@@ -114,12 +101,7 @@ impl Seek for FileBytes<'_> {
 }
 
 /// Returns the error for a decoder that gave up, with its message.
-fn refusal(
-    format: &'static str,
-    bytes: &[u8],
-    at_end: &Cell<bool>,
-    message: &impl ToString,
-) -> LoadError {
+fn refusal(format: &'static str, bytes: &[u8], at_end: &Cell<bool>, message: &impl ToString) -> LoadError {
     if at_end.get() {
         return cut_off(format, bytes.len());
     }
@@ -135,14 +117,12 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     let refused = |error: Error| refusal(OPENEXR, bytes, &at_end, &error);
     let unreadable = |message: &str| Err(damaged(OPENEXR, message));
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
-    let meta =
-        MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
+    let meta = MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
     let names = |channels: &[exr::meta::attribute::ChannelDescription]| -> Vec<String> {
         channels.iter().map(|channel| channel.name.to_string()).collect()
     };
     let has_color = |names: &[String]| CHANNELS.iter().all(|c| names.iter().any(|name| name == c));
-    let with_color =
-        meta.headers.iter().find(|header| has_color(&names(&header.channels.list)) && !header.deep);
+    let with_color = meta.headers.iter().find(|header| has_color(&names(&header.channels.list)) && !header.deep);
     let Some(header) = with_color else {
         let first = meta.headers.first().map(|header| names(&header.channels.list).join(", "));
         let found = pinhole::internals::text::one_line(&first.unwrap_or_default());
@@ -154,16 +134,13 @@ fn read_exr(bytes: &[u8]) -> Result<Environment, LoadError> {
     // The decoder of B44 overflows on damaged files (exr 1.74).
     let is_lossy = |compression| matches!(compression, Compression::B44 | Compression::B44A);
     if meta.headers.iter().any(|header| is_lossy(header.compression)) {
-        return unreadable(
-            "its compression is B44, which is not supported; save it with ZIP compression",
-        );
+        return unreadable("its compression is B44, which is not supported; save it with ZIP compression");
     }
     if header.own_attributes.environment_map == Some(EnvironmentMap::Cube) {
         return unreadable("it is a cube map, but only equirectangular maps can be read");
     }
     let Vec2(width, height) = header.layer_size;
-    let room =
-        RefCell::new(black([width, height].map(|count| count as u64), OPENEXR, bytes.len())?);
+    let room = RefCell::new(black([width, height].map(|count| count as u64), OPENEXR, bytes.len())?);
     let image = reader()
         .no_deep_data()
         .largest_resolution_level()
@@ -200,8 +177,7 @@ fn read_hdr(bytes: &[u8]) -> Result<Environment, LoadError> {
         return Err(damaged(RADIANCE, "it has several empty runs of pixels in a row"));
     }
     // The decoder must not be strict: the signature may also be `#?RGBE`, and headers have lines of all kinds.
-    let decoder =
-        HdrDecoder::with_strictness(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
+    let decoder = HdrDecoder::with_strictness(FileBytes::new(bytes, &at_end), false).map_err(refused)?;
     let (width, height) = decoder.dimensions();
     let mut texels = black([width, height].map(u64::from), RADIANCE, bytes.len())?;
     decoder.read_image(bytemuck::cast_slice_mut(&mut texels)).map_err(refused)?;

@@ -42,9 +42,7 @@ pub fn read(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => read_png(bytes),
         [0x76, 0x2f, 0x31, 0x01, ..] => read_exr(bytes),
-        _ => Err(LoadError::new(
-            "this is neither a PNG nor an OpenEXR file; pictures of `pinhole render` are",
-        )),
+        _ => Err(LoadError::new("this is neither a PNG nor an OpenEXR file; pictures of `pinhole render` are")),
     }
 }
 
@@ -59,11 +57,7 @@ fn of_other_kind(format: &str, found: &str, written: &str) -> LoadError {
 }
 
 /// Makes room for `count` samples. Callers have refused headers that declare more than the file can hold.
-fn room<T: Clone>(
-    count: usize,
-    sample: T,
-    [width, height]: [usize; 2],
-) -> Result<Vec<T>, LoadError> {
+fn room<T: Clone>(count: usize, sample: T, [width, height]: [usize; 2]) -> Result<Vec<T>, LoadError> {
     let mut room = Vec::new();
     room.try_reserve_exact(count).map_err(|_| no_memory(width, height))?;
     room.resize(count, sample);
@@ -81,8 +75,7 @@ fn read_png(bytes: &[u8]) -> Result<PictureFile, LoadError> {
 
     let failed = |error: png::DecodingError| damaged("PNG", &error);
     let kind = |found: &str| of_other_kind("PNG", found, "RGB and RGBA with 8 or 16 bits");
-    let mut decoder =
-        Decoder::new_with_limits(std::io::Cursor::new(bytes), Limits { bytes: usize::MAX });
+    let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(bytes), Limits { bytes: usize::MAX });
     decoder.set_transformations(Transformations::IDENTITY);
     let mut reader = decoder.read_info().map_err(failed)?;
     let info = reader.info();
@@ -131,8 +124,7 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
     // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     // The reader for environments is used, so that the decoder is compiled only once.
     let at_end = Cell::new(false);
-    let meta =
-        MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(failed)?;
+    let meta = MetaData::read_from_buffered(FileBytes::new(bytes, &at_end), false).map_err(failed)?;
     let [header] = &*meta.headers else {
         return Err(kind(&format!("{} parts", meta.headers.len())));
     };
@@ -170,16 +162,11 @@ fn read_exr(bytes: &[u8]) -> Result<PictureFile, LoadError> {
         .non_parallel()
         .from_buffered(FileBytes::new(bytes, &at_end))
         .map_err(failed)?;
-    let certificate = match image.layer_data.attributes.other.get(&Text::new_or_panic(CERTIFICATE))
-    {
+    let certificate = match image.layer_data.attributes.other.get(&Text::new_or_panic(CERTIFICATE)) {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
         _ => None,
     };
     let Vec2(width, height) = image.layer_data.size;
     let (_, pixels) = image.layer_data.channel_data.pixels;
-    Ok(PictureFile {
-        size: [width as u32, height as u32],
-        samples: FileSamples::Linear(pixels),
-        certificate,
-    })
+    Ok(PictureFile { size: [width as u32, height as u32], samples: FileSamples::Linear(pixels), certificate })
 }

@@ -58,18 +58,13 @@ pub fn parse_camera_path(text: &str) -> Result<CameraPath, SceneFileError> {
     lines.add(text, None);
     let keys = DeTable::parse(text).map(|table| Keys::with_lists(table.get_ref()));
     let places = Places { lines, keys: keys.unwrap_or_default() };
-    let table: CameraPathTable =
-        toml::from_str(text).map_err(|error| places.explained(&error, |_, _| None))?;
+    let table: CameraPathTable = toml::from_str(text).map_err(|error| places.explained(&error, |_, _| None))?;
     table.path("", &places)
 }
 
 impl CameraPathTable {
     /// The path. `table` is the name of the table of these keys.
-    pub(super) fn path(
-        &self,
-        table: &str,
-        places: &Places<'_>,
-    ) -> Result<CameraPath, SceneFileError> {
+    pub(super) fn path(&self, table: &str, places: &Places<'_>) -> Result<CameraPath, SceneFileError> {
         let path_of = |index: usize| format!("{table}keys.{index}");
         let (mut keys, mut clock) = (Vec::new(), None);
         for (index, Table(key)) in self.keys.iter().enumerate() {
@@ -103,28 +98,19 @@ impl KeyTable {
         let is_view = self.view.is_some() || self.turn.is_some();
         let place = match (self.eye, self.look_at) {
             (Some(_), _) | (_, Some(_)) if is_view => {
-                return Err(
-                    "`eye` with `look_at`, and `view` with `turn`, exclude each other; keep one pair".into(),
-                );
+                return Err("`eye` with `look_at`, and `view` with `turn`, exclude each other; keep one pair".into());
             }
-            (Some(eye), Some(look_at)) => KeyPlace::Point {
-                eye: eye.0.into(),
-                look_at: look_at.0.into(),
-                up: self.up.map(|up| up.0.into()),
-            },
+            (Some(eye), Some(look_at)) => {
+                KeyPlace::Point { eye: eye.0.into(), look_at: look_at.0.into(), up: self.up.map(|up| up.0.into()) }
+            }
             (None, None) if is_view => {
                 if self.up.is_some() {
                     return Err("`up` applies only to a key with an `eye`; remove it".into());
                 }
                 if self.vertical_fov.is_some() {
-                    return Err(
-                        "`vertical_fov` applies only to a key with an `eye`; use `zoom` with a `view`".into(),
-                    );
+                    return Err("`vertical_fov` applies only to a key with an `eye`; use `zoom` with a `view`".into());
                 }
-                KeyPlace::View {
-                    viewpoint: self.view.unwrap_or(Viewpoint::OBLIQUE),
-                    turn: self.turn.unwrap_or(0.0),
-                }
+                KeyPlace::View { viewpoint: self.view.unwrap_or(Viewpoint::OBLIQUE), turn: self.turn.unwrap_or(0.0) }
             }
             _ => {
                 return Err("a key needs an `eye` and a `look_at`, or a `view`, or a `turn`".into());

@@ -101,8 +101,7 @@ impl Data {
 /// Checks that a number, if it is given, is finite and greater than 0.
 pub(super) fn positive(key: &'static str, value: Option<f64>) -> Result<Option<f64>, RangeError> {
     let range = "finite and greater than 0";
-    let within =
-        |value| RangeError::unless_within(key, value, [f64::from_bits(1), f64::MAX], range);
+    let within = |value| RangeError::unless_within(key, value, [f64::from_bits(1), f64::MAX], range);
     value.map(within).transpose()
 }
 
@@ -165,8 +164,7 @@ impl BondsValue {
                 match (positive("factor", *factor)?, positive("length", *length)?) {
                     (Some(_), Some(_)) => {
                         return Err(
-                            "`bonds` has both `factor` and `length`, which exclude each other; remove one"
-                                .into(),
+                            "`bonds` has both `factor` and `length`, which exclude each other; remove one".into()
                         );
                     }
                     (_, Some(length)) => BondLength::Below(length),

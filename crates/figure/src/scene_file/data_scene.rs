@@ -74,8 +74,7 @@ impl Data {
     pub fn scene(&self, mut loaded: Dataset, own: &[Sphere]) -> Result<DataScene, DataError> {
         let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let has_radii = self.mapping.radius.is_some();
-        let by_species = self.elements_by.is_empty()
-            || self.elements_by.iter().any(|column| column == "species");
+        let by_species = self.elements_by.is_empty() || self.elements_by.iter().any(|column| column == "species");
         let is_given = |name: &str| by_species && self.elements.iter().any(|e| e.name == name);
         loaded.correct_notes(self.mapping.color.is_some(), has_radii, is_given);
         let absent = self.absent_elements(&loaded)?;
@@ -93,9 +92,9 @@ impl Data {
         }
         if is_scaled || !elements.is_empty() {
             let of_element = |index: usize| self.element(*elements.get(index)?)?.radius;
-            loaded.spheres.map_radii(|index, radius| {
-                of_element(index).filter(|_| !has_radii).unwrap_or(radius) * scale
-            });
+            loaded
+                .spheres
+                .map_radii(|index, radius| of_element(index).filter(|_| !has_radii).unwrap_or(radius) * scale);
         }
         let count = loaded.spheres.len();
         let color_key = mapped.coloring.as_ref().map(|coloring| coloring.key.clone());
@@ -184,19 +183,11 @@ impl Data {
     }
 
     /// Returns the text column that a key of the scene file names.
-    fn labels<'a>(
-        &self,
-        loaded: &'a Dataset,
-        key: &str,
-        column: &str,
-    ) -> Result<&'a Labels, DataError> {
+    fn labels<'a>(&self, loaded: &'a Dataset, key: &str, column: &str) -> Result<&'a Labels, DataError> {
         let file = &self.file;
         loaded.labels(column).ok_or_else(|| {
-            let mut texts = loaded
-                .columns
-                .iter()
-                .filter(|column| matches!(column.values, ColumnValues::Labels(_)))
-                .peekable();
+            let mut texts =
+                loaded.columns.iter().filter(|column| matches!(column.values, ColumnValues::Labels(_))).peekable();
             if texts.peek().is_none() {
                 return DataError::NoColumn(format!(
                     "`{key}` applies only to data with text, such as the names of atoms, and {file} has none; remove it"
@@ -228,10 +219,7 @@ impl Data {
             }));
         }
         if !is_kept.is_empty() && !is_kept.contains(&true) {
-            notes.push(format!(
-                "`leave_out` removes all atoms of {}; remove some of its values",
-                self.file
-            ));
+            notes.push(format!("`leave_out` removes all atoms of {}; remove some of its values", self.file));
         }
         loaded.keep(&is_kept);
         Ok(notes)

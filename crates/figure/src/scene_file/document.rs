@@ -145,10 +145,7 @@ pub const KEYS_OF_DATA: [&str; 18] = [
 
 impl Document {
     /// The data with the keys that concern it; `None` if there is none.
-    pub(super) fn data(
-        &self,
-        layers: &Joined<'_>,
-    ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
+    pub(super) fn data(&self, layers: &Joined<'_>) -> Result<Option<WithSpan<Data>>, SceneFileError> {
         let places = &layers.places;
         let Some(file) = self.data.clone() else {
             let is_given = |key: &&str| places.keys.has(key);
@@ -158,12 +155,10 @@ impl Document {
                 let span = places.span(&key);
                 let name = key.split('.').next().unwrap_or_default();
                 Err(span.error(match span.flag {
-                    Some(flag) => format!(
-                        "{flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}"
-                    ),
-                    None => format!(
-                        "`{name}` applies to `data`, which is missing; add `data` or remove `{name}`"
-                    ),
+                    Some(flag) => {
+                        format!("{flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}")
+                    }
+                    None => format!("`{name}` applies to `data`, which is missing; add `data` or remove `{name}`"),
                 }))
             });
         };
@@ -186,10 +181,7 @@ impl Document {
             };
             element().map_err(|error: KeyError| places.refused(&format!("elements.{name}"), error))
         });
-        let select = self
-            .select
-            .as_ref()
-            .map(|text| text.parse().map_err(|error| places.span("select").error(error)));
+        let select = self.select.as_ref().map(|text| text.parse().map_err(|error| places.span("select").error(error)));
         let cell = self.cell.as_ref().map(BoxValue::edges).transpose();
         let bonds = self.bonds.as_ref().map(BondsValue::bonds).transpose();
         let within = |table: &'static str| {
@@ -218,9 +210,7 @@ impl Document {
             topology: self.topology.clone(),
             columns: self.columns.clone().unwrap_or_default(),
             radius: positive("radius", self.radius).map_err(number)?,
-            radius_scale: positive("radius_scale", self.radius_scale)
-                .map_err(number)?
-                .unwrap_or(1.0),
+            radius_scale: positive("radius_scale", self.radius_scale).map_err(number)?.unwrap_or(1.0),
             color: self.color,
             surface,
             elements: elements.collect::<Result<_, _>>()?,
@@ -238,10 +228,7 @@ impl Document {
     }
 
     /// The spheres of the file itself.
-    pub(super) fn own_spheres(
-        &self,
-        places: &Places<'_>,
-    ) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
+    pub(super) fn own_spheres(&self, places: &Places<'_>) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
         let sphere = |(index, table): (usize, &Spanned<Table<SphereTable>>)| {
             let Table(SphereTable { center, radius, color, material, opacity }) = table.get_ref();
             let base = SurfaceProperties::default();
@@ -255,10 +242,7 @@ impl Document {
     }
 
     /// What is drawn over the picture.
-    pub(super) fn annotations(
-        &self,
-        places: &Places<'_>,
-    ) -> Result<AnnotationPlan, SceneFileError> {
+    pub(super) fn annotations(&self, places: &Places<'_>) -> Result<AnnotationPlan, SceneFileError> {
         let text = self.text.map(|Table(text)| text).unwrap_or_default();
         if let Some(scale) = text.scale {
             let range = "from 0.2 to 10";

@@ -149,8 +149,7 @@ impl SceneFile {
             error.flag = Some("");
             for flag in FLAGS.iter().filter(|flag| flag.group == Group::Camera) {
                 let key = flag.key.rsplit('.').next().unwrap_or_default();
-                error.message =
-                    error.message.replace(&format!("`{key}`"), &format!("`{}`", flag.flag));
+                error.message = error.message.replace(&format!("`{key}`"), &format!("`{}`", flag.flag));
             }
         }
         error
@@ -197,25 +196,15 @@ impl SceneFile {
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
     pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
-        self.camera
-            .value
-            .camera(film.aspect(), &scene.subject())
-            .map_err(|error| self.at_camera(&error))
+        self.camera.value.camera(film.aspect(), &scene.subject()).map_err(|error| self.at_camera(&error))
     }
 
     /// Makes the cameras of the left and the right eye, if the camera of the file is a stereo camera.
     ///
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
-    pub fn stereo_pair(
-        &self,
-        film: &Film,
-        scene: &Scene,
-    ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
-        self.camera
-            .value
-            .stereo_pair(film.aspect(), &scene.subject())
-            .map_err(|error| self.at_camera(&error))
+    pub fn stereo_pair(&self, film: &Film, scene: &Scene) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
+        self.camera.value.stereo_pair(film.aspect(), &scene.subject()).map_err(|error| self.at_camera(&error))
     }
 }
 
@@ -282,13 +271,10 @@ impl SceneFile {
         let integrator = match kind {
             IntegratorKind::Primary => {
                 let integrator = Integrator::Primary(self.document.shading.unwrap_or_default());
-                let settings =
-                    RenderSettings { integrator, background, ..RenderSettings::default() };
+                let settings = RenderSettings { integrator, background, ..RenderSettings::default() };
                 return Ok(if has_smooth_edges { self.smooth(&settings) } else { settings });
             }
-            IntegratorKind::Studio => {
-                Integrator::Studio(says.studio.studio(scene, camera, background)?)
-            }
+            IntegratorKind::Studio => Integrator::Studio(says.studio.studio(scene, camera, background)?),
             IntegratorKind::Path => Integrator::Path(self.document.path.unwrap_or_default().0),
         };
         // Only path tracing is lit by a sky and needs its image.
@@ -335,8 +321,7 @@ impl SceneFile {
             let (rgb, what) = (color.to_array(), format!("sphere {index}"));
             match surface.material {
                 Material::Emissive { strength } => {
-                    scaled(color, strength.into(), &what)
-                        .map_err(|error| sphere.span.error(error))?;
+                    scaled(color, strength.into(), &what).map_err(|error| sphere.span.error(error))?;
                 }
                 _ if rgb.iter().any(|c| *c > 1.0) => {
                     return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));

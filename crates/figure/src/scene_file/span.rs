@@ -94,8 +94,7 @@ impl<'a> Lines<'a> {
 
     pub(crate) fn span(&self, byte: usize) -> Span {
         let texts = self.texts.partition_point(|text| text.start <= byte);
-        let Some(Text { text, start, starts, flag }) = self.texts.get(texts.saturating_sub(1))
-        else {
+        let Some(Text { text, start, starts, flag }) = self.texts.get(texts.saturating_sub(1)) else {
             return Span::START;
         };
         let byte = byte - start;
@@ -164,9 +163,7 @@ pub(crate) fn explain(message: &str, kind: Option<&str>) -> String {
         _ if message.starts_with("wanted exactly 1 element, more") => {
             return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
         }
-        _ if message.starts_with("wanted exactly 1 element")
-            || message.starts_with("invalid type: unit variant") =>
-        {
+        _ if message.starts_with("wanted exactly 1 element") || message.starts_with("invalid type: unit variant") => {
             return format!("a camera is a table; write {}", camera_tables());
         }
         // The messages of toml itself are good, but may have several lines.

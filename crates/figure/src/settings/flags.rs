@@ -124,14 +124,8 @@ fn cameras() -> Vec<(&'static str, &'static str)> {
 
 fn integrators() -> Vec<(&'static str, &'static str)> {
     vec![
-        (
-            "primary",
-            "No light: the color of the first sphere that the ray through the center of a pixel hits",
-        ),
-        (
-            "studio",
-            "Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines",
-        ),
+        ("primary", "No light: the color of the first sphere that the ray through the center of a pixel hits"),
+        ("studio", "Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines"),
         ("path", "Path tracing: light is followed as surfaces scatter it"),
     ]
 }
@@ -141,11 +135,7 @@ fn filters() -> Vec<(&'static str, &'static str)> {
 }
 
 fn panels() -> Vec<(&'static str, &'static str)> {
-    vec![
-        ("auto", "Where the picture behind is mixed"),
-        ("always", "Everywhere"),
-        ("never", "Nowhere"),
-    ]
+    vec![("auto", "Where the picture behind is mixed"), ("always", "Everywhere"), ("never", "Nowhere")]
 }
 
 fn tones() -> Vec<(&'static str, &'static str)> {
@@ -157,11 +147,8 @@ fn tones() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Flags that exclude others.
-pub const EXCLUSIVE: &[(&str, &[&str])] = &[
-    ("--view", &["--eye", "--look-at", "--direction"]),
-    ("--turn", &["--eye"]),
-    ("--bond-length", &["--bonds"]),
-];
+pub const EXCLUSIVE: &[(&str, &[&str])] =
+    &[("--view", &["--eye", "--look-at", "--direction"]), ("--turn", &["--eye"]), ("--bond-length", &["--bonds"])];
 
 macro_rules! flags {
     ($($group:ident { $($flag:literal $key:literal, $value:expr, $shown:literal $(($alone:literal))?, $help:literal;)+ })+) => {

@@ -21,9 +21,7 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
         "bonds" => keys_in::<BondsTable>(""),
         "spheres" => keys_in::<SphereTable>(""),
         // A material is part of the surface properties, which have this key, too.
-        table if table.starts_with("materials.") => {
-            [keys_in::<Document>(table), vec!["opacity"]].concat()
-        }
+        table if table.starts_with("materials.") => [keys_in::<Document>(table), vec!["opacity"]].concat(),
         table => keys_in::<Document>(table),
     }
 }
@@ -119,11 +117,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
         visitor.visit_seq(SeqDeserializer::new([self].into_iter()))
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        visitor: V,
-    ) -> Result<V::Value, Known> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Known> {
         visitor.visit_newtype_struct(self)
     }
 

@@ -47,12 +47,10 @@ pub(crate) struct Joined<'a> {
 
 /// Keys whose value in a later layer takes the place of the whole value in an earlier one, because the parts of two such
 /// values exclude each other.
-const WHOLE: [&str; 7] =
-    ["bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
+const WHOLE: [&str; 7] = ["bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
 
 /// Keys of colours, which may be written as CSS colours.
-const COLORS: [&str; 7] =
-    ["ambient", "background", "color", "horizon", "missing", "nadir", "zenith"];
+const COLORS: [&str; 7] = ["ambient", "background", "color", "horizon", "missing", "nadir", "zenith"];
 
 /// Keys about light sources. A file or a flag that has one of them gets none of the style's.
 const LIGHT: [&str; 3] = ["lights", "sky", "sun"];
@@ -78,9 +76,7 @@ impl<'a> Joined<'a> {
         let mut table = parse(style.map_or("", Style::text), None, &mut lines)?;
         let in_style = Keys::of(&table);
         let kept = by_flag.map_or(Vec::new(), |_| in_style.differences(&in_file));
-        if in_flags.has("studio.outline")
-            && ![&in_file, &in_style].iter().any(|keys| keys.has("studio.outline"))
-        {
+        if in_flags.has("studio.outline") && ![&in_file, &in_style].iter().any(|keys| keys.has("studio.outline")) {
             join(&mut table, parse(THIN, None, &mut lines)?);
         }
         let mut own = file;
@@ -104,17 +100,12 @@ impl<'a> Joined<'a> {
 
     /// The flags, by the keys that they give.
     pub(crate) fn flags(&self) -> Vec<(String, &'static str)> {
-        let flag = |(path, key): (&String, &Key)| {
-            Some((path.clone(), self.places.lines.span(key.start).flag?))
-        };
+        let flag = |(path, key): (&String, &Key)| Some((path.clone(), self.places.lines.span(key.start).flag?));
         self.in_flags.iter().filter_map(flag).collect()
     }
 
     /// Takes a value out of the table that serde reads.
-    pub(crate) fn take<T: DeserializeOwned>(
-        &mut self,
-        key: &str,
-    ) -> Result<Option<T>, SceneFileError> {
+    pub(crate) fn take<T: DeserializeOwned>(&mut self, key: &str) -> Result<Option<T>, SceneFileError> {
         let Some(value) = take(&mut self.table, key) else { return Ok(None) };
         T::deserialize(ValueDeserializer::from(value)).map(Some).map_err(|e| self.explained(&e))
     }
@@ -133,12 +124,10 @@ impl<'a> Joined<'a> {
     fn in_flag(&self, flag: &str, message: &str) -> Option<String> {
         let mut words = message.split('`');
         match (words.next()?, words.next()?) {
-            ("missing field ", "separation") => {
-                Some(format!("{flag} needs --separation; add --separation"))
+            ("missing field ", "separation") => Some(format!("{flag} needs --separation; add --separation")),
+            ("missing field ", "column") => {
+                Some(format!("{flag} says how numbers become colors, but no column is named; add --color-by COLUMN"))
             }
-            ("missing field ", "column") => Some(format!(
-                "{flag} says how numbers become colors, but no column is named; add --color-by COLUMN"
-            )),
             ("unknown field ", _) if flag != "--set" => {
                 let keys = self.places.keys.iter();
                 let mut kinds = keys.filter_map(|(key, _)| key.strip_prefix("camera."));
@@ -150,11 +139,7 @@ impl<'a> Joined<'a> {
     }
 }
 
-fn parse<'a>(
-    text: &'a str,
-    flag: Option<&'static str>,
-    lines: &mut Lines<'a>,
-) -> Result<DeTable<'a>, SceneFileError> {
+fn parse<'a>(text: &'a str, flag: Option<&'static str>, lines: &mut Lines<'a>) -> Result<DeTable<'a>, SceneFileError> {
     let start = lines.add(text, flag);
     let table = DeTable::parse(text).map_err(|error| {
         let at = start + error.span().map_or(0, |span| span.start);
@@ -225,11 +210,7 @@ fn take<'a>(table: &mut DeTable<'a>, key: &str) -> Option<Spanned<DeValue<'a>>> 
 }
 
 /// Moves the positions of a layer to where its text begins among all, and writes CSS colours as `#rrggbb`.
-fn prepared_table<'a>(
-    table: DeTable<'a>,
-    start: usize,
-    lines: &Lines<'_>,
-) -> Result<DeTable<'a>, SceneFileError> {
+fn prepared_table<'a>(table: DeTable<'a>, start: usize, lines: &Lines<'_>) -> Result<DeTable<'a>, SceneFileError> {
     let entry = |(key, value): (Spanned<DeString<'a>>, Spanned<DeValue<'a>>)| {
         let is_color = COLORS.contains(&key.get_ref().as_ref());
         let value = prepared(value, is_color, start, lines)?;

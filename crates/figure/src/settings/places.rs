@@ -86,14 +86,11 @@ impl Places<'_> {
         let is_table = |key: &Key| key.start == start && key.value == Scalar::Other;
         for (path, _) in self.keys.0.iter().filter(|(_, key)| is_table(key)) {
             let Some((kind, _)) = self.keys.text(&format!("{path}.kind")) else { continue };
-            let named =
-                message.split('`').nth(1).and_then(|key| self.keys.get(&format!("{path}.{key}")));
+            let named = message.split('`').nth(1).and_then(|key| self.keys.get(&format!("{path}.{key}")));
             let inside = format!("{path}.");
             let mut values = self.keys.0.range(inside.clone()..);
             let mut values = values.by_ref().take_while(|(key, _)| key.starts_with(&inside));
-            let found = named.or_else(|| {
-                values.find(|(_, key)| key.value.is_shown_in(message)).map(|(_, key)| key)
-            });
+            let found = named.or_else(|| values.find(|(_, key)| key.value.is_shown_in(message)).map(|(_, key)| key));
             return (found.map_or(start, |key| key.start), Some(kind.to_owned()));
         }
         (start, None)
@@ -104,10 +101,7 @@ impl Scalar {
     /// Whether a message of serde quotes the value.
     fn is_shown_in(&self, message: &str) -> bool {
         match self {
-            Self::Text(text) => {
-                message.contains(&format!("`{text}`"))
-                    || message.contains(&format!("string {text:?}"))
-            }
+            Self::Text(text) => message.contains(&format!("`{text}`")) || message.contains(&format!("string {text:?}")),
             Self::Number(number) => {
                 message.contains(&format!("integer `{number}`"))
                     || message.contains(&format!("floating point `{number}`"))
@@ -198,8 +192,7 @@ impl Keys {
 
     /// The keys to which `other` gives other values.
     pub(crate) fn differences(&self, other: &Self) -> Vec<String> {
-        let is_outer =
-            |path: &String| self.0.keys().any(|key| key.starts_with(&format!("{path}.")));
+        let is_outer = |path: &String| self.0.keys().any(|key| key.starts_with(&format!("{path}.")));
         let differs = |(path, key): &(&String, &Key)| {
             let is_other = |other: &Key| other.value == Scalar::Other || other.value != key.value;
             !is_outer(path) && other.get(path).is_some_and(is_other)

@@ -72,9 +72,7 @@ pub(super) fn set(text: &str) -> Result<String, String> {
     let wanted = || "write KEY=VALUE, such as studio.outline.width=2".to_owned();
     let (key, value) = text.split_once('=').ok_or_else(wanted)?;
     let (key, value) = (key.trim(), value.trim());
-    let is_name = |part: &str| {
-        !part.is_empty() && part.chars().all(|c| c.is_alphanumeric() || "-_".contains(c))
-    };
+    let is_name = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_alphanumeric() || "-_".contains(c));
     if !key.split('.').all(is_name) || value.is_empty() {
         return Err(wanted());
     }
@@ -100,9 +98,7 @@ pub(super) fn part(text: &str) -> Result<String, String> {
 
 fn positive(text: &str) -> Result<String, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-    number
-        .map(toml_number)
-        .ok_or_else(|| "write a number that is finite and greater than 0".to_owned())
+    number.map(toml_number).ok_or_else(|| "write a number that is finite and greater than 0".to_owned())
 }
 
 pub(super) fn cell(text: &str) -> Result<String, String> {
@@ -136,9 +132,7 @@ pub(super) fn range(text: &str) -> Result<String, String> {
 
 /// Reads `COLUMN*F`, a column and a factor.
 pub(super) fn with_factor(text: &str) -> Result<String, String> {
-    let factor = text
-        .rsplit_once('*')
-        .and_then(|(column, factor)| Some((column, factor.trim().parse::<f64>().ok()?)));
+    let factor = text.rsplit_once('*').and_then(|(column, factor)| Some((column, factor.trim().parse::<f64>().ok()?)));
     Ok(match factor {
         Some((column, factor)) => {
             let (column, factor) = (quoted(column.trim()), toml_number(factor));
@@ -162,9 +156,8 @@ pub(super) fn legend(text: &str) -> Result<String, String> {
 
 /// Splits `TEXT@POSITION`. The part after the last @ belongs to the text unless it is a position.
 fn at_position(text: &str) -> (&str, Option<Position>) {
-    let split = text
-        .rsplit_once('@')
-        .and_then(|(text, position)| Some((text, Some(position.parse::<Position>().ok()?))));
+    let split =
+        text.rsplit_once('@').and_then(|(text, position)| Some((text, Some(position.parse::<Position>().ok()?))));
     split.unwrap_or((text, None))
 }
 
@@ -216,10 +209,7 @@ mod tests {
     #[test]
     fn a_label_ends_before_its_position() {
         assert_eq!(label("me@home").unwrap(), "labels = [{ text = \"me@home\" }]");
-        assert_eq!(
-            label("a@b@0.5,1").unwrap(),
-            "labels = [{ text = \"a@b\", position = [0.5, 1.0] }]"
-        );
+        assert_eq!(label("a@b@0.5,1").unwrap(), "labels = [{ text = \"a@b\", position = [0.5, 1.0] }]");
     }
 
     #[test]

@@ -87,13 +87,7 @@ pub(crate) struct OwnValues {
 const LEAST_RADIUS_IN_PIXELS: f64 = 3.0;
 
 /// Chooses the values of a style for a scene and a view of it, except those that the scene file gives.
-pub(crate) fn fit(
-    settings: &mut RenderSettings,
-    style: Style,
-    given: OwnValues,
-    scene: &Scene,
-    view: &View<'_>,
-) {
+pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues, scene: &Scene, view: &View<'_>) {
     let subject = scene.subject();
     let Some(radius) = subject.mean_radius() else { return };
     if let Integrator::Studio(studio) = &mut settings.integrator {
@@ -127,8 +121,7 @@ fn fit_outline(
 ) {
     let Some(outline) = &mut studio.outline else { return };
     let middle = subject.bounds().center();
-    let is_tiny = radius_in_pixels(view, middle, radius)
-        .is_some_and(|pixels| pixels < LEAST_RADIUS_IN_PIXELS);
+    let is_tiny = radius_in_pixels(view, middle, radius).is_some_and(|pixels| pixels < LEAST_RADIUS_IN_PIXELS);
     if is_tiny && !given.outline {
         let wide = Outline { width: outline.width, ..Outline::thin() };
         studio.outline = given.outline_by_flag.then_some(wide);

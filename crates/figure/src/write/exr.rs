@@ -70,21 +70,15 @@ pub fn write(
             attributes.other.insert(latin(name), AttributeValue::Text(latin(text)));
         }
     }
-    let storage = Storage {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
+    let storage =
+        Storage { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let width = size.0;
-    let channels =
-        planes(picture, layers, encoding.transparent)?.into_iter().map(|(name, samples)| {
-            AnyChannel {
-                name: latin(name),
-                sample_data: Channel { samples, width },
-                quantize_linearly: false,
-                sampling: Vec2(1, 1),
-            }
-        });
+    let channels = planes(picture, layers, encoding.transparent)?.into_iter().map(|(name, samples)| AnyChannel {
+        name: latin(name),
+        sample_data: Channel { samples, width },
+        quantize_linearly: false,
+        sampling: Vec2(1, 1),
+    });
     let channels = AnyChannels::sort(channels.collect());
     let image = ExrImage::from_layer(ExrLayer::new(size, attributes, storage, channels));
     image.write().to_buffered(&mut sink)?;
@@ -130,11 +124,7 @@ fn latin(text: &str) -> Text {
 /// The name and the samples of a channel.
 type Plane<'a> = (&'static str, Samples<'a>);
 
-fn planes(
-    picture: &Image,
-    layers: LayerSet,
-    transparent: bool,
-) -> Result<Vec<Plane<'_>>, ExrError> {
+fn planes(picture: &Image, layers: LayerSet, transparent: bool) -> Result<Vec<Plane<'_>>, ExrError> {
     let missing = |layer| ExrError::MissingLayer { layer };
     let alpha = match transparent {
         true => Samples::Numbers(picture.alpha().ok_or(missing(Layer::Alpha))?),
@@ -164,11 +154,7 @@ fn planes_of(picture: &Image, layer: Layer) -> Option<Vec<Plane<'_>>> {
 }
 
 fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a>> {
-    names
-        .into_iter()
-        .enumerate()
-        .map(|(index, name)| (name, Samples::Components(values, index)))
-        .collect()
+    names.into_iter().enumerate().map(|(index, name)| (name, Samples::Components(values, index))).collect()
 }
 
 /// The samples of a channel, borrowed from the picture.

@@ -27,9 +27,7 @@ pub fn encode(image: &Image, layer: Layer) -> Result<Vec<u8>, NpyError> {
         Layer::Samples => image.samples().map(counts),
         Layer::Variance => image.variance().map(numbers),
     };
-    bytes
-        .ok_or(NpyError::MissingLayer { layer })?
-        .map_err(|error| NpyError::Encoder { message: error.to_string() })
+    bytes.ok_or(NpyError::MissingLayer { layer })?.map_err(|error| NpyError::Encoder { message: error.to_string() })
 }
 
 /// An error of encoding a layer.
@@ -52,8 +50,7 @@ pub enum NpyError {
 
 fn array<T: AutoSerialize + Copy>(values: &[T], shape: &[u64]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(size_of_val(values) + 128);
-    let mut writer =
-        npyz::WriteOptions::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?;
+    let mut writer = npyz::WriteOptions::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?;
     writer.extend(values.iter().copied())?;
     writer.finish()?;
     Ok(bytes)

@@ -32,11 +32,7 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
 ///
 /// # Errors
 /// Returns the same errors as [`encode`].
-pub fn encode_annotated(
-    picture: &Image,
-    encoding: &Encoding,
-    annotations: &Annotations,
-) -> Result<Vec<u8>, PngError> {
+pub fn encode_annotated(picture: &Image, encoding: &Encoding, annotations: &Annotations) -> Result<Vec<u8>, PngError> {
     encode_samples(picture, encoding, &samples_annotated(picture, encoding, annotations)?)
 }
 
@@ -70,11 +66,7 @@ pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError
 ///
 /// # Errors
 /// Returns an error if the picture lacks one of [the layers that the encoding needs](Encoding::layers).
-pub fn samples_annotated(
-    picture: &Image,
-    encoding: &Encoding,
-    annotations: &Annotations,
-) -> Result<Vec<u8>, PngError> {
+pub fn samples_annotated(picture: &Image, encoding: &Encoding, annotations: &Annotations) -> Result<Vec<u8>, PngError> {
     let mut samples = samples(picture, encoding)?;
     let size = [picture.width(), picture.height()];
     let channels = kind(encoding).0.samples();

@@ -12,8 +12,7 @@ fn read(text: &str) -> Dataset {
 }
 
 /// Two water molecules with hydrogens that are close to each other.
-const WATER: &str =
-    "6\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\nH 1.7 0 0\nO 2.6 0 0\nH 2.6 0.96 0\n";
+const WATER: &str = "6\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\nH 1.7 0 0\nO 2.6 0 0\nH 2.6 0.96 0\n";
 
 fn bonds() -> Additions {
     Additions { bonds: Some(Bonds::default()), ..Additions::default() }
@@ -134,8 +133,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
         assert!(ends >= 2, "{fractions:?}");
         if ends == 2 {
             let axis = fractions.iter().position(|f| !is_end(f)).unwrap();
-            let [one, other] =
-                [(axis + 1) % 3, (axis + 2) % 3].map(|i| usize::from(fractions[i] > 0.5));
+            let [one, other] = [(axis + 1) % 3, (axis + 2) % 3].map(|i| usize::from(fractions[i] > 0.5));
             on_edge[4 * axis + 2 * one + other] += 1;
         }
     }
@@ -152,8 +150,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
 
 #[test]
 fn what_is_missing_is_an_error() {
-    let error =
-        |loaded: Dataset, additions: &Additions| made(loaded, additions).unwrap_err().to_string();
+    let error = |loaded: Dataset, additions: &Additions| made(loaded, additions).unwrap_err().to_string();
     let edges = |width: Option<f64>| Additions {
         cell: Some(width.map_or_else(CellEdges::default, CellEdges::of_width)),
         ..Additions::default()
@@ -170,8 +167,7 @@ fn what_is_missing_is_an_error() {
     let crowd = (0..20).map(|i| format!("C {} 0 0\n", 0.01 * f64::from(i))).collect::<String>();
     let crowd = read(&format!("40\n\n{crowd}{crowd}"));
     assert!(error(crowd, &bonds()).contains("choose a smaller factor or length"));
-    let thin =
-        Additions { bonds: Some(Bonds::new(BondLength::Below(1e5))), ..Additions::default() };
+    let thin = Additions { bonds: Some(Bonds::new(BondLength::Below(1e5))), ..Additions::default() };
     let far = Dataset::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1e-3], [9e4, 0.0, 0.0, 1e-3]]));
     assert!(error(far, &thin).contains("choose larger radii"));
 }

@@ -6,8 +6,8 @@ use pinhole::image::encoding::Bits;
 use pinhole::{Encoding, Film, Image, SphereArray, ToneCurve, View};
 use pinhole_data::load::{Column, ColumnValues, Labels};
 use pinhole_figure::annotate::{
-    Anchor, Annotation, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend,
-    LegendPlan, Panel, Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
+    Anchor, Annotation, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend, LegendPlan, Panel,
+    Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
 };
 use pinhole_figure::color_by::{ColorBy, ColorKey};
 use pinhole_figure::scene_file::SceneFile;
@@ -69,10 +69,8 @@ fn exposure_and_tone_leave_annotations_alone() {
 #[test]
 fn text_is_black_on_light_and_white_on_dark() {
     for (level, ink) in [(1.0, 0), (0.5, 0), (0.0, 255), (0.03, 255)] {
-        let annotations = Annotations::default().with(Annotation::Label(Label {
-            text: "MMMM".to_owned(),
-            position: Position::TOP_LEFT,
-        }));
+        let annotations = Annotations::default()
+            .with(Annotation::Label(Label { text: "MMMM".to_owned(), position: Position::TOP_LEFT }));
         let image = flat([800, 900], level);
         let file = png_file::encode_annotated(&image, &Encoding::default(), &annotations).unwrap();
         let drawn = read_png(&file).1;
@@ -85,13 +83,11 @@ fn text_is_black_on_light_and_white_on_dark() {
 #[test]
 fn a_panel_lies_where_the_picture_is_mixed() {
     let size = [300_u32, 200_u32];
-    let stripes: Vec<u8> = (0..size[0] * size[1])
-        .flat_map(|pixel| [if pixel % 20 < 10 { 0 } else { 255 }; 3])
-        .collect();
+    let stripes: Vec<u8> =
+        (0..size[0] * size[1]).flat_map(|pixel| [if pixel % 20 < 10 { 0 } else { 255 }; 3]).collect();
     let label = Label { text: "text".to_owned(), position: Position::TOP_LEFT };
     let drawn = |panel, mut samples: Vec<u8>| {
-        let annotations =
-            Annotations { panel, ..Annotations::default() }.with(Annotation::Label(label.clone()));
+        let annotations = Annotations { panel, ..Annotations::default() }.with(Annotation::Label(label.clone()));
         annotations.draw(&mut Canvas::new(size, 3, Bits::Eight, &mut samples).unwrap());
         samples
     };
@@ -123,9 +119,7 @@ fn annotations_fit_pictures_of_any_size() {
                     legend.title = title;
                     let mut samples = vec![255; (4 * size[0] * size[1]) as usize];
                     let mut canvas = Canvas::new(size, 4, Bits::Eight, &mut samples).unwrap();
-                    Annotations::default()
-                        .with(Annotation::Legend(legend.clone()))
-                        .draw(&mut canvas);
+                    Annotations::default().with(Annotation::Legend(legend.clone())).draw(&mut canvas);
                 }
             }
         }
@@ -142,9 +136,8 @@ fn what_shares_a_corner_is_stacked() {
         let is_dark = |row: &[u8]| row.iter().any(|sample| *sample < 128);
         samples.chunks_exact(3 * size[0] as usize).map(is_dark).collect::<Vec<bool>>()
     };
-    let label = |text: &str, anchor| {
-        Annotation::Label(Label { text: text.to_owned(), position: Position::Anchor(anchor) })
-    };
+    let label =
+        |text: &str, anchor| Annotation::Label(Label { text: text.to_owned(), position: Position::Anchor(anchor) });
     for anchor in [Anchor::TopRight, Anchor::Left, Anchor::Bottom] {
         let one = rows(&Annotations::default().with(label("H", anchor)));
         let two = Annotations::default().with(label("H", anchor)).with(label("H", anchor));
@@ -277,8 +270,7 @@ fn scene_files_have_keys_for_all_of_it() {
     assert_eq!(plan.scale_bar.as_ref().unwrap().length, Some(20.0));
     assert_eq!(plan.labels[0].position, Position::At([0.5, 0.25]));
     assert_eq!(plan.labels[1].position, Position::TOP_LEFT);
-    let look =
-        (plan.text.scale, plan.text.color.map(pinhole::LinearRgb::to_srgb8), plan.text.panel);
+    let look = (plan.text.scale, plan.text.color.map(pinhole::LinearRgb::to_srgb8), plan.text.panel);
     assert_eq!(look, (Some(2.0), Some([255; 3]), Some(Panel::Never)));
     assert_eq!(file.encoding.dots_per_inch(), Some(300.0));
 }

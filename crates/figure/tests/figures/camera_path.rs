@@ -1,8 +1,7 @@
 //! Camera paths: the points that they pass through, the keys that they refuse, and their form in scene files.
 
 use pinhole::camera::{
-    CameraKey, CameraMotion, CameraPath, CameraPathError, KeyPlace, PathClock, PlaceOnPath,
-    Viewpoint,
+    CameraKey, CameraMotion, CameraPath, CameraPathError, KeyPlace, PathClock, PlaceOnPath, Viewpoint,
 };
 use pinhole::glam::DVec3;
 use pinhole_figure::scene_file::{SceneFile, parse_camera_path};
@@ -66,11 +65,8 @@ fn a_motion_passes_through_its_keys_and_stands_still_outside() {
 #[test]
 fn up_is_perpendicular_to_the_view_and_of_unit_length() {
     // From the front over the top to the side.
-    let keys = [
-        at(0.0, [0.0, 0.0, 9.0], [0.0; 3]),
-        at(1.0, [0.0, 9.0, 0.0], [0.0; 3]),
-        at(2.0, [9.0, 1.0, 0.0], [0.0; 3]),
-    ];
+    let keys =
+        [at(0.0, [0.0, 0.0, 9.0], [0.0; 3]), at(1.0, [0.0, 9.0, 0.0], [0.0; 3]), at(2.0, [9.0, 1.0, 0.0], [0.0; 3])];
     let motion = motion(&keys);
     let mut before = DVec3::Y;
     for step in 0..=200 {
@@ -102,9 +98,7 @@ fn views_turn_as_often_as_they_say() {
     let keys = vec![view(0.0, "0,30", 0.0), view(8.0, "0,30", 720.0)];
     let motion = CameraPath::new(keys, PathClock::Frames, false).unwrap().motion(up).unwrap();
     for step in 0..=8 {
-        let PlaceOnPath::View { direction, up } = motion.at(f64::from(step)).place else {
-            panic!()
-        };
+        let PlaceOnPath::View { direction, up } = motion.at(f64::from(step)).place else { panic!() };
         let expected = Viewpoint::Angles { azimuth: 90.0 * f64::from(step), elevation: 30.0 };
         let [expected, _] = expected.axes(DVec3::Z, 0.0);
         assert_near(direction, expected);
@@ -119,10 +113,7 @@ fn views_are_those_of_viewpoints() {
         for text in ["x", "-x", "y", "-y", "z", "-z", "iso", "30,20", "10,-90"] {
             let keys = vec![view(0.0, text, 25.0), view(1.0, "0,0", 0.0)];
             let path = CameraPath::new(keys, PathClock::Frames, true).unwrap();
-            let PlaceOnPath::View { direction, up: found } = path.motion(up).unwrap().at(0.0).place
-            else {
-                panic!()
-            };
+            let PlaceOnPath::View { direction, up: found } = path.motion(up).unwrap().at(0.0).place else { panic!() };
             let [expected, upward] = text.parse::<Viewpoint>().unwrap().axes(up, 25.0);
             assert_near(direction, expected);
             let upward = (upward - upward.dot(direction) * direction).normalize_or_zero();
@@ -141,17 +132,9 @@ fn what_is_no_path_is_refused() {
     };
     refused(&[], None, "needs at least two keys, but there is none");
     refused(&[a], None, "needs at least two keys, but there is only one");
-    refused(
-        &[a, CameraKey { time: 0.0, ..b }],
-        Some(1),
-        "key 1 is at 0.0, which is not later than",
-    );
+    refused(&[a, CameraKey { time: 0.0, ..b }], Some(1), "key 1 is at 0.0, which is not later than");
     let inside = at(1.0, [3.0; 3], [3.0; 3]);
-    refused(
-        &[a, inside],
-        Some(1),
-        "the eye and the look-at point are both at [3.0, 3.0, 3.0]; move one of them",
-    );
+    refused(&[a, inside], Some(1), "the eye and the look-at point are both at [3.0, 3.0, 3.0]; move one of them");
     refused(&[a, view(1.0, "x", 0.0)], Some(1), "some keys have an eye and others a view");
     for key in [
         CameraKey { time: f64::NAN, ..b },

@@ -74,10 +74,7 @@ fn frames_together_give_a_category_one_color() {
     let found = by.apply(&spheres(1), &[labels("t", &["d"])]).unwrap();
     assert_eq!(category_names(&found.key), [("a", 0), ("b", 0), ("c", 0)]);
     assert_eq!(found.color(0).unwrap().to_srgb8(), MISSING);
-    assert_eq!(
-        found.notes,
-        ["1 sphere has a value of `t` that is not among the categories and the color #808080"]
-    );
+    assert_eq!(found.notes, ["1 sphere has a value of `t` that is not among the categories and the color #808080"]);
 }
 
 #[test]
@@ -85,9 +82,7 @@ fn frames_together_have_one_range_if_any_is_on_a_scale() {
     let frames: [&[f64]; 3] = [&[0.0, 7.0], &[0.5, 3.0], &[2.0, f64::NAN]];
     let mut by = ColorBy::column("t");
     let mut joined = JoinedKeys::default();
-    let key = |by: &ColorBy, values: &[f64]| {
-        by.apply(&spheres(values.len()), &[numbers("t", values)]).unwrap().key
-    };
+    let key = |by: &ColorBy, values: &[f64]| by.apply(&spheres(values.len()), &[numbers("t", values)]).unwrap().key;
     assert!(matches!(key(&by, frames[0]).kind, KeyKind::Categories(_)));
     frames.iter().for_each(|values| joined.add(&key(&by, values)));
     assert_eq!(joined.missing(), Some(MISSING));
@@ -118,10 +113,7 @@ fn numbers_have_the_color_of_their_place_in_the_range() {
     let by = ColorBy { limits: "0,1".parse().unwrap(), ..gray("t") };
     let (found, notes) = levels(&by, &[-5.0, 0.2, 9.0]);
     assert_eq!(found, [0, 51, 255]);
-    assert_eq!(
-        notes,
-        ["`t` of 2 spheres lies outside the range 0 to 1 and has the color of its end"]
-    );
+    assert_eq!(notes, ["`t` of 2 spheres lies outside the range 0 to 1 and has the color of its end"]);
 }
 
 #[test]
@@ -153,8 +145,7 @@ fn what_is_missing_is_gray_and_counted() {
 #[test]
 fn spheres_that_are_left_out_do_not_count() {
     let mut loaded = Dataset::new(spheres(4));
-    loaded.columns =
-        vec![numbers("t", &[0.0, 1.0, 1000.0, f64::NAN]), labels("chain", &["A", "B", "C", ""])];
+    loaded.columns = vec![numbers("t", &[0.0, 1.0, 1000.0, f64::NAN]), labels("chain", &["A", "B", "C", ""])];
     let color = |by: ColorBy| {
         let mapping = Mapping { color: Some(by), ..Mapping::default() };
         let leave_out = vec![("chain".to_owned(), vec!["C".to_owned(), String::new()])];
@@ -218,8 +209,7 @@ fn a_palette_repeats_with_a_note_and_a_map_does_not() {
     let coloring = ColorBy::column("r").apply(&spheres(20), &columns).unwrap();
     assert_eq!(coloring.color(0), coloring.color(8));
     assert!(
-        coloring.notes[0]
-            .starts_with("`r` has 20 different values and the palette okabe-ito only 8 colors"),
+        coloring.notes[0].starts_with("`r` has 20 different values and the palette okabe-ito only 8 colors"),
         "{:?}",
         coloring.notes
     );
@@ -327,10 +317,7 @@ fn radii_must_be_positive() {
     let radius = RadiusBy { column: "r".to_owned(), factor: 1.0 };
     let mapping = Mapping { radius: Some(radius), ..Mapping::default() };
     let error = mapped(vec![numbers("r", &[1.0, f64::NAN])], 2, mapping).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "sphere 1 would have the radius NaN; a radius from `r` must be finite and greater than 0"
-    );
+    assert_eq!(error, "sphere 1 would have the radius NaN; a radius from `r` must be finite and greater than 0");
 }
 
 /// Six spheres at x = 0 to 5, with texts and numbers.
@@ -342,10 +329,8 @@ fn loaded() -> Dataset {
         let values = ColumnValues::Labels(Labels { names, indices: indices.to_vec() });
         Column { name: name.to_owned(), values }
     };
-    let numbers = |name: &str, values: [f64; 6]| Column {
-        name: name.to_owned(),
-        values: ColumnValues::Numbers(values.to_vec()),
-    };
+    let numbers =
+        |name: &str, values: [f64; 6]| Column { name: name.to_owned(), values: ColumnValues::Numbers(values.to_vec()) };
     let nan = f64::NAN;
     loaded.columns = vec![
         texts("species", &["H", "O", "Fe"], [0, 1, 1, 2, 0, 1]),
@@ -406,10 +391,7 @@ fn what_is_kept_stays_together() {
     assert_eq!(loaded.opacities, Some(vec![0.2, 0.3, 0.4]));
     // Unused texts are gone, and the rest is numbered again.
     let species = loaded.labels("species").unwrap();
-    assert_eq!(
-        (&species.names[..], &species.indices[..]),
-        (&["O", "Fe", "H"].map(String::from)[..], &[0, 1, 2][..])
-    );
+    assert_eq!((&species.names[..], &species.indices[..]), (&["O", "Fe", "H"].map(String::from)[..], &[0, 1, 2][..]));
     // The index is the one in the file.
     assert_eq!(loaded.column("index"), Some(&ColumnValues::Numbers(vec![2.0, 3.0, 4.0])));
     for column in &loaded.columns {

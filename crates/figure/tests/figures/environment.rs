@@ -6,8 +6,8 @@ use std::io::Cursor;
 use exr::image::write::layers::WritableLayers;
 use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    SpecificChannels, WritableImage, f16,
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, SpecificChannels,
+    WritableImage, f16,
 };
 use pinhole::Environment;
 use pinhole::glam::DVec3;
@@ -55,10 +55,7 @@ fn solid_angle(map: &Environment, row: u32) -> f64 {
 
 /// A direction within a texel, at fractions of its sides.
 fn within(map: &Environment, [column, row]: [u32; 2], [along, down]: [f64; 2]) -> DVec3 {
-    direction(
-        (f64::from(column) + along) / f64::from(map.width()),
-        (f64::from(row) + down) / f64::from(map.height()),
-    )
+    direction((f64::from(column) + along) / f64::from(map.width()), (f64::from(row) + down) / f64::from(map.height()))
 }
 
 fn places(map: &Environment) -> impl Iterator<Item = [u32; 2]> {
@@ -68,8 +65,7 @@ fn places(map: &Environment) -> impl Iterator<Item = [u32; 2]> {
 
 #[test]
 fn densities_add_up_to_one_and_follow_the_light() {
-    for (seed, size) in [[1, 1], [16, 8], [7, 13], [1, 64], [200, 1], [512, 256]].iter().enumerate()
-    {
+    for (seed, size) in [[1, 1], [16, 8], [7, 13], [1, 64], [200, 1], [512, 256]].iter().enumerate() {
         let map = random_map(seed as u64, *size);
         let luminance = |texel: [u32; 2]| {
             let [red, green, blue] = map.radiance(within(&map, texel, [0.5; 2]), AS_IT_IS);
@@ -99,9 +95,7 @@ fn densities_add_up_to_one_and_follow_the_light() {
 #[test]
 fn sampled_directions_have_the_density_that_comes_with_them() {
     let mut random = fastrand::Rng::with_seed(3);
-    for (seed, size) in
-        [[1, 1], [16, 8], [7, 13], [1, 64], [200, 1], [4096, 16], [16, 2048]].iter().enumerate()
-    {
+    for (seed, size) in [[1, 1], [16, 8], [7, 13], [1, 64], [200, 1], [4096, 16], [16, 2048]].iter().enumerate() {
         let map = random_map(seed as u64, *size);
         for rotation in [AS_IT_IS, Environment::rotation(1.0), Environment::rotation(-2.5)] {
             let extremes = [0, 1, u32::MAX - 1, u32::MAX, 1 << 31, 0xffff_ff00, 255];
@@ -113,10 +107,7 @@ fn sampled_directions_have_the_density_that_comes_with_them() {
                 assert!((direction.length() - 1.0).abs() < 2e-7, "{u:?}");
                 assert!(density > 0.0);
                 let found = map.density(direction, rotation);
-                assert!(
-                    (found / density - 1.0).abs() < 1e-12,
-                    "{size:?}, {u:?}: {found}, {density}"
-                );
+                assert!((found / density - 1.0).abs() < 1e-12, "{size:?}, {u:?}: {found}, {density}");
             }
         }
     }
@@ -136,8 +127,7 @@ fn samples_follow_the_density() {
             let (d, _) = map.sample([random.u32(..), random.u32(..)], AS_IT_IS);
             let along = (d.x.atan2(-d.z) / TAU + 0.5) * width;
             let down = d.y.clamp(-1.0, 1.0).acos() / PI * height;
-            let [column, row] =
-                [(along, width), (down, height)].map(|(x, n)| x.min(n - 0.5) as u32);
+            let [column, row] = [(along, width), (down, height)].map(|(x, n)| x.min(n - 0.5) as u32);
             let edge = |row: u32| (PI * f64::from(row) / height).cos();
             let is_lower = d.y < 0.5 * (edge(row) + edge(row + 1));
             let quarter = 2 * usize::from(is_lower) + usize::from(along.fract() > 0.5);
@@ -213,9 +203,8 @@ fn samples_integrate_the_light_without_variance() {
         let [red, green, blue] = map.radiance(d, AS_IT_IS);
         0.2126 * red + 0.7152 * green + 0.0722 * blue
     };
-    let expected: f64 = places(&map)
-        .map(|texel| luminance(within(&map, texel, [0.5; 2])) * solid_angle(&map, texel[1]))
-        .sum();
+    let expected: f64 =
+        places(&map).map(|texel| luminance(within(&map, texel, [0.5; 2])) * solid_angle(&map, texel[1])).sum();
     let mut random = fastrand::Rng::with_seed(1);
     let mut mean = 0.0;
     for _ in 0..4096 {
@@ -248,9 +237,8 @@ fn large_maps_keep_their_light() {
         ([3, MAX_SIZE[1]], [3, MAX_SIZE[1]]),
     ] {
         let row_by_row = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
-        let values: Vec<_> = row_by_row
-            .map(|[x, y]| [1.0 + (x % 7) as f32, (y % 5) as f32, if x == 2 { 1.0 } else { 0.0 }])
-            .collect();
+        let values: Vec<_> =
+            row_by_row.map(|[x, y]| [1.0 + (x % 7) as f32, (y % 5) as f32, if x == 2 { 1.0 } else { 0.0 }]).collect();
         let mut before = [0.0; 3];
         for (value, index) in values.iter().zip(0..) {
             let row = f64::from(index / size[0]);
@@ -313,9 +301,7 @@ const HEADER: &str = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2.0\n\n-Y 1 +
 /// Each component is its byte divided by 256, times 2 to the power of the last byte less 128.
 #[test]
 fn radiance_of_known_bytes() {
-    for header in
-        [HEADER, &HEADER.replace("RADIANCE", "RGBE"), &HEADER.replace("EXPOSURE", "# EXP")]
-    {
+    for header in [HEADER, &HEADER.replace("RADIANCE", "RGBE"), &HEADER.replace("EXPOSURE", "# EXP")] {
         let map = read(&flat_hdr(header, &[[128, 64, 32, 129], [255, 0, 1, 138]])).unwrap();
         assert_eq!([map.width(), map.height()], [2, 1]);
         assert_eq!(map.texels(), [[1.0, 0.5, 0.25], [1020.0, 0.0, 4.0]]);
@@ -325,9 +311,7 @@ fn radiance_of_known_bytes() {
 fn texels(width: usize, height: usize) -> Vec<[f32; 3]> {
     let mut random = fastrand::Rng::with_seed(4);
     // These numbers fit exactly into f16, and nearly into RGBE.
-    (0..width * height)
-        .map(|_| [0; 3].map(|_: i32| f32::from(random.u8(..)) / 16.0 + 0.25))
-        .collect()
+    (0..width * height).map(|_| [0; 3].map(|_: i32| f32::from(random.u8(..)) / 16.0 + 0.25)).collect()
 }
 
 fn hdr(width: usize, height: usize) -> Vec<u8> {
@@ -400,16 +384,9 @@ fn exr_of_every_compression() {
 
 #[test]
 fn exr_of_halves_and_other_channels() {
-    let channel = |name: &str, value: f32| {
-        AnyChannel::new(name, FlatSamples::F16(vec![f16::from_f32(value); 6]))
-    };
-    let channels = vec![
-        channel("A", 0.5),
-        channel("B", 3.0),
-        channel("G", 2.0),
-        channel("R", 1.0),
-        channel("Z", f32::INFINITY),
-    ];
+    let channel = |name: &str, value: f32| AnyChannel::new(name, FlatSamples::F16(vec![f16::from_f32(value); 6]));
+    let channels =
+        vec![channel("A", 0.5), channel("B", 3.0), channel("G", 2.0), channel("R", 1.0), channel("Z", f32::INFINITY)];
     let channels = AnyChannels::sort(channels.into_iter().collect());
     let map = read(&written(&Image::from_channels((3, 2), channels))).unwrap();
     assert_eq!(map.texels(), [[1.0, 2.0, 3.0]; 6]);
@@ -430,15 +407,11 @@ fn exr_without_colour_lists_its_channels() {
 
 #[test]
 fn a_cube_map_is_refused() {
-    let attributes =
-        LayerAttributes { environment_map: Some(EnvironmentMap::Cube), ..Default::default() };
+    let attributes = LayerAttributes { environment_map: Some(EnvironmentMap::Cube), ..Default::default() };
     let bytes = exr_of([1, 6], &texels(1, 6), Compression::RLE, attributes);
     let error = read(&bytes).unwrap_err();
     assert!(error.to_string().contains("cube"), "{error}");
-    let attributes = LayerAttributes {
-        environment_map: Some(EnvironmentMap::LatitudeLongitude),
-        ..Default::default()
-    };
+    let attributes = LayerAttributes { environment_map: Some(EnvironmentMap::LatitudeLongitude), ..Default::default() };
     assert!(read(&exr_of([1, 6], &texels(1, 6), Compression::RLE, attributes)).is_ok());
 }
 
@@ -491,9 +464,7 @@ fn large_maps_are_refused_before_they_are_read() {
     let bytes = flat_hdr(&HEADER.replace("+X 2", &format!("+X {width}")), &[[0; 4]; 2]);
     assert_eq!(
         message(&bytes),
-        format!(
-            "the image has 4294967295×1 texels, more than the limit of {MAX_TEXELS}; use a smaller image"
-        )
+        format!("the image has 4294967295×1 texels, more than the limit of {MAX_TEXELS}; use a smaller image")
     );
     // A size that is valid, but too large for this file.
     let bytes = flat_hdr(&HEADER.replace("+X 2", "+X 10000000"), &[[9; 4]; 2]);

@@ -130,12 +130,7 @@ struct Exr {
     adapter: Option<String>,
 }
 
-fn written(
-    image: &Image,
-    layers: LayerSet,
-    encoding: Encoding,
-    adapter: Option<&str>,
-) -> Result<Exr, ExrError> {
+fn written(image: &Image, layers: LayerSet, encoding: Encoding, adapter: Option<&str>) -> Result<Exr, ExrError> {
     let mut file = Vec::new();
     let remarks = exr_file::Remarks { adapter, ..exr_file::Remarks::default() };
     exr_file::write(image, layers, &encoding, remarks, Cursor::new(&mut file))?;
@@ -207,8 +202,8 @@ fn an_exr_holds_every_number_of_every_layer() {
     assert_eq!(
         exr.names(),
         [
-            "A", "B", "G", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "R", "Z", "albedo.B",
-            "albedo.G", "albedo.R", "coverage", "id", "samples", "variance"
+            "A", "B", "G", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "R", "Z", "albedo.B", "albedo.G", "albedo.R",
+            "coverage", "id", "samples", "variance"
         ]
     );
     for (place, axis) in ["X", "Y", "Z"].iter().enumerate() {
@@ -300,8 +295,7 @@ fn a_sink_that_fails_is_an_error() {
     let image = picture();
     let encoding = Encoding::default();
     let mut whole = Cursor::new(Vec::new());
-    exr_file::write(&image, LayerSet::ALL, &encoding, exr_file::Remarks::default(), &mut whole)
-        .unwrap();
+    exr_file::write(&image, LayerSet::ALL, &encoding, exr_file::Remarks::default(), &mut whole).unwrap();
     let size = whole.into_inner().len();
     for room in [0, 3, 100, size / 2, size - 1] {
         let (layers, remarks) = (LayerSet::ALL, exr_file::Remarks::default());
@@ -424,8 +418,7 @@ fn shares(image: &Image, outline: &Outline) -> Vec<f32> {
         let is_inside = |[x, y]: &[usize; 2]| *x < 2 * width - 2 && *y < 2 * height - 2;
         let meeting = |[i, j]: [usize; 2]| {
             let around = [[i, j - 1], [i, j + 1], [i - 1, j], [i + 1, j]];
-            let is_there =
-                |place: &[usize; 2]| *place != [x, y] && places.binary_search(place).is_ok();
+            let is_there = |place: &[usize; 2]| *place != [x, y] && places.binary_search(place).is_ok();
             let corner = 0.5 * Vec2::new(i as f32, j as f32);
             (corner, around.into_iter().filter(is_there).collect())
         };
@@ -498,15 +491,13 @@ fn lines_are_those_of_a_second_drawing() {
         outline.depth = [0.0, 0.001, 0.01, 0.1][rng.usize(0..4)];
         outline.angle = [0.0, 0.3, 0.6, 1.2, std::f32::consts::PI][rng.usize(0..5)];
         let studio = Studio { outline: Some(outline), ..Studio::default() };
-        let settings =
-            RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
+        let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
         let drawn = cpu::finish(image.clone(), &settings, LAYERS);
         let shares = shares(&image, &outline);
         let mixed = |from: f32, to: f32, share: f32| from + share * (to - from);
         let line = outline.color.to_array();
         for (index, share) in shares.iter().enumerate() {
-            let color: [f32; 3] =
-                std::array::from_fn(|k| mixed(image.color()[index][k], line[k], *share));
+            let color: [f32; 3] = std::array::from_fn(|k| mixed(image.color()[index][k], line[k], *share));
             let alpha = mixed(image.alpha().unwrap()[index], 1.0, *share);
             let found = (drawn.color()[index], drawn.alpha().unwrap()[index]);
             assert_eq!(found, (color, alpha), "{seed}: pixel {index}, {outline:?}");

@@ -9,13 +9,11 @@ use pinhole::image::encoding::Bits;
 use pinhole::light::{LightKind, SkyLight};
 use pinhole::render::{DepthCue, Occlusion, Outline, Studio};
 use pinhole::{
-    Encoding, Film, Integrator, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere,
-    SphereArray, SurfaceProperties, ToneCurve,
+    Encoding, Film, Integrator, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, SphereArray,
+    SurfaceProperties, ToneCurve,
 };
 use pinhole_data::load::Dataset;
-use pinhole_figure::scene_file::{
-    Data, DataError, IntegratorKind, SceneFile, SceneFileError, Settled,
-};
+use pinhole_figure::scene_file::{Data, DataError, IntegratorKind, SceneFile, SceneFileError, Settled};
 use pinhole_figure::settings::Sources;
 use pinhole_figure::style::Style;
 
@@ -50,10 +48,7 @@ fn the_example_has_the_expected_contents() {
     assert_eq!(primary.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
     assert_eq!(file.film.y_axis(), YAxis::Down);
     let scene = file.scene().unwrap();
-    assert_eq!(
-        scene.spheres(),
-        [[-4.0, 0.0, 0.0, 2.0], [4.0, 0.0, 0.0, 2.0], [0.0, 0.0, 3.0, 2.0]]
-    );
+    assert_eq!(scene.spheres(), [[-4.0, 0.0, 0.0, 2.0], [4.0, 0.0, 0.0, 2.0], [0.0, 0.0, 3.0, 2.0]]);
     let vectors = file.camera(&file.film, &scene).unwrap().vectors();
     assert_eq!(vectors.origin, DVec3::new(0.0, 1.0, -8.0));
     assert_eq!(vectors.right, DVec3::X);
@@ -90,9 +85,7 @@ fn colors_in_three_ways() {
 
 #[test]
 fn data_comes_behind_the_files_own_spheres() {
-    let file = parse(
-        "data = 'a.xyz'\nframe = 3\nradius_scale = 0.5\n[[spheres]]\ncenter=[0,0,0]\nradius=1\n",
-    );
+    let file = parse("data = 'a.xyz'\nframe = 3\nradius_scale = 0.5\n[[spheres]]\ncenter=[0,0,0]\nradius=1\n");
     let data = file.data().unwrap();
     assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", Some(3), 0.5));
     let own: Vec<_> = file.spheres().collect();
@@ -249,8 +242,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
         max_surfaces: 3,
         shadows: false,
     };
-    let settings =
-        RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };
+    let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };
     let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();
     assert_eq!(round_trip(&settings, &scene).0, settings);
     let dark = RenderSettings { lights: Vec::new(), ..settings };
@@ -287,8 +279,7 @@ fn everything_else_is_read_as_it_was_written() {
                 [[labels]]\ntext = '''a\nb'''\nposition = 'top'\n[[labels]]\ntext = ''\n\
                 [text]\nscale = 1.7\ncolor = '#fedcba'\npanel = 'never'\n";
     round_trip_file(&format!("data = 'a.dcd'\n{text}"));
-    let annotations =
-        round_trip_file("[legend]\n[scale_bar]\n[text]\npanel = 'auto'\n").annotations;
+    let annotations = round_trip_file("[legend]\n[scale_bar]\n[text]\npanel = 'auto'\n").annotations;
     assert!(annotations.legend.is_some() && annotations.scale_bar.is_some());
     for range in ["['', '98%']", "[-1, '']", "['', '']", "[0, 1]"] {
         round_trip_file(&format!("data = 'a'\ncolor_by = {{ column = 'x', range = {range} }}\n"));
@@ -348,10 +339,7 @@ fn every_camera_has_an_example() {
     for (text, kind) in [
         (include_str!("../../../../examples/three-spheres.toml"), CameraKind::Pinhole),
         (include_str!("../../../../examples/stereo.toml"), CameraKind::Pinhole),
-        (
-            include_str!("../../../../examples/three-spheres-orthographic.toml"),
-            CameraKind::Orthographic,
-        ),
+        (include_str!("../../../../examples/three-spheres-orthographic.toml"), CameraKind::Orthographic),
         (include_str!("../../../../examples/thin-lens.toml"), CameraKind::ThinLens),
         (include_str!("../../../../examples/panorama.toml"), CameraKind::Panorama),
         (include_str!("../../../../examples/fisheye.toml"), CameraKind::Fisheye),
@@ -372,16 +360,14 @@ fn a_lens_is_focused_where_the_table_says() {
         ("focus_on = [5, 1, -4]", 4.0),
         ("aperture_radius = 0.1\nfocus_distance = 7", 7.0),
     ] {
-        let radius =
-            if keys.contains("aperture") { "" } else { "f_stop = 2\nfocal_length = 0.4\n" };
+        let radius = if keys.contains("aperture") { "" } else { "f_stop = 2\nfocal_length = 0.4\n" };
         let camera = camera(&format!("[camera.thin-lens]\n{EYE}{radius}{keys}")).unwrap();
         let vectors = camera.vectors();
         assert!((vectors.forward - DVec3::new(0.0, 0.0, -distance)).length() < 1e-12, "{keys}");
         let edge = camera.ray_through_lens(DVec2::ZERO, DVec2::new(0.0, 0.5));
         assert!((edge.origin - DVec3::new(-0.1, 0.0, 0.0)).length() < 1e-12, "{keys}");
     }
-    let looking_at =
-        "[camera.thin-lens]\neye = [0, 0, 0]\nlook_at = [3, 0, -4]\naperture_radius = 1";
+    let looking_at = "[camera.thin-lens]\neye = [0, 0, 0]\nlook_at = [3, 0, -4]\naperture_radius = 1";
     assert!((camera(looking_at).unwrap().vectors().forward.length() - 5.0).abs() < 1e-12);
     let framed = camera("[camera.thin-lens]\naperture_radius = 0.1").unwrap().vectors();
     assert!((framed.origin + framed.forward - DVec3::new(0.0, 0.0, -2.0)).length() < 1e-12);
@@ -399,9 +385,9 @@ fn two_eyes_are_a_table_within() {
     let eyes = |table: &str| {
         let file = SceneFile::parse(&format!("{table}\n")).unwrap();
         let scene = file.scene().unwrap();
-        file.stereo_pair(&file.film, &scene).unwrap().map(|pair| {
-            pair.map(|eye| (eye.ray_in_world(DVec2::ZERO).origin.x, eye.vectors().numbers[0]))
-        })
+        file.stereo_pair(&file.film, &scene)
+            .unwrap()
+            .map(|pair| pair.map(|eye| (eye.ray_in_world(DVec2::ZERO).origin.x, eye.vectors().numbers[0])))
     };
     let stereo = "stereo = { separation = 0.5, convergence = 2 }";
     let apart = eyes(&format!("[camera.pinhole]\n{EYE}{stereo}")).unwrap();

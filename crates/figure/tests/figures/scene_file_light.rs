@@ -55,7 +55,8 @@ fn primary_rays_use_only_their_own_settings() {
     let expected = RenderSettings { background, ..RenderSettings::default() };
     let integrator = Integrator::Primary(pinhole::Shading::Flat);
     assert_eq!(lighting(text), RenderSettings { integrator, ..expected.clone() });
-    let lit = "background = 'red'\n[studio]\n[sampling]\nsamples = 9\ndenoise = true\n[ground]\n[sun]\ntoward = [0, 1, 0]\n";
+    let lit =
+        "background = 'red'\n[studio]\n[sampling]\nsamples = 9\ndenoise = true\n[ground]\n[sun]\ntoward = [0, 1, 0]\n";
     assert_eq!(lighting_by(lit, kind), expected);
     // Materials and opacity belong to the scene, not to the settings.
     let clear = format!("integrator = 'primary'\n{SPHERE}opacity = 0.5\n");
@@ -104,9 +105,7 @@ fn missing_values_are_the_defaults() {
 #[test]
 fn materials_by_name_and_opacity_over_them() {
     let sphere = |material: &str, keys: &str| {
-        first_surface(&format!(
-            "[materials.'it is']\n{material}\n{SPHERE}material = 'it is'\n{keys}"
-        ))
+        first_surface(&format!("[materials.'it is']\n{material}\n{SPHERE}material = 'it is'\n{keys}"))
     };
     let of = |material| SurfaceProperties { material, opacity: 1.0 };
     assert_eq!(sphere("kind = 'lambert'", ""), SurfaceProperties::default());
@@ -160,10 +159,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     assert_eq!((found, notes), (vec![2.0, 1.0, 1.0, 5.0], Vec::new()));
     let (found, notes) = radii("leave_out = { residue = ['HOH', 'SOL'], chain = ['B'] }\n");
     assert_eq!(found, [1.0]);
-    assert_eq!(
-        notes,
-        ["`leave_out`: no atom of a.pdb has the residue SOL; check its spelling or remove it"]
-    );
+    assert_eq!(notes, ["`leave_out`: no atom of a.pdb has the residue SOL; check its spelling or remove it"]);
     let (found, notes) = radii("leave_out = { chain = ['A', 'B'] }\n");
     assert!(found.is_empty());
     assert_eq!(notes, ["`leave_out` removes all atoms of a.pdb; remove some of its values"]);
@@ -197,12 +193,8 @@ fn data_gets_common_properties_or_those_of_its_species() {
     );
     let data = file.data().unwrap();
     let DataScene { scene, notes, .. } = data.scene(molecule(), &[]).unwrap();
-    assert_eq!(
-        notes,
-        ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]
-    );
-    let metal =
-        SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
+    assert_eq!(notes, ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]);
+    let metal = SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
     let radii: Vec<f32> = scene.spheres().iter().map(|atom| atom[3]).collect();
     assert_eq!(radii, [3.0, 1.0, 1.0, 3.0]);
     assert_eq!(scene.color(0), LinearRgb::from_srgb8([255, 0, 0]));
@@ -271,10 +263,7 @@ fn paths_and_samples() {
     let Integrator::Path(path) = found.integrator else { panic!("{found:?}") };
     assert_eq!((path.max_depth, path.roulette_from), (20, 5));
     assert_eq!(path.light_sampling, LightSampling::Direct);
-    assert_eq!(
-        found.sampling,
-        Sampling { samples: 100, seed: 7, filter: PixelFilter::Gaussian, denoise: false }
-    );
+    assert_eq!(found.sampling, Sampling { samples: 100, seed: 7, filter: PixelFilter::Gaussian, denoise: false });
 }
 
 #[test]
@@ -366,10 +355,7 @@ fn what_emits_may_be_bright() {
     let lamp = "[materials.a]\nkind = 'emissive'\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\
                 color = [5, 5, 5]\nmaterial = 'a'\n";
     lighting(lamp);
-    assert_eq!(
-        parse("[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = [5, 5, 5]\n").integrator(),
-        None
-    );
+    assert_eq!(parse("[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = [5, 5, 5]\n").integrator(), None);
 }
 
 #[test]

@@ -54,10 +54,7 @@ fn a_flag_beats_a_file_and_a_file_beats_a_style() {
     assert_eq!(bare, Outline { width: 2.0, ..Outline::thin() }, "no layer below has an outline");
     let settings = settings(SCENE, &["samples=7"]).unwrap();
     assert_eq!((settings.sampling.samples, settings.sampling.seed), (7, 4));
-    assert_eq!(
-        studio(SCENE, &["outline=5", "set=studio.outline.width=6"]).outline.unwrap().width,
-        6.0
-    );
+    assert_eq!(studio(SCENE, &["outline=5", "set=studio.outline.width=6"]).outline.unwrap().width, 6.0);
 }
 
 #[test]
@@ -73,10 +70,7 @@ fn a_style_that_a_flag_names_changes_a_scene_or_says_why_not() {
 
 #[test]
 fn any_key_can_be_set() {
-    let studio = studio(
-        "[studio]\nambient = \"red\"",
-        &["set=studio.ambient=blue", "set=studio.occlusion.radius=5"],
-    );
+    let studio = studio("[studio]\nambient = \"red\"", &["set=studio.ambient=blue", "set=studio.occlusion.radius=5"]);
     assert_eq!(studio.ambient, LinearRgb::from_srgb8([0, 0, 255]));
     assert_eq!(studio.occlusion.unwrap().radius, Some(5.0));
     let lens = "[camera.pinhole]\neye = [0, 0, 9]\nlook_at = [0, 0, 0]\nzoom = 2";
@@ -89,26 +83,10 @@ fn any_key_can_be_set() {
 fn errors_name_the_layer() {
     for (file, words, error) in [
         (SCENE, &["outline=100"][..], "--outline 100: it must be from 0.5 to 64 pixels"),
-        (
-            "[studio.outline]\n\nwidth = 100",
-            &[],
-            "line 3, column 9: `width` is 100; it must be from 0.5 to 64 pixels",
-        ),
-        (
-            "[sampling]\ndenoize = true",
-            &[],
-            "line 2, column 1: unknown key `denoize`; did you mean `denoise`?",
-        ),
-        (
-            SCENE,
-            &["set=studio.outline.width=100"],
-            "--set: `width` is 100; it must be from 0.5 to 64 pixels",
-        ),
-        (
-            SCENE,
-            &["set=studio.outline.widht=1"],
-            "--set: unknown key `widht`; did you mean `width`?",
-        ),
+        ("[studio.outline]\n\nwidth = 100", &[], "line 3, column 9: `width` is 100; it must be from 0.5 to 64 pixels"),
+        ("[sampling]\ndenoize = true", &[], "line 2, column 1: unknown key `denoize`; did you mean `denoise`?"),
+        (SCENE, &["set=studio.outline.width=100"], "--set: `width` is 100; it must be from 0.5 to 64 pixels"),
+        (SCENE, &["set=studio.outline.widht=1"], "--set: unknown key `widht`; did you mean `width`?"),
         (
             SCENE,
             &["style=studio", "background=gren"],
@@ -125,11 +103,7 @@ fn errors_name_the_layer() {
             "--samples applies only to the integrators `studio` and `path`, but this picture is made by `primary`; remove --samples or choose another --integrator or --style",
         ),
         (SCENE, &["angle=90"], "--angle does not apply to the pinhole camera; remove it"),
-        (
-            "",
-            &["radius=2"],
-            "--radius applies to the `data` of a scene, but this scene has no `data`; remove --radius",
-        ),
+        ("", &["radius=2"], "--radius applies to the `data` of a scene, but this scene has no `data`; remove --radius"),
     ] {
         assert_eq!(settings(file, words).unwrap_err().to_string(), error);
     }
@@ -146,10 +120,7 @@ fn a_view_is_a_key_as_it_is_a_flag() {
     assert_eq!(by_key, camera("", &["view=iso", "turn=20"]));
     let file = read("[camera.pinhole]\nview = \"iso\"\neye = [1, 2, 3]", &[]).unwrap();
     let error = file.camera(&file.film, &scene).unwrap_err().to_string();
-    assert!(
-        error.ends_with("`view` excludes `eye`, `look_at` and `direction`; keep one"),
-        "{error}"
-    );
+    assert!(error.ends_with("`view` excludes `eye`, `look_at` and `direction`; keep one"), "{error}");
 }
 
 /// A value that a flag takes.
@@ -189,8 +160,7 @@ fn every_flag_reaches_a_setting() {
             SceneFile::read(&Sources { file, flags: &layers, style: None })
         };
         let read: Vec<_> = CameraKind::ALL.iter().map(reaches).collect();
-        let errors: Vec<String> =
-            read.iter().filter_map(|read| Some(read.as_ref().err()?.to_string())).collect();
+        let errors: Vec<String> = read.iter().filter_map(|read| Some(read.as_ref().err()?.to_string())).collect();
         let found = read.into_iter().find_map(Result::ok);
         let found = found.unwrap_or_else(|| panic!("{}: {errors:?}", flag.flag));
         assert_eq!(found.integrator(), Some(IntegratorKind::Studio), "{}", flag.flag);

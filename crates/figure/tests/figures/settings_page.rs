@@ -70,8 +70,7 @@ struct Key {
 /// The keys of a struct or of the kinds of an enum, from the text of a file.
 fn keys_of(source: &str, name: &str) -> Vec<Key> {
     let is_start = |line: &&str| {
-        let mut words =
-            line.split_whitespace().skip_while(|word| !["struct", "enum"].contains(word));
+        let mut words = line.split_whitespace().skip_while(|word| !["struct", "enum"].contains(word));
         !line.starts_with(' ') && words.nth(1) == Some(name)
     };
     let lines = source.lines().skip_while(|line| !is_start(line)).skip(1);
@@ -82,8 +81,7 @@ fn keys_of(source: &str, name: &str) -> Vec<Key> {
             docs.push(doc);
         } else if line.starts_with('#') {
             is_skipped |= line.contains("serde(skip)") || line.contains("flatten");
-            renamed = renamed
-                .or(line.split_once("rename = \"").and_then(|(_, rest)| rest.split('"').next()));
+            renamed = renamed.or(line.split_once("rename = \"").and_then(|(_, rest)| rest.split('"').next()));
         } else if let Some(variant) = line.strip_suffix(" {") {
             (kind, docs) = (Some(kebab(variant)), Vec::new());
         } else if line == "}," {
@@ -145,8 +143,7 @@ fn shown(value: &str) -> &str {
 /// The values of a scene in which nothing is said, for both integrators with light.
 fn defaults() -> Vec<toml::Table> {
     let texts = ["path", "studio"].map(|integrator| {
-        let text =
-            format!("integrator = \"{integrator}\"\n[studio]\nocclusion = {{}}\noutline = {{}}\n");
+        let text = format!("integrator = \"{integrator}\"\n[studio]\nocclusion = {{}}\noutline = {{}}\n");
         let file = SceneFile::parse(&text).unwrap();
         let scene = pinhole::Scene::new(&[]).unwrap();
         let subject = pinhole::Sphere::new([0.0; 3], 1.0, pinhole::LinearRgb::WHITE);
@@ -167,8 +164,7 @@ fn default_of(tables: &[toml::Table], path: &str) -> Option<String> {
         names.try_fold(first, |value, name| value.get(name))
     })?;
     let is_list = |list: &Vec<toml::Value>| list.iter().all(toml::Value::is_float);
-    let is_value =
-        !found.is_table() && found.as_array().is_none_or(is_list) && path != "integrator";
+    let is_value = !found.is_table() && found.as_array().is_none_or(is_list) && path != "integrator";
     is_value.then(|| format!("`{found}`"))
 }
 
@@ -188,11 +184,7 @@ fn the_page_of_settings_is_as_it_is_made() {
     for (table, file, names) in TABLES {
         let source = std::fs::read_to_string(root.join(file)).unwrap();
         let title = if table.is_empty() { "At the top of the file" } else { table };
-        write!(
-            page,
-            "\n## {title}\n\n| key | value | default | flag | meaning |\n|---|---|---|---|---|\n"
-        )
-        .unwrap();
+        write!(page, "\n## {title}\n\n| key | value | default | flag | meaning |\n|---|---|---|---|---|\n").unwrap();
         let of_source = names.iter().flat_map(|name| keys_of(&source, name));
         let of_source: BTreeSet<String> = of_source.map(|key| key.name).collect();
         let path = table.replace("KIND", "pinhole");
@@ -200,11 +192,7 @@ fn the_page_of_settings_is_as_it_is_made() {
         let known: BTreeSet<String> = known
             .chain(
                 // The list of the keys of a path is part of its table here.
-                if table == "camera_path" {
-                    settings::keys_of("camera_path.keys")
-                } else {
-                    Vec::new()
-                },
+                if table == "camera_path" { settings::keys_of("camera_path.keys") } else { Vec::new() },
             )
             .map(str::to_owned)
             .collect();
@@ -214,9 +202,7 @@ fn the_page_of_settings_is_as_it_is_made() {
             for Key { kind, name, value, meaning } in keys {
                 let path = if table.is_empty() { name.clone() } else { format!("{table}.{name}") };
                 let is_same = |key: &str| match path.strip_prefix("camera.") {
-                    Some(rest) => {
-                        key.strip_prefix("camera.*.") == rest.split_once('.').map(|(_, key)| key)
-                    }
+                    Some(rest) => key.strip_prefix("camera.*.") == rest.split_once('.').map(|(_, key)| key),
                     None => key == path,
                 };
                 let flag = FLAGS.iter().find(|flag| is_same(flag.key));
@@ -234,8 +220,7 @@ fn the_page_of_settings_is_as_it_is_made() {
                 let meaning = meaning.replace("[`", "`").replace("`]", "`").replace('|', "\\|");
                 let meaning = meaning.replace("`None` for", "Leave it out for");
                 let flag = flag.map_or(String::new(), |flag| format!("`{}`", flag.flag));
-                writeln!(page, "| `{name}` | {value} | {default} | {flag} | {kind}{meaning} |")
-                    .unwrap();
+                writeln!(page, "| `{name}` | {value} | {default} | {flag} | {kind}{meaning} |").unwrap();
                 if table.is_empty() && value.contains("table") {
                     tables.push(name);
                 }
@@ -244,8 +229,7 @@ fn the_page_of_settings_is_as_it_is_made() {
     }
     // A new table gets a part of its own.
     for table in tables {
-        let is_named =
-            |title: &str| title.split(", ").any(|title| title.split('.').next() == Some(&table));
+        let is_named = |title: &str| title.split(", ").any(|title| title.split('.').next() == Some(&table));
         assert!(TABLES.iter().any(|(title, ..)| is_named(title)), "TABLES lacks {table}");
     }
     write_flags(&mut page);

@@ -12,16 +12,10 @@ use crate::Outcome;
 pub fn molecule() -> Outcome<Scene> {
     const RUNGS: u32 = 180;
     const TWISTS: f64 = 18.0;
-    let knot = |t: f64| {
-        DVec3::new(
-            t.sin() + 2.0 * (2.0 * t).sin(),
-            t.cos() - 2.0 * (2.0 * t).cos(),
-            -1.3 * (3.0 * t).sin(),
-        )
-    };
+    let knot =
+        |t: f64| DVec3::new(t.sin() + 2.0 * (2.0 * t).sin(), t.cos() - 2.0 * (2.0 * t).cos(), -1.3 * (3.0 * t).sin());
     let strands = [[214, 84, 60], [58, 110, 185]].map(LinearRgb::from_srgb8);
-    let bases = [[240, 196, 84], [122, 176, 106], [210, 205, 195], [150, 120, 180]]
-        .map(LinearRgb::from_srgb8);
+    let bases = [[240, 196, 84], [122, 176, 106], [210, 205, 195], [150, 120, 180]].map(LinearRgb::from_srgb8);
     let mut spheres = Vec::new();
     for rung in 0..RUNGS {
         let t = TAU * f64::from(rung) / f64::from(RUNGS);

@@ -9,12 +9,7 @@ use crate::Outcome;
 
 /// Renders a view without the host and writes it to `pinhole-host-NAME.png` in the current folder. Unlike all other
 /// code of these hosts, it waits for the device.
-pub fn save_still(
-    name: &str,
-    scene: &Scene,
-    view: &View<'_>,
-    settings: &RenderSettings,
-) -> Outcome<()> {
+pub fn save_still(name: &str, scene: &Scene, view: &View<'_>, settings: &RenderSettings) -> Outcome<()> {
     let headless = Headless::open(&HeadlessOptions::default()).wait()?;
     let image = headless.render(scene, view, settings, LayerSet::COLOR).wait()?;
     let path = format!("pinhole-host-{name}.png");

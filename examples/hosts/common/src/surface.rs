@@ -32,11 +32,7 @@ pub struct WindowSurface {
 impl WindowSurface {
     /// Opens a device that can draw to the window, with the default limits of WebGPU and no features. The format of the
     /// surface takes linear light if `is_srgb`, and otherwise encoded colours, if the window offers both.
-    pub async fn open(
-        window: Arc<Window>,
-        display: OwnedDisplayHandle,
-        is_srgb: bool,
-    ) -> Outcome<(Self, Gpu)> {
+    pub async fn open(window: Arc<Window>, display: OwnedDisplayHandle, is_srgb: bool) -> Outcome<(Self, Gpu)> {
         let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display));
         // Validation layers are off unless WGPU_VALIDATION=1 asks for them.
         descriptor.flags = wgpu::InstanceFlags::empty();

@@ -81,12 +81,9 @@ struct Open<H> {
 
 impl<H: Host> Open<H> {
     fn new(events: &ActiveEventLoop, display: OwnedDisplayHandle, orbit: &Orbit) -> Outcome<Self> {
-        let attributes = Window::default_attributes()
-            .with_title(H::TITLE)
-            .with_inner_size(PhysicalSize::new(800, 600));
+        let attributes = Window::default_attributes().with_title(H::TITLE).with_inner_size(PhysicalSize::new(800, 600));
         let window = Arc::new(events.create_window(attributes)?);
-        let (surface, gpu) =
-            pollster::block_on(WindowSurface::open(Arc::clone(&window), display, H::IS_SRGB))?;
+        let (surface, gpu) = pollster::block_on(WindowSurface::open(Arc::clone(&window), display, H::IS_SRGB))?;
         let host = H::new(&gpu, surface.size(), orbit)?;
         Ok(Self { host, gpu, surface, window })
     }
@@ -129,14 +126,12 @@ impl<H: Host> Program<H> {
                 MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
                 MouseScrollDelta::PixelDelta(pixels) => pixels.y / 40.0,
             }),
-            WindowEvent::KeyboardInput { event, .. } if event.state.is_pressed() => {
-                match &event.logical_key {
-                    Key::Named(NamedKey::Escape) => events.exit(),
-                    Key::Named(NamedKey::Space) => open.host.key(" ", &self.orbit)?,
-                    Key::Character(key) => open.host.key(key, &self.orbit)?,
-                    _ => return Ok(()),
-                }
-            }
+            WindowEvent::KeyboardInput { event, .. } if event.state.is_pressed() => match &event.logical_key {
+                Key::Named(NamedKey::Escape) => events.exit(),
+                Key::Named(NamedKey::Space) => open.host.key(" ", &self.orbit)?,
+                Key::Character(key) => open.host.key(key, &self.orbit)?,
+                _ => return Ok(()),
+            },
             _ => return Ok(()),
         }
         open.window.request_redraw();

@@ -15,9 +15,7 @@ use eframe::egui_wgpu;
 use pinhole::gpu::{LitProgress, LitState, PickedPixel};
 use pinhole::render::Studio;
 use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, View};
-use pinhole_host_common::{
-    Orbit, Outcome, background, molecule, paths, save_still, start_log, studio,
-};
+use pinhole_host_common::{Orbit, Outcome, background, molecule, paths, save_still, start_log, studio};
 use spheres::{Draw, Spheres};
 
 fn main() -> Outcome<()> {
@@ -162,8 +160,8 @@ impl Panels {
             self.picked = Some(picked);
         }
         let progress = spheres.progress();
-        let [before, now] = [self.progress, progress]
-            .map(|progress| progress.is_some_and(|progress| progress.state == LitState::Done));
+        let [before, now] =
+            [self.progress, progress].map(|progress| progress.is_some_and(|progress| progress.state == LitState::Done));
         if now != before {
             println!("{}", if now { "done" } else { "refining" });
         }

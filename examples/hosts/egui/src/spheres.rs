@@ -6,8 +6,8 @@ use eframe::egui;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState,
-    PickedPixel, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState, PickedPixel, Picker,
+    Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
@@ -36,17 +36,13 @@ struct Panel {
 impl Spheres {
     pub(crate) fn new(egui: &RenderState, scene: &Scene) -> Outcome<Self> {
         let device = &egui.device;
-        let options = RendererOptions {
-            cameras: vec![CameraKind::Pinhole],
-            data_layers: true,
-            ..RendererOptions::default()
-        };
+        let options =
+            RendererOptions { cameras: vec![CameraKind::Pinhole], data_layers: true, ..RendererOptions::default() };
         let renderer = LitRenderer::new(Renderer::new(device, &options).wait()?);
         // The render pass of egui has no depth.
         let options = CompositeOptions::without_depth(egui.target_format);
         let composite = Composite::new(device, &options).wait()?;
-        let buffers =
-            SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene).wait()?;
+        let buffers = SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene).wait()?;
         Ok(Self {
             renderer,
             composite,
@@ -111,12 +107,7 @@ impl CallbackTrait for Draw {
     }
 
     /// Draws the picture in egui's render pass.
-    fn paint(
-        &self,
-        _: egui::PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        resources: &CallbackResources,
-    ) {
+    fn paint(&self, _: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, resources: &CallbackResources) {
         if let Some(spheres) = resources.get::<Spheres>()
             && let Some(panel) = &spheres.panel
             && let Err(error) = spheres.composite.draw(pass, &panel.shown)
@@ -137,11 +128,9 @@ impl Draw {
     ) -> Outcome<()> {
         // The pixels of the panel, rounded as egui does for the viewport.
         let scale = screen.pixels_per_point;
-        let pixels =
-            egui::epaint::ViewportInPixels::from_points(&self.rect, scale, screen.size_in_pixels);
-        let [left, top, width, height] =
-            [pixels.left_px, pixels.top_px, pixels.width_px, pixels.height_px]
-                .map(|pixels| u32::try_from(pixels).unwrap_or(0));
+        let pixels = egui::epaint::ViewportInPixels::from_points(&self.rect, scale, screen.size_in_pixels);
+        let [left, top, width, height] = [pixels.left_px, pixels.top_px, pixels.width_px, pixels.height_px]
+            .map(|pixels| u32::try_from(pixels).unwrap_or(0));
         if width == 0 || height == 0 {
             return Ok(());
         }
@@ -155,16 +144,12 @@ impl Draw {
         let panel = match panel {
             Some(panel) => panel,
             None => {
-                let textures =
-                    TargetTextures::new(renderer.renderer(), device, [width, height]).wait()?;
+                let textures = TargetTextures::new(renderer.renderer(), device, [width, height]).wait()?;
                 let (targets, settings) = (textures.targets(), &self.settings);
                 panel.insert(Panel {
                     film,
                     first_pixel: [0, 0],
-                    lit: LitPicture::new(
-                        renderer, device, queue, buffers, &view, settings, &targets,
-                    )
-                    .wait()?,
+                    lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets).wait()?,
                     shown: CompositePicture::new(composite, device, &targets).wait()?,
                     textures,
                 })
@@ -174,9 +159,7 @@ impl Draw {
         panel.shown.set_place(queue, panel.first_pixel);
         panel.lit.set(renderer, device, queue, buffers, &view, &self.settings).wait()?;
         let next = budget.record(&mut panel.lit, renderer, queue, encoder, buffers)?;
-        let is_done = |progress: Option<LitProgress>| {
-            progress.is_some_and(|progress| progress.state == LitState::Done)
-        };
+        let is_done = |progress: Option<LitProgress>| progress.is_some_and(|progress| progress.state == LitState::Done);
         // The widgets show this progress in the next frame.
         if !(is_done(next) && is_done(*progress)) {
             self.context.request_repaint();

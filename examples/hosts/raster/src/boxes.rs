@@ -74,10 +74,7 @@ impl Boxes {
                     stencil: wgpu::StencilState::default(),
                     bias: wgpu::DepthBiasState::default(),
                 }),
-                multisample: wgpu::MultisampleState {
-                    count: sample_count,
-                    ..wgpu::MultisampleState::default()
-                },
+                multisample: wgpu::MultisampleState { count: sample_count, ..wgpu::MultisampleState::default() },
                 fragment: has_color.then_some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some("lit"),
@@ -112,8 +109,7 @@ impl Boxes {
             color: [r, g, b, 1.0],
         };
         let still = DQuat::IDENTITY;
-        let turning =
-            DQuat::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize_or(DVec3::Y), angle);
+        let turning = DQuat::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize_or(DVec3::Y), angle);
         let frame = Frame {
             clip_from_world: (projection * view).as_mat4().to_cols_array_2d(),
             boxes: [

@@ -16,8 +16,8 @@ use std::time::Instant;
 use boxes::Boxes;
 use pinhole::camera::{CameraKind, DepthOrder};
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth,
-    Renderer, RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, DepthTest, Frame, HostDepth, Renderer,
+    RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 use pinhole_host_common::{Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still};
@@ -65,11 +65,8 @@ impl Host for Raster {
 
     fn new(gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<Self> {
         // The host's depth is computed from the data layers.
-        let options = RendererOptions {
-            cameras: vec![CameraKind::Pinhole],
-            data_layers: true,
-            ..RendererOptions::default()
-        };
+        let options =
+            RendererOptions { cameras: vec![CameraKind::Pinhole], data_layers: true, ..RendererOptions::default() };
         let renderer = Renderer::new(&gpu.device, &options).wait()?;
         let depth = CompositeDepth::new(Boxes::DEPTH, DepthOrder::NearIsOne);
         let mut options = CompositeOptions::new(gpu.format, depth);
@@ -81,10 +78,7 @@ impl Host for Raster {
         let pictures = Pictures::new(gpu, &renderer, &composite, &depth_test, size)?;
         Ok(Self {
             scene,
-            settings: RenderSettings {
-                background: LinearRgb::new(SKY)?,
-                ..RenderSettings::default()
-            },
+            settings: RenderSettings { background: LinearRgb::new(SKY)?, ..RenderSettings::default() },
             boxes: Boxes::new(gpu, SAMPLES),
             renderer,
             composite,
@@ -120,8 +114,7 @@ impl Host for Raster {
         pictures.frame.set_view(&gpu.queue, &self.buffers, &view, &self.settings)?;
         pictures.picture.set_camera(&gpu.queue, &camera, [0, 0]);
 
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if self.tests_early && self.draws_boxes {
             let mut pass = begin(&mut encoder, &[], &pictures.early_depth);
             self.boxes.draw_depth(&mut pass);
@@ -185,8 +178,7 @@ impl Pictures {
     ) -> Outcome<Self> {
         let textures = TargetTextures::new(renderer, &gpu.device, size).wait()?;
         let targets = textures.targets();
-        let attachment =
-            |format, sample_count, usage| attachment(gpu, size, format, sample_count, usage);
+        let attachment = |format, sample_count, usage| attachment(gpu, size, format, sample_count, usage);
         let early_depth = attachment(Boxes::DEPTH, 1, TextureUsages::TEXTURE_BINDING);
         Ok(Self {
             film: Film::new(size[0], size[1])?,
@@ -231,10 +223,7 @@ fn begin<'a>(
         color_attachments,
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Store,
-            }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..wgpu::RenderPassDescriptor::default()

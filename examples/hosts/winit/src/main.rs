@@ -12,13 +12,11 @@ use std::time::Duration;
 
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, LitPicture, LitRenderer, LitState, Renderer,
-    RendererOptions, SceneBuffers, TargetTextures, Wait, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitRenderer, LitState, Renderer, RendererOptions,
+    SceneBuffers, TargetTextures, Wait, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
-use pinhole_host_common::{
-    Budget, Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still, studio,
-};
+use pinhole_host_common::{Budget, Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still, studio};
 
 fn main() -> Outcome<()> {
     run::<BareWindow>()
@@ -47,19 +45,13 @@ impl Host for BareWindow {
     const TITLE: &'static str = "pinhole in a bare window";
 
     fn new(gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<Self> {
-        let options = RendererOptions {
-            cameras: vec![CameraKind::Pinhole],
-            data_layers: true,
-            ..RendererOptions::default()
-        };
+        let options =
+            RendererOptions { cameras: vec![CameraKind::Pinhole], data_layers: true, ..RendererOptions::default() };
         let renderer = LitRenderer::new(Renderer::new(&gpu.device, &options).wait()?);
         // The pass over the window has no depth.
-        let composite =
-            Composite::new(&gpu.device, &CompositeOptions::without_depth(gpu.format)).wait()?;
+        let composite = Composite::new(&gpu.device, &CompositeOptions::without_depth(gpu.format)).wait()?;
         let (scene, settings) = (molecule()?, studio(-0.7, 16));
-        let buffers =
-            SceneBuffers::for_studio(renderer.renderer(), &gpu.device, &gpu.queue, &scene)
-                .wait()?;
+        let buffers = SceneBuffers::for_studio(renderer.renderer(), &gpu.device, &gpu.queue, &scene).wait()?;
         let pictures = Pictures::new(gpu, &renderer, &composite, &buffers, &settings, size, orbit)?;
         let budget = Budget::new(Duration::from_millis(40));
         Ok(Self { scene, settings, renderer, composite, buffers, pictures, budget, is_done: false })
@@ -129,8 +121,7 @@ impl Pictures {
         let view = View::new(&camera, film);
         Ok(Self {
             film,
-            lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets)
-                .wait()?,
+            lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets).wait()?,
             shown: CompositePicture::new(composite, device, &targets).wait()?,
         })
     }

@@ -24,10 +24,7 @@ fn lambert(out: DVec3, roughness: f32, specular: f64) -> Bsdf {
 
 fn conductor(out: DVec3, roughness: f32, color: DVec3) -> Bsdf {
     let energy = lookup(&albedo_table(Lobe::Reflection { roughness }), out.z);
-    Bsdf {
-        out,
-        kind: Kind::Conductor(Conductor { color, ggx: Ggx::of_roughness(roughness), energy }),
-    }
+    Bsdf { out, kind: Kind::Conductor(Conductor { color, ggx: Ggx::of_roughness(roughness), energy }) }
 }
 
 fn glass(out: DVec3, ior: f32, roughness: f32, is_leaving: bool) -> Bsdf {

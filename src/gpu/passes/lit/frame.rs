@@ -121,19 +121,15 @@ impl LitFrame {
             let needed = storage | BufferUsages::INDIRECT;
             let groups_needed = make.buffer("pinhole groups needed", GROUPS_NEEDED, needed);
             let LitLayouts { frame, advance, film: of_sums, samples, .. } = &passes.layouts;
-            let group =
-                |label, layout, entries: &[Entry<'_>]| bind_group(device, label, layout, entries);
+            let group = |label, layout, entries: &[Entry<'_>]| bind_group(device, label, layout, entries);
             let new_tile = |(tile, frames): (Tile, Frames)| {
                 let records = strided(&frames, frame_stride);
                 let records = make.filled("pinhole frames", &records, BufferUsages::UNIFORM);
                 // The buffers are copied completely, so all have the same size.
                 let film = of_paths("pinhole sums", sizes.film_bytes());
                 let dispatch = (4, part(&parameters, 0, size_of::<DispatchParameters>()));
-                let record = |area: usize| {
-                    (0, part(&records, area * frame_stride, size_of::<FrameParameters>()))
-                };
-                let common =
-                    |area| [record(area), whole(2, &lists), whole(3, &paths), dispatch.clone()];
+                let record = |area: usize| (0, part(&records, area * frame_stride, size_of::<FrameParameters>()));
+                let common = |area| [record(area), whole(2, &lists), whole(3, &paths), dispatch.clone()];
                 let taken = [record(0), whole(2, &lists), dispatch.clone(), whole(5, &film)];
                 let of_advance = [&common(0)[..], &[whole(5, &groups_needed)]].concat();
                 let summed = [&common(0)[..], &[whole(5, &film), whole(6, &variations)]].concat();
@@ -175,12 +171,7 @@ impl LitFrame {
 
     /// Queues the parameters of a recording's dispatches, at most [`MAX_DISPATCHES`]. `place` is the index of the
     /// recording among the recordings under way.
-    pub(crate) fn queue_parameters(
-        &self,
-        queue: &Queue,
-        place: usize,
-        parameters: &[DispatchParameters],
-    ) {
+    pub(crate) fn queue_parameters(&self, queue: &Queue, place: usize, parameters: &[DispatchParameters]) {
         let bytes = strided(parameters, self.parameter_stride);
         queue.write_buffer(&self.parameters, u64::from(self.parameter_offset(place, 0)), &bytes);
     }
@@ -192,11 +183,7 @@ impl LitFrame {
     }
 
     /// Queues other records for the tiles, in order, and returns whether any record differs from the previous one.
-    pub(crate) fn set_frames(
-        &mut self,
-        queue: &Queue,
-        frames: impl Iterator<Item = Frames>,
-    ) -> bool {
+    pub(crate) fn set_frames(&mut self, queue: &Queue, frames: impl Iterator<Item = Frames>) -> bool {
         let mut differs = false;
         for (tile, frames) in self.tiles.iter_mut().zip(frames) {
             if bytemuck::bytes_of(&tile.frames) != bytemuck::bytes_of(&frames) {
@@ -320,10 +307,8 @@ impl LightingBuffers {
 }
 
 fn sky_group(make: Make<'_>, layouts: &LitLayouts, environment: &Environment) -> BindGroup {
-    let texels: Vec<[f32; 4]> =
-        environment.texels().iter().map(|[r, g, b]| [*r, *g, *b, 0.0]).collect();
-    let shares: Vec<f32> =
-        environment.rows().iter().chain(environment.columns()).copied().collect();
+    let texels: Vec<[f32; 4]> = environment.texels().iter().map(|[r, g, b]| [*r, *g, *b, 0.0]).collect();
+    let shares: Vec<f32> = environment.rows().iter().chain(environment.columns()).copied().collect();
     let storage = BufferUsages::STORAGE;
     let texels = make.filled("pinhole sky", bytemuck::cast_slice(&texels), storage);
     let shares = make.filled("pinhole sky shares", bytemuck::cast_slice(&shares), storage);

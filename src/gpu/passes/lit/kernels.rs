@@ -44,10 +44,7 @@ impl Mode {
 
     /// The constants of `path/choices.wgsl`.
     fn constants(self) -> [Constant; 2] {
-        [
-            ("ANY_MATERIALS", u32::from(self.has_medium())),
-            ("SAMPLES_LIGHT", u32::from(self.samples_light())),
-        ]
+        [("ANY_MATERIALS", u32::from(self.has_medium())), ("SAMPLES_LIGHT", u32::from(self.samples_light()))]
     }
 }
 
@@ -194,9 +191,7 @@ impl LitKey {
                 ("ambient", Queue, First),
                 ("gather", Queue, First),
             ],
-            Mode::Path(..) => {
-                &[("scatter", Pixels, First), ("scatter", Queue, First), ("occlude", Queue, First)]
-            }
+            Mode::Path(..) => &[("scatter", Pixels, First), ("scatter", Queue, First), ("occlude", Queue, First)],
         };
         let later: &[PassName] = &[("extend", Pixels, Later), ("extend", Queue, Later)];
         let common = [
@@ -235,8 +230,7 @@ impl LitKey {
 
 /// The pass that computes the numbers of workgroups of the next indirect dispatches, and the pass that sums variances
 /// and luminances of pixels.
-pub(super) const OF_ALL: [PassName; 2] =
-    [("advance", Schedule::Pixels, First), ("noise", Schedule::Pixels, First)];
+pub(super) const OF_ALL: [PassName; 2] = [("advance", Schedule::Pixels, First), ("noise", Schedule::Pixels, First)];
 
 /// The kernels for every camera, structure, kind of lighting and schedule.
 pub(super) fn kernels() -> Vec<Kernel> {
@@ -246,7 +240,6 @@ pub(super) fn kernels() -> Vec<Kernel> {
         let is_first = key.camera == CameraKind::Pinhole || key.structure == Structure::List;
         key.one_pass.is_some() || is_first
     });
-    let kernels = keys
-        .flat_map(|key| key.passes().into_iter().chain(OF_ALL).map(move |name| key.kernel(name)));
+    let kernels = keys.flat_map(|key| key.passes().into_iter().chain(OF_ALL).map(move |name| key.kernel(name)));
     kernels.filter(|kernel| known.insert((kernel.name(), kernel.constants.clone()))).collect()
 }

@@ -48,14 +48,9 @@ pub(crate) struct LightingData {
 
 impl LightingData {
     /// Computes the data for settings that have been checked. Positions are in the scene's frame.
-    pub(crate) fn new(
-        settings: &RenderSettings,
-        scene: &SceneSummary,
-        camera: &dyn Camera,
-    ) -> Self {
+    pub(crate) fn new(settings: &RenderSettings, scene: &SceneSummary, camera: &dyn Camera) -> Self {
         let (mut tables, vectors) = (Vec::new(), camera.vectors());
-        let lights: Vec<LightKind> =
-            settings.lights.iter().filter_map(|light| light.in_view(&vectors)).collect();
+        let lights: Vec<LightKind> = settings.lights.iter().filter_map(|light| light.in_view(&vectors)).collect();
         let emitters = &scene.emitters;
         let sources = SourceList::of(settings, &lights, emitters);
         for (index, light) in lights.iter().enumerate() {
@@ -83,11 +78,7 @@ impl LightingData {
             mode: mode_of(settings, scene, &sources),
             parameters,
             tables,
-            emitters: if sources.emitters {
-                emitter_table::records(scene).collect()
-            } else {
-                Vec::new()
-            },
+            emitters: if sources.emitters { emitter_table::records(scene).collect() } else { Vec::new() },
             max_surfaces: match &settings.integrator {
                 Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
@@ -97,9 +88,7 @@ impl LightingData {
             is_sharp: is_sharp(settings, scene, &lights),
             shadows: settings.studio_parameters().is_some_and(|studio| studio.shadows),
             sky: match (&settings.sky.light, &settings.integrator) {
-                (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
-                    Some(Arc::clone(environment))
-                }
+                (SkyLight::Image { environment, .. }, Integrator::Path(_)) => Some(Arc::clone(environment)),
                 _ => None,
             },
             casts_shadow: lights.iter().map(|l| !matches!(l, LightKind::Head { .. })).collect(),
@@ -122,9 +111,7 @@ impl LightingData {
     pub(crate) fn rays_differ(&self, other: &Self) -> bool {
         let hidden = |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.shadows);
         let radius = |of: &Self| of.parameters.occlusion_radius.to_bits();
-        hidden(self) != hidden(other)
-            || radius(self) != radius(other)
-            || self.casts_shadow != other.casts_shadow
+        hidden(self) != hidden(other) || radius(self) != radius(other) || self.casts_shadow != other.casts_shadow
     }
 
     /// Whether the image of the sky and the table of emitters are the same as for another light, of the same scene.
@@ -144,8 +131,7 @@ impl LightingData {
             let is_one = sky == SkyKind::Plain && bricks == 1;
             return is_one.then_some(OnePass::Paths(materials, sources));
         }
-        let is_few =
-            self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;
+        let is_few = self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;
         let is_one = self.is_opaque && bricks == 1 && is_few;
         let has_ground = self.parameters.flags & flags::GROUND != 0;
         is_one.then_some(match (has_ground, self.is_sharp) {
@@ -204,9 +190,7 @@ impl SourceList {
             LightKind::Point { .. } | LightKind::Sphere { .. } => true,
         });
         let image = match &settings.sky.light {
-            SkyLight::Image { environment, strength, .. } => {
-                environment.has_light() && *strength > 0.0
-            }
+            SkyLight::Image { environment, strength, .. } => environment.has_light() && *strength > 0.0,
             _ => false,
         };
         Self {
@@ -237,11 +221,7 @@ fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList
         return Mode::Studio;
     }
     Mode::Path(
-        if scene.appearance.surfaces().iter().all(is_matt) {
-            Materials::Matt
-        } else {
-            Materials::Any
-        },
+        if scene.appearance.surfaces().iter().all(is_matt) { Materials::Matt } else { Materials::Any },
         if sources.count() == 0 { Sources::None } else { Sources::Any },
         match settings.sky.light {
             SkyLight::Image { .. } => SkyKind::Image,
@@ -259,12 +239,11 @@ fn is_matt(surface: &SurfaceProperties) -> bool {
 }
 
 fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingParameters {
-    let mut parameters =
-        LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
+    let mut parameters = LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
     parameters.background = settings.background.to_array();
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    parameters.flags = flag(settings.is_transparent, flags::TRANSPARENT)
-        | flag(settings.sky.is_visible, flags::SKY_SEEN);
+    parameters.flags =
+        flag(settings.is_transparent, flags::TRANSPARENT) | flag(settings.sky.is_visible, flags::SKY_SEEN);
     if let Some(ground) = &settings.ground {
         parameters.flags |= flags::GROUND | flag(ground.is_shadow_catcher, flags::CATCHER);
         parameters.ground_point = (ground.point - scene.origin).as_vec3().to_array();
@@ -283,8 +262,7 @@ fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingPar
             parameters.flags |= flag(studio.shadows, flags::SHADOWS);
             if let Some(occlusion) = &studio.occlusion {
                 parameters.occlusion_samples = occlusion.samples;
-                parameters.occlusion_radius =
-                    occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
+                parameters.occlusion_radius = occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
             }
             if let Some(cue) = &studio.depth_cue {
                 parameters.cue_color = cue.color.to_array();
@@ -304,8 +282,7 @@ fn sky(sky: &Sky, parameters: &mut LightingParameters) {
     match &sky.light {
         SkyLight::Constant(radiance) => {
             let radiance = radiance.to_array();
-            (parameters.zenith, parameters.horizon, parameters.nadir) =
-                (radiance, radiance, radiance);
+            (parameters.zenith, parameters.horizon, parameters.nadir) = (radiance, radiance, radiance);
         }
         SkyLight::Gradient { zenith, horizon, nadir } => {
             parameters.zenith = zenith.to_array();
@@ -314,8 +291,7 @@ fn sky(sky: &Sky, parameters: &mut LightingParameters) {
         }
         SkyLight::Image { environment, strength, rotation } => {
             parameters.environment_size = [environment.width(), environment.height()];
-            parameters.environment_rotation =
-                crate::light::environment::Environment::rotation(*rotation);
+            parameters.environment_rotation = crate::light::environment::Environment::rotation(*rotation);
             parameters.environment_strength = *strength;
         }
     }
@@ -336,9 +312,7 @@ fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] 
             let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
             [four(toward.as_vec3().to_array(), kind), four(strength.to_array(), k as f32)]
         }
-        LightKind::Point { position, intensity } => {
-            [four(near(position), kind), four(intensity.to_array(), 0.0)]
-        }
+        LightKind::Point { position, intensity } => [four(near(position), kind), four(intensity.to_array(), 0.0)],
         LightKind::Sphere { center, radius, radiance } => {
             [four(near(center), kind), four(radiance.to_array(), radius as f32)]
         }

@@ -18,8 +18,7 @@ use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
-    Kernel, camera_constant, color_target_choice, data_layers_choice, pipeline, pipeline_with,
-    structure_choice,
+    Kernel, camera_constant, color_target_choice, data_layers_choice, pipeline, pipeline_with, structure_choice,
 };
 
 /// The properties in which sets of passes differ.
@@ -87,9 +86,9 @@ pub(crate) fn live_kernels() -> Vec<Kernel> {
     for &structure in Structure::WITH_KERNELS {
         for exclude_by in ExcludeBy::ALL {
             for &camera in CameraKind::ALL {
-                kernels.extend([false, true].map(|has_ground| {
-                    live_kernel(LiveKey { camera, structure, exclude_by, has_ground })
-                }));
+                kernels.extend(
+                    [false, true].map(|has_ground| live_kernel(LiveKey { camera, structure, exclude_by, has_ground })),
+                );
             }
         }
     }
@@ -118,11 +117,8 @@ impl LivePasses {
         edits: &Edits,
     ) -> Result<Self, GpuError> {
         let checks = Checks::default();
-        let options = RendererOptions {
-            cameras: Vec::new(),
-            structures: vec![key.structure],
-            ..RendererOptions::default()
-        };
+        let options =
+            RendererOptions { cameras: Vec::new(), structures: vec![key.structure], ..RendererOptions::default() };
         let scene = checks.create(device, || Layouts::new(device, &options));
         let lit = checks.create(device, || LitLayouts::new(device));
         let view = BindingType::Buffer {
@@ -136,8 +132,7 @@ impl LivePasses {
         let brick = &scene.brick[0].1;
         let groups = [&lit.samples, brick, &lit.lighting, &scene.appearance];
         let live = pipeline(device, &live_kernel(key).edited(edits)?, &groups, &checks);
-        let reproject =
-            pipeline(device, &Kernel::new("reproject", &[]).edited(edits)?, &[&known], &checks);
+        let reproject = pipeline(device, &Kernel::new("reproject", &[]).edited(edits)?, &[&known], &checks);
         let show = show_kernel(color, has_data).edited(edits)?;
         let show = pipeline_with(device, &show, &[Some(&known), None, Some(targets)], &checks);
         checks.passed().await?;

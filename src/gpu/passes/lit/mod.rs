@@ -102,8 +102,7 @@ impl<'a> LitScene<'a> {
             let traced = region.map_or(whole, |region| region.groups_of(tile));
             let areas = [(all, whole), (all, traced), (occluders, traced)];
             let frames = areas.map(|(scene, groups)| {
-                FrameParameters::of_tile(view, &scene.space, tile, groups, limit)
-                    .in_order_of(all.shape)
+                FrameParameters::of_tile(view, &scene.space, tile, groups, limit).in_order_of(all.shape)
             });
             (tile, frames)
         }

@@ -4,17 +4,14 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingType, Buffer, CommandEncoder, ComputePassDescriptor,
-    ComputePipeline, Device,
+    BindGroup, BindGroupLayout, BindingType, Buffer, CommandEncoder, ComputePassDescriptor, ComputePipeline, Device,
 };
 
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::kernels::{LitKey, Mode, OF_ALL, PassName, SkyKind};
-use crate::gpu::passes::lit::records::{
-    DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD,
-};
+use crate::gpu::passes::lit::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::profile::NotedPass;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
@@ -71,10 +68,7 @@ impl LitLayouts {
             advance: layout("pinhole advance", &with(&[(5, storage_of(GROUPS_NEEDED))])),
             film: layout("pinhole film", &with(&[(5, film), (6, storage::<[f32; 2]>(false))])),
             samples: layout("pinhole samples", &[(0, frame), (2, queue), (4, dispatch), (5, film)]),
-            lighting: layout(
-                "pinhole lighting",
-                &[(0, uniform::<LightingParameters>()), (1, read), (2, emitters)],
-            ),
+            lighting: layout("pinhole lighting", &[(0, uniform::<LightingParameters>()), (1, read), (2, emitters)]),
             sky: layout("pinhole sky", &[(0, read), (1, storage::<f32>(true))]),
         }
     }
@@ -174,10 +168,8 @@ impl Pass {
         noted: &mut NotedPass,
     ) {
         noted.note(self.name);
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-            label: Some("pinhole"),
-            timestamp_writes: None,
-        });
+        let mut pass =
+            encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bound.frame, &[bound.dispatch]);
         if let Some(brick) = bound.brick {

@@ -3,8 +3,7 @@
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::headless::plan::{
-    BUILDING, PICTURE, PictureRequest, RenderPlan, StructurePlans, UPLOADING, scene_buffers,
-    tile_count, total,
+    BUILDING, PICTURE, PictureRequest, RenderPlan, StructurePlans, UPLOADING, scene_buffers, tile_count, total,
 };
 use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::lit::lighting::LightingData;
@@ -32,8 +31,7 @@ impl RenderPlan {
 
         let summary = SceneSummary::of(scene);
         let lighting = LightingData::new(settings, &summary, view.camera);
-        let sizes =
-            LitSizes::new(limits, device.shape(), film, lighting.mode, settings.sampling.samples);
+        let sizes = LitSizes::new(limits, device.shape(), film, lighting.mode, settings.sampling.samples);
         let tile_size = sizes.tile;
         let tile_count = tile_count(film, tile_size);
         let film_bytes = sizes.film_bytes();
@@ -41,11 +39,7 @@ impl RenderPlan {
             PlannedBuffer::one("paths", sizes.path_bytes()),
             PlannedBuffer::one("lists", sizes.queue_bytes() + GROUPS_NEEDED),
             // The sums of all tiles stay allocated.
-            PlannedBuffer {
-                name: "sums",
-                bytes: film_bytes * tile_count,
-                bytes_per_binding: film_bytes,
-            },
+            PlannedBuffer { name: "sums", bytes: film_bytes * tile_count, bytes_per_binding: film_bytes },
             PlannedBuffer::one("variations", 2 * sizes.variation_bytes()),
             PlannedBuffer::one("tables", lighting.table_bytes()),
         ];
@@ -79,8 +73,7 @@ impl RenderPlan {
         let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
         // The image of the sky is converted to four components, and its copy is queued for the device.
-        let picture =
-            film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky + emitters);
+        let picture = film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky + emitters);
         let moments = [
             (BUILDING, building),
             (UPLOADING, uploading),
@@ -127,12 +120,7 @@ mod tests {
     use crate::render::{Integrator, Outline, RenderSettings, Studio};
     use crate::scene::sphere::Sphere;
 
-    fn planned(
-        opacity: f32,
-        size: u32,
-        settings: &RenderSettings,
-        device_type: DeviceType,
-    ) -> RenderPlan {
+    fn planned(opacity: f32, size: u32, settings: &RenderSettings, device_type: DeviceType) -> RenderPlan {
         let spheres: Vec<Sphere> = (0..1000)
             .map(|i| {
                 let sphere = Sphere::new([f64::from(i), 0.0, 0.0], 0.5, LinearRgb::WHITE);
@@ -173,10 +161,7 @@ mod tests {
         // Four samples of every pixel of a tile are in flight, with ten vectors each.
         assert_eq!(bytes(&plan, "paths"), 4 * 160 * pixels / 2);
         assert_eq!(bytes(&plan, "lists"), 4 * 12 * pixels / 2 + 16 + 24);
-        assert_eq!(
-            (bytes(&plan, "sums"), bytes(&plan, "sums read-back")),
-            (48 * pixels, 48 * pixels / 2)
-        );
+        assert_eq!((bytes(&plan, "sums"), bytes(&plan, "sums read-back")), (48 * pixels, 48 * pixels / 2));
         let all = plan.scene_buffers.iter().chain(&plan.tile_buffers).chain(&plan.tile_textures);
         assert_eq!(plan.device_bytes, all.map(|buffer| buffer.bytes).sum::<u64>());
         assert_eq!(plan.host_bytes, (12 + 16) * pixels);
@@ -256,8 +241,7 @@ mod tests {
     #[test]
     fn only_paths_need_the_image_of_a_sky() {
         let environment = Environment::new(1024, 512, vec![[1.0; 3]; 1024 * 512]).unwrap();
-        let light =
-            SkyLight::Image { environment: environment.into(), strength: 1.0, rotation: 0.0 };
+        let light = SkyLight::Image { environment: environment.into(), strength: 1.0, rotation: 0.0 };
         let sky = Sky { light, is_visible: true };
         let studio = planned(1.0, 64, &RenderSettings::studio(), GPU);
         let settings = RenderSettings { sky, ..RenderSettings::path() };

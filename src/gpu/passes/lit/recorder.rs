@@ -30,12 +30,7 @@ pub(crate) struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     /// A recorder for the recording with the index `place` among the recordings under way.
-    pub(crate) fn new(
-        frame: &'a LitFrame,
-        advance: &'a Pass,
-        is_indirect: bool,
-        place: usize,
-    ) -> Self {
+    pub(crate) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool, place: usize) -> Self {
         let (parameters, noted) = (Vec::new(), NotedPass::default());
         Self { frame, tile: 0, place, advance, is_indirect, parameters, noted }
     }
@@ -59,28 +54,19 @@ impl<'a> Recorder<'a> {
     pub(crate) fn groups(&self, step: &Step<'_>) -> Groups {
         let tile = &self.frame.tiles[self.tile];
         match step.work {
-            Work::Pixels(area) => {
-                Groups { first: [0, 0], size: tile.frames[area as usize].traced_size }
-            }
+            Work::Pixels(area) => Groups { first: [0, 0], size: tile.frames[area as usize].traced_size },
             Work::List(_) => {
                 // Only paths in the visible region hit something and continue.
                 let [x, y] = tile.frames[Area::Visible as usize].traced_size;
                 Groups { first: [0, 0], size: [x * y * step.in_flight, 1] }
             }
             Work::Advance => Groups { first: [0, 0], size: [1, 1] },
-            Work::Sums | Work::Samples => {
-                Groups { first: [0, 0], size: tile.frames[Area::Whole as usize].traced_size }
-            }
+            Work::Sums | Work::Samples => Groups { first: [0, 0], size: tile.frames[Area::Whole as usize].traced_size },
         }
     }
 
     /// Records a dispatch, or a slice of its workgroups.
-    pub(crate) fn record(
-        &mut self,
-        encoder: &mut CommandEncoder,
-        step: &Step<'a>,
-        slice: Option<Groups>,
-    ) {
+    pub(crate) fn record(&mut self, encoder: &mut CommandEncoder, step: &Step<'a>, slice: Option<Groups>) {
         let groups = slice.unwrap_or_else(|| self.groups(step));
         if groups.count() == 0 {
             return;
@@ -95,9 +81,7 @@ impl<'a> Recorder<'a> {
         };
         let [x, y] = groups.size;
         let (group, extent) = match step.work {
-            Work::Pixels(area) => {
-                (&tile.groups[area as usize], Extent::Groups([x, y, step.layers()]))
-            }
+            Work::Pixels(area) => (&tile.groups[area as usize], Extent::Groups([x, y, step.layers()])),
             Work::List(area) => {
                 let group = &tile.groups[area as usize];
                 let needed = &self.frame.groups_needed;
@@ -107,14 +91,7 @@ impl<'a> Recorder<'a> {
                     (true, Some(_)) => {
                         let slice = DispatchParameters { count: x, is_new: 0, ..dispatch };
                         let extent = Extent::Groups([1, 1, 1]);
-                        self.dispatch(
-                            encoder,
-                            self.advance,
-                            slice,
-                            &tile.advance,
-                            [None; 2],
-                            extent,
-                        );
+                        self.dispatch(encoder, self.advance, slice, &tile.advance, [None; 2], extent);
                         (group, Extent::Indirect(needed, GROUPS_OF_ONE))
                     }
                 }
@@ -130,12 +107,7 @@ impl<'a> Recorder<'a> {
 
     /// Records the pass that sums variances and luminances of a tile whose pixels have `samples` samples each. Returns
     /// the number of sums.
-    pub(crate) fn record_noise(
-        &mut self,
-        encoder: &mut CommandEncoder,
-        noise: &Pass,
-        samples: u32,
-    ) -> usize {
+    pub(crate) fn record_noise(&mut self, encoder: &mut CommandEncoder, noise: &Pass, samples: u32) -> usize {
         let tile = &self.frame.tiles[self.tile];
         let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
         let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
@@ -158,8 +130,7 @@ impl<'a> Recorder<'a> {
         let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
         self.parameters.push(dispatch);
         let [width, height] = Groups::of_size(tile.tile.size).size;
-        let descriptor =
-            wgpu::ComputePassDescriptor { label: Some("pinhole resolve"), timestamp_writes: None };
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("pinhole resolve"), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
         pass.set_pipeline(resolve);
         pass.set_bind_group(0, &tile.sums, &[offset]);

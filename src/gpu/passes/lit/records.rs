@@ -120,13 +120,7 @@ pub(crate) struct LitSizes {
 
 impl LitSizes {
     /// The sizes for a film with at most `samples` samples of every pixel.
-    pub(crate) fn new(
-        limits: &Limits,
-        shape: DeviceShape,
-        film: &Film,
-        mode: Mode,
-        samples: u32,
-    ) -> Self {
+    pub(crate) fn new(limits: &Limits, shape: DeviceShape, film: &Film, mode: Mode, samples: u32) -> Self {
         let slots = slots(mode);
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_path = 16 * slots.max(FILM_SLOTS);

@@ -151,12 +151,8 @@ impl<'a> Round<'a> {
     /// The dispatches of some samples, which are traced together.
     pub(crate) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
-        let dispatch = DispatchParameters {
-            sample: samples.start,
-            count,
-            paths: self.room,
-            ..bytemuck::Zeroable::zeroed()
-        };
+        let dispatch =
+            DispatchParameters { sample: samples.start, count, paths: self.room, ..bytemuck::Zeroable::zeroed() };
         let LitPasses { key, .. } = self.passes;
         if key.one_pass.is_some() {
             let pass = self.passes.named(key.passes()[0])?;
@@ -229,13 +225,7 @@ impl<'a> Steps<'a> {
         Ok(())
     }
 
-    fn push_pass(
-        &mut self,
-        pass: &'a Pass,
-        dispatch: DispatchParameters,
-        brick: Option<&'a BindGroup>,
-        work: Work,
-    ) {
+    fn push_pass(&mut self, pass: &'a Pass, dispatch: DispatchParameters, brick: Option<&'a BindGroup>, work: Work) {
         self.steps.push(Step {
             pass,
             dispatch,
@@ -281,11 +271,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Adds a dispatch for every brick, which shades the hits in the brick.
-    fn shade(
-        &mut self,
-        entry_point: &'static str,
-        dispatch: DispatchParameters,
-    ) -> Result<(), GpuError> {
+    fn shade(&mut self, entry_point: &'static str, dispatch: DispatchParameters) -> Result<(), GpuError> {
         // Pixels outside the visible region show the background.
         let work = work_of(dispatch, Area::Whole);
         let mut bricks = self.round.scene.bricks.iter();
@@ -293,12 +279,7 @@ impl<'a> Steps<'a> {
     }
 
     /// The parameters of the passes over a surface. From the second surface on, the list of paths is counted first.
-    fn surface(
-        &mut self,
-        dispatch: DispatchParameters,
-        surface: u32,
-        is_last: bool,
-    ) -> DispatchParameters {
+    fn surface(&mut self, dispatch: DispatchParameters, surface: u32, is_last: bool) -> DispatchParameters {
         let list = surface.wrapping_sub(1) & 1;
         let dispatch = DispatchParameters { surface, is_last: is_last.into(), list, ..dispatch };
         if surface > 0 {
@@ -363,8 +344,7 @@ impl<'a> Steps<'a> {
             self.advance(dispatch);
             for light in (0..lights).step_by(BITS) {
                 let count = (lights - light).min(BITS as u32);
-                let casts =
-                    |light: &u32| lighting.shadows && lighting.casts_shadow[*light as usize];
+                let casts = |light: &u32| lighting.shadows && lighting.casts_shadow[*light as usize];
                 let casting: Vec<u32> = (light..light + count).filter(casts).collect();
                 for &light in &casting {
                     let dispatch = DispatchParameters { light, ..dispatch };

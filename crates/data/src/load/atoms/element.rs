@@ -14,14 +14,11 @@ impl Residue {
     /// Returns the kind of a residue by its name. Names that molecular dynamics programs use are included.
     pub(super) fn of(name: &str) -> Self {
         match name {
-            "ALA" | "ARG" | "ASN" | "ASP" | "CYS" | "GLN" | "GLU" | "GLY" | "HIS" | "ILE"
-            | "LEU" | "LYS" | "MET" | "PHE" | "PRO" | "SER" | "THR" | "TRP" | "TYR" | "VAL"
-            | "ASX" | "GLX" | "MSE" | "SEC" | "PYL" | "UNK" | "HID" | "HIE" | "HIP" | "HSD"
-            | "HSE" | "HSP" | "CYX" | "CYM" | "ASH" | "GLH" | "LYN" => Self::AminoAcid,
-            "A" | "C" | "G" | "U" | "I" | "DA" | "DC" | "DG" | "DT" | "DU" | "DI" | "HOH"
-            | "DOD" | "WAT" | "H2O" | "SOL" | "TIP" | "TIP3" | "TIP4" | "SPC" => {
-                Self::NucleotideOrWater
-            }
+            "ALA" | "ARG" | "ASN" | "ASP" | "CYS" | "GLN" | "GLU" | "GLY" | "HIS" | "ILE" | "LEU" | "LYS" | "MET"
+            | "PHE" | "PRO" | "SER" | "THR" | "TRP" | "TYR" | "VAL" | "ASX" | "GLX" | "MSE" | "SEC" | "PYL" | "UNK"
+            | "HID" | "HIE" | "HIP" | "HSD" | "HSE" | "HSP" | "CYX" | "CYM" | "ASH" | "GLH" | "LYN" => Self::AminoAcid,
+            "A" | "C" | "G" | "U" | "I" | "DA" | "DC" | "DG" | "DT" | "DU" | "DI" | "HOH" | "DOD" | "WAT" | "H2O"
+            | "SOL" | "TIP" | "TIP3" | "TIP4" | "SPC" => Self::NucleotideOrWater,
             _ => Self::Other,
         }
     }

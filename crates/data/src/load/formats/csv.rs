@@ -108,9 +108,7 @@ fn read_rows(first: &First<'_>, columns: &mut [ColumnBuilder]) -> Result<bool, L
 
 fn is_missing(value: &[u8]) -> bool {
     value.is_empty()
-        || [&b"nan"[..], b"na", b"n/a", b"null", b"none"]
-            .iter()
-            .any(|name| value.eq_ignore_ascii_case(name))
+        || [&b"nan"[..], b"na", b"n/a", b"null", b"none"].iter().any(|name| value.eq_ignore_ascii_case(name))
 }
 
 impl First<'_> {
@@ -179,8 +177,8 @@ struct Line<'a> {
 
 impl<'a> First<'a> {
     fn of(text: &'a [u8], given: &[String]) -> Result<Self, LoadError> {
-        let (comment, first, after) = first_line(text)
-            .ok_or_else(|| LoadError::new("there are no rows; a table has one on each line"))?;
+        let (comment, first, after) =
+            first_line(text).ok_or_else(|| LoadError::new("there are no rows; a table has one on each line"))?;
         let separator = separator_of(first.text);
         let values = values_of(first.text, separator);
         let line = first.number;
@@ -190,8 +188,7 @@ impl<'a> First<'a> {
         let rows_with_first = &text[row.len() - line_length(row)..];
         let (names, rows, lines_before) = if is_header {
             if !given.is_empty() {
-                let message =
-                    "the table has a header here; remove the names of columns that are given";
+                let message = "the table has a header here; remove the names of columns that are given";
                 return Err(LoadError::line(line, message));
             }
             (values, after, line)
@@ -201,9 +198,7 @@ impl<'a> First<'a> {
             let names = comment.and_then(|comment| {
                 let separators = [separator, separator_of(comment), Separator::Blank];
                 let mut names = separators.iter().map(|separator| values_of(comment, *separator));
-                names.find(|names| {
-                    names.len() == values.len() && !names.iter().any(|name| is_value(name))
-                })
+                names.find(|names| names.len() == values.len() && !names.iter().any(|name| is_value(name)))
             });
             let columns = values.len();
             let example = if columns == 3 { "x,y,z" } else { "x,y,z,radius" };
@@ -217,9 +212,7 @@ impl<'a> First<'a> {
         } else {
             if given.len() != values.len() {
                 let (names, columns) = (given.len(), values.len());
-                let message = format!(
-                    "there are {names} names of columns, but this row has {columns} values"
-                );
+                let message = format!("there are {names} names of columns, but this row has {columns} values");
                 return Err(LoadError::line(line, message));
             }
             (given.to_vec(), rows_with_first, line - 1)
@@ -236,25 +229,19 @@ impl<'a> First<'a> {
 /// Whether the first lines have names of positions, or a few numbers in each line.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     let text = without_byte_order_mark(bytes);
-    let is_text =
-        |text: &[u8]| !text.iter().any(|byte| *byte < b' ' && !byte.is_ascii_whitespace());
+    let is_text = |text: &[u8]| !text.iter().any(|byte| *byte < b' ' && !byte.is_ascii_whitespace());
     if !is_text(text) {
         return false;
     }
     if let Ok(first) = First::of(text, &[]) {
         return table::has_positions(&first.names);
     }
-    let lines = Lines::new(text)
-        .map(<[u8]>::trim_ascii)
-        .filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let lines = Lines::new(text).map(<[u8]>::trim_ascii).filter(|line| !line.is_empty() && !line.starts_with(b"#"));
     // The last line may be incomplete.
     let mut rows = lines.take(2).map(|line| values_of(line, separator_of(line)));
     rows.next().is_some_and(|first| {
-        let all_numbers = |row: &[String]| {
-            row.len() >= 3 && row.iter().all(|value| number(value.as_bytes()).is_some())
-        };
-        all_numbers(&first)
-            && rows.next().is_some_and(|second| all_numbers(&second) && second.len() == first.len())
+        let all_numbers = |row: &[String]| row.len() >= 3 && row.iter().all(|value| number(value.as_bytes()).is_some());
+        all_numbers(&first) && rows.next().is_some_and(|second| all_numbers(&second) && second.len() == first.len())
     })
 }
 
@@ -290,11 +277,8 @@ fn values_of(line: &[u8], separator: Separator) -> Vec<String> {
     match separator {
         Separator::Blank => Values { rest: line }.map(text).collect(),
         Separator::Byte(separator) => {
-            let mut reader = ::csv::ReaderBuilder::new()
-                .delimiter(separator)
-                .has_headers(false)
-                .flexible(true)
-                .from_reader(line);
+            let mut reader =
+                ::csv::ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(line);
             let mut record = ::csv::ByteRecord::new();
             match reader.read_byte_record(&mut record) {
                 Ok(true) => record.iter().map(text).collect(),

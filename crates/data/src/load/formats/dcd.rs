@@ -19,11 +19,7 @@ use crate::load::topology::{Positions, Topology};
 
 pub(super) const FRAMES: Frames = Frames::Positions { find };
 
-fn find(
-    source: &mut dyn Bytes,
-    _: Option<usize>,
-    topology: Option<Topology>,
-) -> Result<FrameIndex, LoadError> {
+fn find(source: &mut dyn Bytes, _: Option<usize>, topology: Option<Topology>) -> Result<FrameIndex, LoadError> {
     let topology = Topology::required(topology, "dcd")?;
     let mut reader = reader(source)?;
     let header = Header::read(&mut reader)?;
@@ -46,10 +42,7 @@ fn find(
     };
     let mut notes = Vec::new();
     if problem.is_none() && u64::from(header.frames) > count {
-        notes.push(format!(
-            "the header declares {} frames, but the file has {count}",
-            header.frames
-        ));
+        notes.push(format!("the header declares {} frames, but the file has {count}", header.frames));
     }
     if header.has_fourth {
         notes.push("the fourth dimension of the positions is not used".to_owned());
@@ -75,13 +68,7 @@ struct Dcd {
 }
 
 impl FrameReader for Dcd {
-    fn read(
-        &self,
-        source: &mut dyn Bytes,
-        frame: usize,
-        span: &FrameSpan,
-        _: &Options,
-    ) -> Result<Dataset, LoadError> {
+    fn read(&self, source: &mut dyn Bytes, frame: usize, span: &FrameSpan, _: &Options) -> Result<Dataset, LoadError> {
         let header = &self.header;
         let mut reader = Reader::new(source, header.order)?;
         let mut positions = Positions::default();
@@ -98,12 +85,7 @@ impl FrameReader for Dcd {
 
 impl Dcd {
     /// Reads a frame. After the first frame, `positions` must already have the fixed atoms.
-    fn read_frame(
-        &self,
-        reader: &mut Reader<'_>,
-        frame: usize,
-        positions: &mut Positions,
-    ) -> Result<(), LoadError> {
+    fn read_frame(&self, reader: &mut Reader<'_>, frame: usize, positions: &mut Positions) -> Result<(), LoadError> {
         let header = &self.header;
         positions.cell = None;
         if header.has_cell {
@@ -113,8 +95,8 @@ impl Dcd {
             for (value, number) in cell.iter_mut().zip(numbers(&bytes, header.order)) {
                 *value = number;
             }
-            positions.cell = edges(cell)
-                .map_err(|message| LoadError::byte(offset, format!("frame {frame}: {message}")))?;
+            positions.cell =
+                edges(cell).map_err(|message| LoadError::byte(offset, format!("frame {frame}: {message}")))?;
         }
         let moving = header.moving(frame);
         positions.centers.resize(header.atoms, [0.0; 3]);
@@ -162,9 +144,8 @@ struct Header {
 fn layout(bytes: &[u8]) -> Option<(Order, u64)> {
     for order in [Order::Little, Order::Big] {
         for marker_bytes in [4, 8] {
-            let is_after = bytes
-                .get(marker_bytes..)
-                .is_some_and(|rest| rest.starts_with(NAME) || rest.starts_with(b"VELD"));
+            let is_after =
+                bytes.get(marker_bytes..).is_some_and(|rest| rest.starts_with(NAME) || rest.starts_with(b"VELD"));
             if is_after && marker(bytes, order, marker_bytes as u64) == HEADER_BYTES {
                 return Some((order, marker_bytes as u64));
             }
@@ -212,8 +193,7 @@ impl Header {
         };
         let first = header.record(reader, HEADER_BYTES, "the header")?;
         if !first.starts_with(NAME) {
-            let message =
-                "the file has velocities (VELD) and no positions; give the trajectory of positions";
+            let message = "the file has velocities (VELD) and no positions; give the trajectory of positions";
             return Err(LoadError::byte(marker_bytes, message));
         }
         let control: Vec<u32> = numbers(&first[4..], reader.order).collect();
@@ -245,8 +225,7 @@ impl Header {
             for (index, number) in numbers::<i32>(&free, reader.order).enumerate() {
                 let is_atom = (1..=atoms).contains(&number);
                 if !is_atom {
-                    let message =
-                        format!("{number} is not the number of an atom, from 1 to {atoms}");
+                    let message = format!("{number} is not the number of an atom, from 1 to {atoms}");
                     return Err(LoadError::byte(start + 4 * index as u64, message));
                 }
                 header.free.push(number as u32 - 1);
@@ -267,12 +246,7 @@ impl Header {
     }
 
     /// Reads a record, which must have this length.
-    fn record(
-        &self,
-        reader: &mut Reader<'_>,
-        length: u64,
-        what: &str,
-    ) -> Result<Vec<u8>, LoadError> {
+    fn record(&self, reader: &mut Reader<'_>, length: u64, what: &str) -> Result<Vec<u8>, LoadError> {
         let offset = reader.offset;
         let found = self.marker(reader, what)?;
         if found != length {
@@ -291,12 +265,7 @@ impl Header {
         }
     }
 
-    fn end_of_record(
-        &self,
-        reader: &mut Reader<'_>,
-        length: u64,
-        what: &str,
-    ) -> Result<(), LoadError> {
+    fn end_of_record(&self, reader: &mut Reader<'_>, length: u64, what: &str) -> Result<(), LoadError> {
         reader.check(length, what)?;
         reader.seek(reader.offset + length)?;
         self.check_end(reader, length, what)
@@ -337,9 +306,7 @@ fn edges(cell: [f64; 6]) -> Result<Option<[[f64; 3]; 3]>, String> {
 }
 
 fn from_angles(lengths: [f64; 3], angles: [f64; 3]) -> Option<[[f64; 3]; 3]> {
-    if lengths.iter().any(|length| *length <= 0.0)
-        || angles.iter().any(|angle| *angle < -1.0 || *angle >= 180.0)
-    {
+    if lengths.iter().any(|length| *length <= 0.0) || angles.iter().any(|angle| *angle < -1.0 || *angle >= 180.0) {
         return None;
     }
     let are_cosines = angles.iter().all(|angle| angle.abs() <= 1.0);

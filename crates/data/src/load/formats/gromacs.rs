@@ -29,13 +29,7 @@ struct Trajectory {
 }
 
 impl FrameReader for Trajectory {
-    fn read(
-        &self,
-        source: &mut dyn Bytes,
-        frame: usize,
-        span: &FrameSpan,
-        _: &Options,
-    ) -> Result<Dataset, LoadError> {
+    fn read(&self, source: &mut dyn Bytes, frame: usize, span: &FrameSpan, _: &Options) -> Result<Dataset, LoadError> {
         let mut reader = Reader::new(source, Order::Big)?;
         reader.seek(span.bytes.start)?;
         let positions = (self.read)(&mut reader, frame, &self.topology)?;

@@ -34,8 +34,7 @@ const QUANTITIES: [(&str, &str, u32); 6] = [
 ];
 
 /// Chunks that describe the others.
-const OTHERS: [&str; 4] =
-    ["particles/N", "particles/position", "particles/types", "particles/typeid"];
+const OTHERS: [&str; 4] = ["particles/N", "particles/position", "particles/types", "particles/typeid"];
 
 const LOGGED: &str = "log/particles/";
 
@@ -78,11 +77,10 @@ impl FrameReader for Gsd {
     ) -> Result<Dataset, LoadError> {
         let mut reader = Reader::new(source, Order::Little)?;
         let index = &self.index;
-        let particles =
-            |frame: u64, reader: &mut Reader<'_>| match index.chunk(frame, "particles/N") {
-                Some(chunk) => Ok(chunk.numbers(reader, "particles/N")?.first().copied()),
-                None => Ok::<_, LoadError>(None),
-            };
+        let particles = |frame: u64, reader: &mut Reader<'_>| match index.chunk(frame, "particles/N") {
+            Some(chunk) => Ok(chunk.numbers(reader, "particles/N")?.first().copied()),
+            None => Ok::<_, LoadError>(None),
+        };
         let frame = frame as u64;
         let in_first = particles(0, &mut reader)?.unwrap_or_default() as u64;
         let count = particles(frame, &mut reader)?.map_or(in_first, |count| count as u64);
@@ -117,9 +115,10 @@ impl Frame<'_> {
         }
         // Types are often called A, B and C, and B and C happen to be chemical elements.
         let are_elements = !species.names.is_empty()
-            && species.names.iter().all(|name| {
-                name.starts_with(|c: char| c.is_ascii_alphabetic()) && appearance(name).is_element
-            });
+            && species
+                .names
+                .iter()
+                .all(|name| name.starts_with(|c: char| c.is_ascii_alphabetic()) && appearance(name).is_element);
         let has_diameters = columns.iter().any(|column| column.name == "diameter");
         let has_default = self.index.has_name("particles/diameter") || !are_elements;
         if !has_diameters && options.radius.is_none() && !has_default {
@@ -136,8 +135,7 @@ impl Frame<'_> {
         if are_elements {
             columns.push(TableColumn::labels("species", species));
         } else {
-            others
-                .push(Column { name: "species".to_owned(), values: ColumnValues::Labels(species) });
+            others.push(Column { name: "species".to_owned(), values: ColumnValues::Labels(species) });
         }
         let unused = self.logged(&mut columns)?;
         if !unused.is_empty() {
@@ -182,19 +180,13 @@ impl Frame<'_> {
     fn numbers(&mut self, chunk: Chunk, name: &str) -> Result<Vec<f64>, LoadError> {
         let bytes = chunk.bytes().unwrap_or(u64::MAX);
         self.left = self.left.checked_sub(bytes).ok_or_else(|| {
-            let message =
-                format!("frame {}: its chunks take more bytes than the file has", self.frame);
+            let message = format!("frame {}: its chunks take more bytes than the file has", self.frame);
             LoadError::byte(chunk.location, message)
         })?;
         chunk.numbers(&mut self.reader, name)
     }
 
-    fn columns(
-        &mut self,
-        chunk: Chunk,
-        name: &str,
-        column: &str,
-    ) -> Result<Vec<TableColumn>, LoadError> {
+    fn columns(&mut self, chunk: Chunk, name: &str, column: &str) -> Result<Vec<TableColumn>, LoadError> {
         let numbers = self.numbers(chunk, name)?;
         let names = component_names(column, chunk.columns as usize);
         let step = names.len().max(1);
@@ -209,10 +201,7 @@ impl Frame<'_> {
             if self.count == 0 {
                 return Ok(["x", "y", "z"].map(|axis| TableColumn::numbers(axis, vec![])).into());
             }
-            let message = format!(
-                "frame {} declares {} particles, but has no {NAME}",
-                self.frame, self.count
-            );
+            let message = format!("frame {} declares {} particles, but has no {NAME}", self.frame, self.count);
             return Err(LoadError::byte(0, message));
         };
         self.expect(chunk, NAME, 3)?;
@@ -263,20 +252,16 @@ impl Frame<'_> {
         let mut unused = BTreeSet::new();
         let is_like_first = self.is_like_first;
         let first = index.chunks(0).map(|chunk| (chunk, is_like_first));
-        for ((name, chunk), is_for_all) in
-            index.chunks(self.frame).map(|chunk| (chunk, true)).chain(first)
-        {
+        for ((name, chunk), is_for_all) in index.chunks(self.frame).map(|chunk| (chunk, true)).chain(first) {
             let is_known = name.starts_with("configuration/")
                 || OTHERS.contains(&name)
                 || QUANTITIES.iter().any(|(chunk, ..)| *chunk == name);
             if is_known || chunk.rows == 0 || !seen.insert(name) {
                 continue;
             }
-            let quantity = name.strip_prefix(LOGGED).filter(|_| {
-                chunk.rows == self.count
-                    && (1..=MOST_COMPONENTS).contains(&chunk.columns)
-                    && is_for_all
-            });
+            let quantity = name
+                .strip_prefix(LOGGED)
+                .filter(|_| chunk.rows == self.count && (1..=MOST_COMPONENTS).contains(&chunk.columns) && is_for_all);
             let Some(quantity) = quantity else {
                 // Nothing about bonds is used, so a note names only the kind.
                 let is_bonded = !name.starts_with("particles/") && !name.starts_with("log/");
@@ -286,10 +271,7 @@ impl Frame<'_> {
             };
             let short = quantity.rsplit('/').next().unwrap_or(quantity);
             let of_name = |column: &TableColumn| {
-                column
-                    .name
-                    .strip_prefix(short)
-                    .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+                column.name.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
             };
             let is_taken = columns.iter().any(of_name);
             let column = shown(if is_taken { quantity } else { short }.as_bytes());

@@ -95,9 +95,7 @@ impl Cell {
                 let high = [a[1] - most, b[1] - yz.max(0.0), c[1]];
                 Self::tilted(low, high, [xy, xz, yz])
             }
-            Shape::General => {
-                Self { origin: [a[3], b[3], c[3]], edges: [a, b, c].map(|[x, y, z, _]| [x, y, z]) }
-            }
+            Shape::General => Self { origin: [a[3], b[3], c[3]], edges: [a, b, c].map(|[x, y, z, _]| [x, y, z]) },
         })
     }
 

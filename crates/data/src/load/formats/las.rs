@@ -45,10 +45,8 @@ impl<'a> Points<'a> {
             return Err(LoadError::new("this is not a LAS file: it does not start with LASF"));
         }
         if bytes.len() < 227 {
-            let message = format!(
-                "the header is cut off: the file has {} bytes, but a header has 227 or more",
-                bytes.len()
-            );
+            let message =
+                format!("the header is cut off: the file has {} bytes, but a header has 227 or more", bytes.len());
             return Err(LoadError::new(message).of_kind(LoadErrorKind::CutOff));
         }
         let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
@@ -62,15 +60,11 @@ impl<'a> Points<'a> {
         }
         let least = LENGTHS.get(usize::from(format)).copied();
         let least = least.ok_or_else(|| {
-            LoadError::byte(
-                104,
-                format!("the point format is {format}, but those of LAS are 0 to 10"),
-            )
+            LoadError::byte(104, format!("the point format is {format}, but those of LAS are 0 to 10"))
         })?;
         let length = usize::from(u16::from_le_bytes(chunk(bytes, 105)));
         if length < least {
-            let message =
-                format!("a point has {length} bytes, but point format {format} takes {least}");
+            let message = format!("a point has {length} bytes, but point format {format} takes {least}");
             return Err(LoadError::byte(105, message));
         }
         let start = u64::from(u32::from_le_bytes(chunk(bytes, 96)));
@@ -98,9 +92,7 @@ impl<'a> Points<'a> {
         let mut columns = Vec::new();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let (scale, offset) = (self.scale[axis], self.offset[axis]);
-            let number = |point: &[u8]| {
-                f64::from(i32::from_le_bytes(chunk(point, 4 * axis))) * scale + offset
-            };
+            let number = |point: &[u8]| f64::from(i32::from_le_bytes(chunk(point, 4 * axis))) * scale + offset;
             columns.push(self.column(name, number)?);
         }
         let short = |at: usize| move |point: &[u8]| f64::from(u16::from_le_bytes(chunk(point, at)));
@@ -152,16 +144,11 @@ impl<'a> Points<'a> {
         Ok(columns)
     }
 
-    fn column(
-        &self,
-        name: &str,
-        number: impl Fn(&[u8]) -> f64 + Sync + Send,
-    ) -> Result<TableColumn, LoadError> {
+    fn column(&self, name: &str, number: impl Fn(&[u8]) -> f64 + Sync + Send) -> Result<TableColumn, LoadError> {
         let of_row = |row: usize| number(&self.bytes[row * self.length..]);
         let numbers = parallel::try_map(self.count, of_row);
-        let numbers = numbers.map_err(|_| {
-            LoadError::new(format!("there is not enough memory for {} points", self.count))
-        })?;
+        let numbers =
+            numbers.map_err(|_| LoadError::new(format!("there is not enough memory for {} points", self.count)))?;
         Ok(TableColumn::numbers(name, numbers))
     }
 }

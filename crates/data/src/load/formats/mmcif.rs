@@ -20,16 +20,13 @@ use crate::load::error::LoadError;
 use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use crate::load::source::{Bytes, bytes};
 use pinhole::internals::text::{shortened, without_byte_order_mark};
-use tokens::{
-    Columns, Header, Place, SLOTS, Token, Tokens, cut_row, decimal, is_unknown, not_a_number,
-};
+use tokens::{Columns, Header, Place, SLOTS, Token, Tokens, cut_row, decimal, is_unknown, not_a_number};
 
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
 
 /// Whether the first line that is neither blank nor a comment begins a data block.
 pub(super) fn starts(bytes: &[u8]) -> bool {
-    let mut lines =
-        without_byte_order_mark(bytes).split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+    let mut lines = without_byte_order_mark(bytes).split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
     first.and_then(|line| line.get(..5)).is_some_and(|name| name.eq_ignore_ascii_case(b"data_"))
 }
@@ -42,21 +39,11 @@ fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIn
     let (models, problem) = models_of(&text);
     let frames: Vec<FrameSpan> = models
         .into_iter()
-        .map(|model| FrameSpan {
-            bytes: model.start as u64..model.end as u64,
-            lines_before: model.lines_before,
-        })
+        .map(|model| FrameSpan { bytes: model.start as u64..model.end as u64, lines_before: model.lines_before })
         .collect();
     let problem = problem.or_else(|| frames.is_empty().then(no_atoms));
-    let reader =
-        MmCif { models: frames.clone(), end: text.len() as u64, is_whole: problem.is_none() };
-    Ok(FrameIndex {
-        frames,
-        is_whole: true,
-        problem,
-        reader: Some(Box::new(reader)),
-        ..FrameIndex::default()
-    })
+    let reader = MmCif { models: frames.clone(), end: text.len() as u64, is_whole: problem.is_none() };
+    Ok(FrameIndex { frames, is_whole: true, problem, reader: Some(Box::new(reader)), ..FrameIndex::default() })
 }
 
 /// Reads models. The text around them has the names of their columns, and the cell.
@@ -70,21 +57,13 @@ struct MmCif {
 }
 
 impl FrameReader for MmCif {
-    fn read(
-        &self,
-        source: &mut dyn Bytes,
-        wanted: usize,
-        span: &FrameSpan,
-        _: &Options,
-    ) -> Result<Dataset, LoadError> {
+    fn read(&self, source: &mut dyn Bytes, wanted: usize, span: &FrameSpan, _: &Options) -> Result<Dataset, LoadError> {
         let frames = &self.models;
         let FrameSpan { bytes: rows, lines_before } = span;
         // Models of a block follow each other without a gap. The text between blocks has their names and cells.
-        let is_first =
-            |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
+        let is_first = |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
         let first = (0..=wanted).rev().find(|frame| is_first(*frame)).unwrap_or_default();
-        let last =
-            (wanted..frames.len()).find(|frame| frame + 1 == frames.len() || is_first(frame + 1));
+        let last = (wanted..frames.len()).find(|frame| frame + 1 == frames.len() || is_first(frame + 1));
         let last = last.unwrap_or(wanted);
         let start = if first == 0 { 0 } else { frames[first - 1].bytes.end };
         let before = bytes(source, &(start..frames[first].bytes.start))?;
@@ -94,8 +73,7 @@ impl FrameReader for MmCif {
         let mut header = Header::before(without_byte_order_mark(&before), lines)?;
         let end = frames.get(last + 1).map_or(self.end, |next| next.bytes.start);
         if header.cell()?.is_none() && self.is_whole {
-            let lines =
-                frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
+            let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
             header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
         }
         let cell = header.cell()?;
@@ -105,8 +83,9 @@ impl FrameReader for MmCif {
         loaded.cell = cell;
         if columns.is_fractional {
             loaded.notes.push(
-            "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them".to_owned(),
-        );
+                "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them"
+                    .to_owned(),
+            );
         }
         Ok(loaded)
     }
@@ -214,11 +193,7 @@ fn symbol_of(text: &[u8]) -> [u8; 2] {
         {
             [*a, *b]
         }
-        [a, rest @ ..]
-            if a.is_ascii_alphabetic() && !rest.first().is_some_and(u8::is_ascii_alphabetic) =>
-        {
-            [b' ', *a]
-        }
+        [a, rest @ ..] if a.is_ascii_alphabetic() && !rest.first().is_some_and(u8::is_ascii_alphabetic) => [b' ', *a],
         _ => *b"  ",
     }
 }
@@ -296,9 +271,7 @@ impl<'a> LoopModels<'a> {
     fn begin(&mut self, name: &'a [u8], place: Place) -> Result<(), LoadError> {
         if !self.names.insert(name) {
             let model = shortened(&String::from_utf8_lossy(name));
-            let message = format!(
-                "the model {model} begins again; all atoms of a model must follow each other"
-            );
+            let message = format!("the model {model} begins again; all atoms of a model must follow each other");
             return Err(LoadError::line(place.lines_before + 1, message));
         }
         self.current = name;

@@ -268,12 +268,9 @@ impl Format {
     /// # Errors
     /// Returns the first option that does not apply.
     pub fn check(&self, options: &Options) -> Result<(), LoadError> {
-        let refused = |option, what: String| {
-            Err(LoadError::new(format!("{option} applies only to {what}; remove it")))
-        };
+        let refused = |option, what: String| Err(LoadError::new(format!("{option} applies only to {what}; remove it")));
         if options.frame.is_some() && !self.has_frames() {
-            let what =
-                format!("trajectories ({})", Self::extensions_of(|format| format.has_frames()));
+            let what = format!("trajectories ({})", Self::extensions_of(|format| format.has_frames()));
             return refused("frame", what);
         }
         if options.radius.is_some() && !self.may_lack_radii {
@@ -282,10 +279,8 @@ impl Format {
             return refused("radius", what);
         }
         if options.topology.is_some() && !self.needs_topology {
-            let what = format!(
-                "trajectories of positions alone ({})",
-                Self::extensions_of(|format| format.needs_topology)
-            );
+            let what =
+                format!("trajectories of positions alone ({})", Self::extensions_of(|format| format.needs_topology));
             return refused("topology", what);
         }
         if !options.columns.is_empty() && !self.may_lack_names {

@@ -19,17 +19,8 @@ use crate::load::table::Table;
 use pinhole::internals::text::{one_line, shortened};
 
 /// Names that mark the array of positions among several. The first name in this list that occurs counts.
-const NAMES: [&str; 9] = [
-    "spheres",
-    "positions",
-    "position",
-    "pos",
-    "points",
-    "coordinates",
-    "coords",
-    "centers",
-    "xyz",
-];
+const NAMES: [&str; 9] =
+    ["spheres", "positions", "position", "pos", "points", "coordinates", "coords", "centers", "xyz"];
 
 /// The most arrays that are read.
 const MAX_ARRAYS: usize = 1024;
@@ -125,21 +116,13 @@ struct Entry {
 
 impl Entry {
     /// The bytes of the array, which are borrowed from the archive if they are not compressed.
-    fn contents<'a>(
-        &self,
-        archive: &'a ZipSliceArchive<&[u8]>,
-    ) -> Result<Cow<'a, [u8]>, LoadError> {
-        let wrong = |error: &dyn Display| {
-            of_array(&self.name)(LoadError::new(one_line(&error.to_string())))
-        };
+    fn contents<'a>(&self, archive: &'a ZipSliceArchive<&[u8]>) -> Result<Cow<'a, [u8]>, LoadError> {
+        let wrong = |error: &dyn Display| of_array(&self.name)(LoadError::new(one_line(&error.to_string())));
         let entry = archive.get_entry(self.wayfinder).map_err(|error| wrong(&error))?;
         let data = entry.data();
         match self.method {
             CompressionMethod::STORE => {
-                let found = ZipVerification {
-                    crc: rawzip::crc32(data),
-                    uncompressed_size: data.len() as u64,
-                };
+                let found = ZipVerification { crc: rawzip::crc32(data), uncompressed_size: data.len() as u64 };
                 entry.claim_verifier().valid(found).map_err(|error| wrong(&error))?;
                 Ok(data.into())
             }
@@ -147,29 +130,20 @@ impl Entry {
                 let size = self.wayfinder.uncompressed_size_hint();
                 if size > (data.len() as u64).saturating_mul(MAX_RATIO) {
                     let count = data.len();
-                    return Err(wrong(&format!(
-                        "{count} compressed bytes cannot expand to {size} bytes"
-                    )));
+                    return Err(wrong(&format!("{count} compressed bytes cannot expand to {size} bytes")));
                 }
                 let mut inflated = Vec::new();
                 usize::try_from(size)
                     .ok()
                     .and_then(|size| inflated.try_reserve_exact(size).ok())
-                    .ok_or_else(|| {
-                    wrong(&format!("there is not enough memory for its {size} bytes"))
-                })?;
+                    .ok_or_else(|| wrong(&format!("there is not enough memory for its {size} bytes")))?;
                 let reader = entry.verifying_reader(DeflateDecoder::new(data));
                 // One more byte is asked for, so that the reader reaches the end of the data and verifies the checksum.
-                reader
-                    .take(size.saturating_add(1))
-                    .read_to_end(&mut inflated)
-                    .map_err(|error| wrong(&error))?;
+                reader.take(size.saturating_add(1)).read_to_end(&mut inflated).map_err(|error| wrong(&error))?;
                 if inflated.len() as u64 == size {
                     Ok(inflated.into())
                 } else {
-                    Err(wrong(&format!(
-                        "it is longer than the {size} bytes that the archive declares"
-                    )))
+                    Err(wrong(&format!("it is longer than the {size} bytes that the archive declares")))
                 }
             }
             method => {
@@ -196,8 +170,7 @@ fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, Lo
         compressed = compressed.saturating_add(wayfinder.compressed_size_hint());
         // Overlapping arrays could take much more memory than the file.
         if entries.len() == MAX_ARRAYS || compressed > size {
-            let message =
-                format!("it has more than {MAX_ARRAYS} arrays, or arrays that lie over each other");
+            let message = format!("it has more than {MAX_ARRAYS} arrays, or arrays that lie over each other");
             return Err(broken(&message));
         }
         entries.retain(|known| known.name != name);
@@ -214,13 +187,10 @@ struct Main {
 }
 
 fn main_array(entries: &[Entry]) -> Result<Main, LoadError> {
-    let named =
-        |wanted: &str| entries.iter().position(|entry| entry.name.eq_ignore_ascii_case(wanted));
+    let named = |wanted: &str| entries.iter().position(|entry| entry.name.eq_ignore_ascii_case(wanted));
     let is_alone = true;
     match (entries.len(), NAMES.into_iter().find_map(named)) {
-        (0, _) => {
-            Err(LoadError::new("the archive has no array; save the spheres with numpy.savez"))
-        }
+        (0, _) => Err(LoadError::new("the archive has no array; save the spheres with numpy.savez")),
         (_, Some(index)) => Ok(Main { index, is_alone }),
         (1, None) => Ok(Main { index: 0, is_alone }),
         _ => match ["x", "y", "z"].map(named) {
@@ -242,11 +212,7 @@ fn broken(error: &impl ToString) -> LoadError {
 /// Puts the name of an array before an error.
 pub(super) fn of_array(name: &str) -> impl Fn(LoadError) -> LoadError {
     let name = shortened(&one_line(name));
-    move |error| LoadError {
-        place: Place::Array(name.clone()),
-        message: error.to_string(),
-        ..error
-    }
+    move |error| LoadError { place: Place::Array(name.clone()), message: error.to_string(), ..error }
 }
 
 /// Lists the names of arrays on one line, however many there are.

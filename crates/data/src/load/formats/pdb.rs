@@ -86,10 +86,8 @@ fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> 
 
 /// Whether the first line is one with which PDB files start.
 pub(super) fn starts(bytes: &[u8]) -> bool {
-    const FIRST: [&[u8]; 10] = [
-        b"HEADER", b"TITLE ", b"REMARK", b"COMPND", b"CRYST1", b"MODEL ", b"ATOM  ", b"HETATM",
-        b"OBSLTE", b"CAVEAT",
-    ];
+    const FIRST: [&[u8]; 10] =
+        [b"HEADER", b"TITLE ", b"REMARK", b"COMPND", b"CRYST1", b"MODEL ", b"ATOM  ", b"HETATM", b"OBSLTE", b"CAVEAT"];
     FIRST.iter().any(|name| bytes.starts_with(name))
 }
 
@@ -226,9 +224,7 @@ fn no_atoms() -> LoadError {
 
 /// The error of a file in mmCIF, the successor of PDB.
 fn mmcif() -> LoadError {
-    LoadError::new(
-        "this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif",
-    )
+    LoadError::new("this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif")
 }
 
 fn outside_model(line: usize, model_line: usize) -> LoadError {

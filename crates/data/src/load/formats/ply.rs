@@ -35,8 +35,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         format!("the property {name} of the vertices is a list, and is not used")
     }));
     let others = header.elements.iter().enumerate().filter(|(at, e)| *at != vertex && e.count > 0);
-    let others: Vec<_> =
-        others.take(8).map(|(_, e)| format!("{} of {}", e.count, e.name)).collect();
+    let others: Vec<_> = others.take(8).map(|(_, e)| format!("{} of {}", e.count, e.name)).collect();
     if !others.is_empty() {
         let others = others.join(", ");
         loaded.notes.push(format!("vertices become spheres; not used are {others}"));
@@ -64,8 +63,7 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
         }
     }
     let element = &header.elements[vertex];
-    let mut values: Vec<_> =
-        element.properties.iter().map(|p| p.list.is_none().then(Vec::new)).collect();
+    let mut values: Vec<_> = element.properties.iter().map(|p| p.list.is_none().then(Vec::new)).collect();
     for found in 0..element.count {
         let (text, line) = lines.next().ok_or_else(|| too_few_lines(element, found))?;
         let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
@@ -119,12 +117,10 @@ fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableCol
     let at = |rest: &[u8]| header.bytes + data.len() - rest.len();
     for element in &header.elements[..vertex] {
         let before = rest;
-        rest = walk(rest, element, order, |_, _| {})
-            .map_err(|index| too_few_bytes(at(before), element, index))?;
+        rest = walk(rest, element, order, |_, _| {}).map_err(|index| too_few_bytes(at(before), element, index))?;
     }
     let element = &header.elements[vertex];
-    let memory =
-        |_| LoadError::new(format!("there is not enough memory for {} vertices", element.count));
+    let memory = |_| LoadError::new(format!("there is not enough memory for {} vertices", element.count));
     let too_few = |index| too_few_bytes(at(rest), element, index);
     let mut values = Vec::with_capacity(element.properties.len());
     let rest = if let Some(size) = element.size().filter(|size| *size > 0) {
@@ -175,9 +171,8 @@ fn too_few_bytes(byte: usize, Element { name, count, .. }: &Element, index: u64)
 }
 
 fn too_many(place: Place, Element { name, count, .. }: &Element) -> LoadError {
-    let message = format!(
-        "there are more data after those of `element {name} {count}`, the last that the header declares"
-    );
+    let message =
+        format!("there are more data after those of `element {name} {count}`, the last that the header declares");
     LoadError::at(place, message)
 }
 
@@ -282,8 +277,7 @@ fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
     let (mut rest, mut line) = (bytes, 0);
     loop {
         let end = rest.iter().position(|byte| *byte == b'\n').ok_or_else(|| {
-            let message =
-                "the header has no line `end_header`; the file is cut off or is not a PLY file";
+            let message = "the header has no line `end_header`; the file is cut off or is not a PLY file";
             LoadError::new(message).of_kind(LoadErrorKind::CutOff)
         })?;
         let text = String::from_utf8_lossy(&rest[..end]);
@@ -339,9 +333,9 @@ fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
                 if list.is_some_and(|count| matches!(count, Scalar::F32 | Scalar::F64)) {
                     return Err(refused("the length of a list cannot be a fraction".to_owned()));
                 }
-                let element = elements.last_mut().ok_or_else(|| {
-                    refused("a property must come after the element that has it".to_owned())
-                })?;
+                let element = elements
+                    .last_mut()
+                    .ok_or_else(|| refused("a property must come after the element that has it".to_owned()))?;
                 element.properties.push(Property { name: one_line(name), scalar, list });
             }
             ["comment" | "obj_info", ..] => {}

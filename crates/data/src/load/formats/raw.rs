@@ -15,8 +15,7 @@ const SPHERE_BYTES: usize = 16;
 /// Returns an error if the number of bytes is not a multiple of 16, or there is not enough memory.
 pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, LoadError> {
     if !bytes.len().is_multiple_of(SPHERE_BYTES) {
-        let (bytes, whole, left) =
-            (bytes.len(), bytes.len() / SPHERE_BYTES, bytes.len() % SPHERE_BYTES);
+        let (bytes, whole, left) = (bytes.len(), bytes.len() / SPHERE_BYTES, bytes.len() % SPHERE_BYTES);
         return Err(LoadError::new(format!(
             "the file has {bytes} bytes, which are {whole} × {SPHERE_BYTES} + {left}, but each sphere takes {SPHERE_BYTES} \
              bytes (x, y, z, radius in little-endian f32); the file is cut off or has another format"

@@ -29,8 +29,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     const NAME: &[u8] = b"<VTKFile";
     let text = without_byte_order_mark(bytes).trim_ascii_start();
     let first = &text[..text.len().min(1 << 10)];
-    text.starts_with(LEGACY)
-        || (first.starts_with(b"<") && first.windows(NAME.len()).any(|window| window == NAME))
+    text.starts_with(LEGACY) || (first.starts_with(b"<") && first.windows(NAME.len()).any(|window| window == NAME))
 }
 
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
@@ -42,8 +41,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         ));
     }
     let document = document::read(bytes)?;
-    let mut notes: Vec<String> =
-        document.unused.iter().take(8).map(|what| format!("not used: {what}")).collect();
+    let mut notes: Vec<String> = document.unused.iter().take(8).map(|what| format!("not used: {what}")).collect();
     if document.unused.len() > 8 {
         notes.push(format!("not used: {} more arrays", document.unused.len() - 8));
     }
@@ -53,10 +51,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     Ok(loaded)
 }
 
-fn columns(
-    document: &Document<'_>,
-    notes: &mut Vec<String>,
-) -> Result<Vec<TableColumn>, LoadError> {
+fn columns(document: &Document<'_>, notes: &mut Vec<String>) -> Result<Vec<TableColumn>, LoadError> {
     let mut pieces = document.pieces.iter().enumerate().filter(|(_, piece)| piece.points > 0);
     let Some((index, first)) = pieces.next() else {
         return Ok(["x", "y", "z"].map(|name| TableColumn::numbers(name, Vec::new())).into());
@@ -136,12 +131,7 @@ fn component_name(Array { name, components, .. }: &Array<'_>, component: usize) 
 }
 
 /// Returns the numbers of an array of one piece, component by component.
-fn group(
-    document: &Document<'_>,
-    piece: usize,
-    array: &Array<'_>,
-    name: &str,
-) -> Result<Vec<Vec<f64>>, LoadError> {
+fn group(document: &Document<'_>, piece: usize, array: &Array<'_>, name: &str) -> Result<Vec<Vec<f64>>, LoadError> {
     let points = document.pieces.get(piece).map_or(0, |piece| piece.points);
     numbers(array, points, document).map_err(|message| in_array(piece, name, &message))
 }
@@ -151,12 +141,7 @@ fn in_array(piece: usize, name: &str, message: &str) -> LoadError {
     LoadError::at(Place::Piece(piece), format!("the array {name}: {message}"))
 }
 
-fn append(
-    all: &mut [Vec<f64>],
-    more: Vec<Vec<f64>>,
-    piece: usize,
-    name: &str,
-) -> Result<(), LoadError> {
+fn append(all: &mut [Vec<f64>], more: Vec<Vec<f64>>, piece: usize, name: &str) -> Result<(), LoadError> {
     if all.len() != more.len() {
         let (all, more) = (all.len(), more.len());
         let message = format!("it has {more} components, but that of the first piece has {all}");
@@ -167,11 +152,7 @@ fn append(
 }
 
 /// Reads an array of a piece with this number of points: one list of numbers for each component.
-fn numbers(
-    array: &Array<'_>,
-    points: u64,
-    document: &Document<'_>,
-) -> Result<Vec<Vec<f64>>, String> {
+fn numbers(array: &Array<'_>, points: u64, document: &Document<'_>) -> Result<Vec<Vec<f64>>, String> {
     let components = array.components;
     let count = usize::try_from(points).ok().and_then(|points| points.checked_mul(components));
     let count = count.ok_or_else(|| format!("{points} points are too many"))?;
@@ -207,9 +188,7 @@ fn numbers(
         document.taken.set(taken);
     }
     let column = |component: usize| {
-        let number = |row: usize| {
-            array.scalar.decode(&bytes[(row * components + component) * size..], order)
-        };
+        let number = |row: usize| array.scalar.decode(&bytes[(row * components + component) * size..], order);
         parallel::try_map(count / components, number)
             .map_err(|_| format!("there is not enough memory for {points} points"))
     };
@@ -231,10 +210,7 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
         let word = words.next();
         let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
         let number = array.scalar.parse(word).ok_or_else(|| {
-            format!(
-                "number {index}, counted from 0, is `{}`, which is not a number",
-                shortened(&one_line(word))
-            )
+            format!("number {index}, counted from 0, is `{}`, which is not a number", shortened(&one_line(word)))
         })?;
         columns[index % components].push(number);
     }
@@ -270,9 +246,9 @@ impl Stream<'_> {
             }
             let (now, rest) = self.rest.split_at(digits);
             // The lengths before the data may have padding of their own, which is not an error for this decoder.
-            let bytes = BASE64.decode(now).map_err(|error| {
-                format!("its data are not base64: {}", one_line(&error.to_string()))
-            })?;
+            let bytes = BASE64
+                .decode(now)
+                .map_err(|error| format!("its data are not base64: {}", one_line(&error.to_string())))?;
             taken.extend_from_slice(&bytes);
             self.rest = rest;
         }
@@ -297,9 +273,7 @@ impl Stream<'_> {
 
     /// Takes the bytes of an array, with the lengths before them.
     fn array(&mut self, wanted: usize, encoding: Encoding) -> Result<Cow<'_, [u8]>, String> {
-        let other = |found: usize| {
-            format!("its data have {found} bytes, but its points and its type take {wanted}")
-        };
+        let other = |found: usize| format!("its data have {found} bytes, but its points and its type take {wanted}");
         if !encoding.is_compressed {
             let [found] = self.lengths(encoding)?;
             return if found == wanted { self.take(wanted) } else { Err(other(found)) };

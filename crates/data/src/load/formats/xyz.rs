@@ -48,9 +48,8 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
         let (start, lines_before, index) = (lines.offset, lines.line, found.frames.len());
         let Some(text) = lines.next()? else {
             found.is_whole = true;
-            break (index == 0).then(|| {
-                LoadError::new("the file is empty; an XYZ file starts with the number of its atoms")
-            });
+            break (index == 0)
+                .then(|| LoadError::new("the file is empty; an XYZ file starts with the number of its atoms"));
         };
         let text = without_byte_order_mark(text);
         let line = lines_before + 1;
@@ -76,8 +75,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
         let skipped = lines.skip(atoms)?;
         if skipped < atoms {
             let declared = counted(atoms);
-            let message =
-                format!("frame {index} declares {declared}, but the file ends after {skipped}");
+            let message = format!("frame {index} declares {declared}, but the file ends after {skipped}");
             break Some(LoadError::line(line, message));
         }
         found.frames.push(FrameSpan { bytes: start..lines.offset, lines_before });
@@ -111,15 +109,14 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadE
     let rows = Rows { text: lines.rest, lines_before, may_be_longer: declared.is_plain };
     let table = Table { columns: rows.read(&declared.fields)? };
     let columns = table.names();
-    let mut loaded = rows::into_loaded(table, options, |row| lines_before + row + 1).map_err(
-        |error| match error.kind {
-            LoadErrorKind::NoPositions => refused(format!(
-                "Properties has no pos:R:3, which must name the positions; its columns are {columns}"
-            ))
-            .of_kind(error.kind),
+    let mut loaded =
+        rows::into_loaded(table, options, |row| lines_before + row + 1).map_err(|error| match error.kind {
+            LoadErrorKind::NoPositions => {
+                refused(format!("Properties has no pos:R:3, which must name the positions; its columns are {columns}"))
+                    .of_kind(error.kind)
+            }
             _ => error,
-        },
-    )?;
+        })?;
     loaded.cell = cell;
     loaded.cell_origin = origin.filter(|_| cell.is_some()).unwrap_or_default();
     let values = Lines::new(lines.rest).next().map_or(0, |line| Values { rest: line }.count());
@@ -144,19 +141,13 @@ impl Columns {
         let Some(properties) = value_of("Properties", comment) else {
             let numbers = ["x", "y", "z"].map(|name| Field::new(name, Kind::Number));
             let species = Field::new("species", Kind::Text);
-            return Ok(Self {
-                fields: [species].into_iter().chain(numbers).collect(),
-                is_plain: true,
-            });
+            return Ok(Self { fields: [species].into_iter().chain(numbers).collect(), is_plain: true });
         };
         let mut fields = Vec::new();
         let mut atomic_numbers = None;
         for property in properties.split(':').collect::<Vec<_>>().chunks(3) {
             let &[name, kind, count] = property else {
-                return Err(format!(
-                    "Properties={} is not a list of name:type:columns triples",
-                    shortened(properties)
-                ));
+                return Err(format!("Properties={} is not a list of name:type:columns triples", shortened(properties)));
             };
             let count: usize = count.parse().map_err(|_| {
                 let (count, name) = (shortened(count), shortened(name));
@@ -167,10 +158,8 @@ impl Columns {
             }
             add_fields(name, kind, count, &mut fields)?;
         }
-        let has_symbols =
-            fields.iter().any(|field| field.name.to_ascii_lowercase().trim() == "species");
-        if let (false, Some(field)) = (has_symbols, atomic_numbers.and_then(|i| fields.get_mut(i)))
-        {
+        let has_symbols = fields.iter().any(|field| field.name.to_ascii_lowercase().trim() == "species");
+        if let (false, Some(field)) = (has_symbols, atomic_numbers.and_then(|i| fields.get_mut(i))) {
             *field = Field::new("species", Kind::Text);
         }
         Ok(Self { fields, is_plain: false })
@@ -234,9 +223,7 @@ fn cell_of(comment: &str) -> Result<Option<[[f64; 3]; 3]>, String> {
         return Ok(None);
     };
     match numbers_of(text).as_deref() {
-        Some(&[ax, ay, az, bx, by, bz, cx, cy, cz]) => {
-            Ok(Some([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]))
-        }
+        Some(&[ax, ay, az, bx, by, bz, cx, cy, cz]) => Ok(Some([[ax, ay, az], [bx, by, bz], [cx, cy, cz]])),
         _ => Err(format!("Lattice={} is not a list of nine finite numbers", shortened(text))),
     }
 }

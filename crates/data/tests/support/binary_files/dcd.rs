@@ -19,13 +19,8 @@ pub(crate) struct Layout {
 
 pub(crate) const ATOMS: usize = 4;
 pub(crate) const FRAMES_WRITTEN: usize = 3;
-pub(crate) const PLAIN: Layout = Layout {
-    order: Order::Little,
-    marker_bytes: 4,
-    cell: None,
-    has_fourth: false,
-    has_fixed: false,
-};
+pub(crate) const PLAIN: Layout =
+    Layout { order: Order::Little, marker_bytes: 4, cell: None, has_fourth: false, has_fixed: false };
 
 pub(crate) fn ordered<const N: usize>(little: [u8; N], order: Order) -> Vec<u8> {
     let mut bytes = little.to_vec();
@@ -65,17 +60,14 @@ pub(crate) fn file(layout: Layout) -> Vec<u8> {
     }
     for frame in 0..FRAMES_WRITTEN {
         if let Some(cell) = layout.cell {
-            let cell: Vec<u8> =
-                cell.iter().flat_map(|value| ordered(value.to_le_bytes(), layout.order)).collect();
+            let cell: Vec<u8> = cell.iter().flat_map(|value| ordered(value.to_le_bytes(), layout.order)).collect();
             all.extend(record(layout, &cell));
         }
         let atoms: &[usize] = if layout.has_fixed && frame > 0 { &[0, 3] } else { &[0, 1, 2, 3] };
         for axis in 0..if layout.has_fourth { 4 } else { 3 } {
             let values: Vec<u8> = atoms
                 .iter()
-                .flat_map(|atom| {
-                    ordered(coordinate(frame, *atom, axis).to_le_bytes(), layout.order)
-                })
+                .flat_map(|atom| ordered(coordinate(frame, *atom, axis).to_le_bytes(), layout.order))
                 .collect();
             all.extend(record(layout, &values));
         }

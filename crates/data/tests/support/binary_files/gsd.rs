@@ -76,9 +76,8 @@ pub(crate) fn file(version: u32, chunks: &[Chunk]) -> Vec<u8> {
 
 /// Three frames: the particles move in the second, and the third has one particle less.
 pub(crate) fn chunks() -> Vec<Chunk> {
-    let positions = |frame: u16, count: u16| {
-        Data::F32((0..3 * count).map(|index| f32::from(100 * frame + index)).collect())
-    };
+    let positions =
+        |frame: u16, count: u16| Data::F32((0..3 * count).map(|index| f32::from(100 * frame + index)).collect());
     vec![
         chunk(0, "configuration/box", 1, Data::F32(vec![10.0, 20.0, 30.0, 0.5, 0.25, 0.125])),
         chunk(0, "particles/N", 1, Data::U32(vec![3])),

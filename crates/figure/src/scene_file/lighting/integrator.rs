@@ -20,8 +20,7 @@ pub enum IntegratorKind {
 }
 
 impl IntegratorKind {
-    const NAMES: [(&str, Self); 3] =
-        [("primary", Self::Primary), ("studio", Self::Studio), ("path", Self::Path)];
+    const NAMES: [(&str, Self); 3] = [("primary", Self::Primary), ("studio", Self::Studio), ("path", Self::Path)];
 
     /// The kind of an integrator.
     pub(crate) fn of(integrator: &Integrator) -> Self {
@@ -68,9 +67,9 @@ impl IntegratorChoice {
             let known = IntegratorKind::NAMES;
             let kind = |(name, at): (&str, usize)| {
                 let found = known.iter().find(|(known, _)| *known == name);
-                found.map(|(_, kind)| *kind).ok_or_else(|| {
-                    lines.span(at).error(unknown("name", name, &known.map(|(name, _)| name)))
-                })
+                found
+                    .map(|(_, kind)| *kind)
+                    .ok_or_else(|| lines.span(at).error(unknown("name", name, &known.map(|(name, _)| name))))
             };
             name.map(kind).transpose()
         };
@@ -111,11 +110,9 @@ impl IntegratorChoice {
         };
         if kind == IntegratorKind::Primary {
             return match self.flags.first() {
-                Some((flag, _)) if self.by_flag.or(self.by_scene).is_some() => Err(refused(
-                    flag,
-                    "the integrators `studio` and `path`",
-                    "another --integrator or --style",
-                )),
+                Some((flag, _)) if self.by_flag.or(self.by_scene).is_some() => {
+                    Err(refused(flag, "the integrators `studio` and `path`", "another --integrator or --style"))
+                }
                 first => Ok(first.is_some()),
             };
         }
@@ -143,12 +140,8 @@ fn needed(
     };
     let of_paths = first(&[("path", "[path]"), ("sky", "[sky]")]);
     let of_studio = first(&[("studio", "[studio]")]);
-    let of_both = first(&[
-        ("sampling", "[sampling]"),
-        ("lights", "[[lights]]"),
-        ("sun", "[sun]"),
-        ("ground", "[ground]"),
-    ]);
+    let of_both =
+        first(&[("sampling", "[sampling]"), ("lights", "[[lights]]"), ("sun", "[sun]"), ("ground", "[ground]")]);
     let of_any = of_paths.or(of_studio).or(of_both);
     if let (Some(IntegratorKind::Primary), Some((table, start))) = (named, of_any) {
         return Err(lines.span(start).error(format!(
@@ -166,16 +159,12 @@ fn needed(
         }
         (None, Some(_), None) => Some(IntegratorKind::Path),
         (None, None, Some(_)) => Some(IntegratorKind::Studio),
-        (None, None, None) => {
-            (has_materials || of_both.is_some()).then_some(IntegratorKind::Studio)
-        }
+        (None, None, None) => (has_materials || of_both.is_some()).then_some(IntegratorKind::Studio),
     };
     match (kind, layers.in_file.start("shading")) {
-        (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => {
-            Err(lines.span(start).error(
-                "`shading` applies only to pictures without light, but this file asks for light; remove `shading`",
-            ))
-        }
+        (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => Err(lines
+            .span(start)
+            .error("`shading` applies only to pictures without light, but this file asks for light; remove `shading`")),
         _ => Ok(kind),
     }
 }

@@ -135,9 +135,7 @@ impl DirectionalTable {
     pub(super) fn sun(&self) -> Result<Light, KeyError> {
         match self.at {
             None => Ok(Light { kind: self.kind(SUN_RADIUS)?, frame: LightFrame::World }),
-            Some(_) => {
-                Err("`at` does not apply to the sun, which stands in the world; remove it".into())
-            }
+            Some(_) => Err("`at` does not apply to the sun, which stands in the world; remove it".into()),
         }
     }
 
@@ -156,24 +154,17 @@ impl DirectionalTable {
             (Some(toward), None) => ("toward", toward, 1.0),
             (None, Some(direction)) => ("direction", direction, -1.0),
             (Some(_), Some(_)) => {
-                return Err(
-                    "`direction` and `toward` both set the direction of the light; remove one of them".into(),
-                );
+                return Err("`direction` and `toward` both set the direction of the light; remove one of them".into());
             }
             (None, None) => {
-                return Err(
-                    "the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
+                return Err("the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
                      `direction = [x, y, z]`, the direction in which it shines"
-                        .into(),
-                );
+                    .into());
             }
         };
         let toward = sign * DVec3::new(x, y, z);
         unit(toward).map(|_| toward).ok_or_else(|| {
-            format!(
-                "`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0"
-            )
-            .into()
+            format!("`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0").into()
         })
     }
 
@@ -190,21 +181,14 @@ impl DirectionalTable {
         let radius = within("angular_radius", radius, 1.0, "0, or from 0.06 to 90 degrees")?;
         let diameter = within("angular_diameter", diameter, 2.0, "0, or from 0.12 to 180 degrees")?;
         if radius.is_some() && diameter.is_some() {
-            return Err(
-                "`angular_radius` and `angular_diameter` exclude each other; remove one of them"
-                    .into(),
-            );
+            return Err("`angular_radius` and `angular_diameter` exclude each other; remove one of them".into());
         }
         Ok(radius.or(diameter.map(|d| d / 2.0)).unwrap_or(default).to_radians())
     }
 }
 
 /// A colour of light, multiplied by the number of a key.
-fn times(
-    color: Option<LinearRgb>,
-    key: &'static str,
-    by: Option<f64>,
-) -> Result<LinearRgb, KeyError> {
+fn times(color: Option<LinearRgb>, key: &'static str, by: Option<f64>) -> Result<LinearRgb, KeyError> {
     let (most, range) = match key {
         "intensity" => (MOST_INTENSE, "from 0 to 1e18"),
         _ => (STRONGEST, "from 0 to 1e6"),
@@ -218,6 +202,5 @@ fn place(List(position): List<3>) -> Result<DVec3, KeyError> {
         return Ok(position.into());
     }
     let [x, y, z] = position;
-    Err(format!("`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56")
-        .into())
+    Err(format!("`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56").into())
 }

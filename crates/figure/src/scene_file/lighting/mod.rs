@@ -50,8 +50,7 @@ impl SceneLighting {
     ) -> Result<Self, SceneFileError> {
         let Document { studio, path, sampling, lights, sun, sky, ground, .. } = document;
         let at = |table: &'static str| move |error: KeyError| layers.places.refused(table, error);
-        let unless =
-            |table, checked: Result<(), RangeError>| checked.map_err(|e| at(table)(e.into()));
+        let unless = |table, checked: Result<(), RangeError>| checked.map_err(|e| at(table)(e.into()));
         path.iter().try_for_each(|Table(path)| unless("path", path.check()))?;
         sampling.iter().try_for_each(|Table(one)| unless("sampling", one.check()))?;
         sky.iter().try_for_each(|Table(sky)| sky.light().map(drop)).map_err(at("sky"))?;

@@ -112,9 +112,7 @@ impl SkyTable {
 
     /// The light of the sky; `None` for that of an image, whose numbers are checked.
     pub(super) fn light(&self) -> Result<Option<SkyLight>, KeyError> {
-        let bounded = |strength: f64| {
-            RangeError::unless_within("strength", strength, [0.0, 1e6], "from 0 to 1e6")
-        };
+        let bounded = |strength: f64| RangeError::unless_within("strength", strength, [0.0, 1e6], "from 0 to 1e6");
         Ok(match *self {
             Self::Constant { color, strength, .. } => {
                 Some(SkyLight::Constant(scaled(color, bounded(strength)?, "the sky")?))
@@ -137,17 +135,15 @@ impl SkyTable {
     pub(crate) fn sky(&self, image: Option<Environment>) -> Result<Sky, KeyError> {
         let light = match (self.light()?, self) {
             (None, Self::Image { rotation, strength, .. }) => SkyLight::Image {
-                environment: Arc::new(image.ok_or(
-                    "`image`: the settings need this image of the sky, which was not given",
-                )?),
+                environment: Arc::new(
+                    image.ok_or("`image`: the settings need this image of the sky, which was not given")?,
+                ),
                 strength: *strength as f32,
                 rotation: rotation.to_radians(),
             },
             (light, _) => light.unwrap_or(SkyLight::Constant(LinearRgb::BLACK)),
         };
-        let (Self::Constant { visible, .. }
-        | Self::Gradient { visible, .. }
-        | Self::Image { visible, .. }) = self;
+        let (Self::Constant { visible, .. } | Self::Gradient { visible, .. } | Self::Image { visible, .. }) = self;
         Ok(Sky { light, is_visible: *visible })
     }
 }
@@ -183,9 +179,7 @@ impl GroundTable {
 
     pub(super) fn check(&self) -> Result<(), KeyError> {
         if self.height.is_some() && (self.point.is_some() || self.normal.is_some()) {
-            return Err(
-                "`height` cannot be combined with `point` or `normal`; remove one of them".into()
-            );
+            return Err("`height` cannot be combined with `point` or `normal`; remove one of them".into());
         }
         if self.normal.is_some() && self.point.is_none() {
             return Err("`normal` needs a point on the ground; add `point = [x, y, z]`".into());

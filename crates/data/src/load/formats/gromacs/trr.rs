@@ -34,11 +34,7 @@ pub(crate) fn starts(bytes: &[u8]) -> bool {
     bytes.strip_prefix(&MAGIC.to_be_bytes()).is_some_and(|rest| rest.starts_with(NAME))
 }
 
-fn find(
-    source: &mut dyn Bytes,
-    last: Option<usize>,
-    topology: Option<Topology>,
-) -> Result<FrameIndex, LoadError> {
+fn find(source: &mut dyn Bytes, last: Option<usize>, topology: Option<Topology>) -> Result<FrameIndex, LoadError> {
     let topology = Topology::required(topology, "trr")?;
     let next = |reader: &mut Reader<'_>, index| {
         let header = Header::read(reader, index)?;
@@ -74,9 +70,8 @@ impl Header {
         for (size, part) in sizes.iter_mut().zip(PARTS) {
             let offset = reader.offset;
             let found: i32 = reader.number(&what)?;
-            *size = u64::try_from(found).map_err(|_| {
-                LoadError::byte(offset, format!("frame {index}: {part} takes {found} bytes"))
-            })?;
+            *size = u64::try_from(found)
+                .map_err(|_| LoadError::byte(offset, format!("frame {index}: {part} takes {found} bytes")))?;
         }
         let offset = reader.offset;
         let declared: i32 = reader.number(&what)?;
@@ -87,8 +82,7 @@ impl Header {
             .ok_or_else(|| wrong(format!("it declares {declared} atoms")))?;
         let is_of = |width: u64| {
             let is_table = |size: u64| size == 0 || size == 3 * atoms * width;
-            (sizes[BOX] == 0 || sizes[BOX] == 9 * width)
-                && sizes[POSITIONS..].iter().copied().all(is_table)
+            (sizes[BOX] == 0 || sizes[BOX] == 9 * width) && sizes[POSITIONS..].iter().copied().all(is_table)
         };
         if !is_of(4) && !is_of(8) {
             let [x, v, f] = [0, 1, 2].map(|part| sizes[POSITIONS + part]);
@@ -108,11 +102,7 @@ impl Header {
     }
 }
 
-fn read(
-    reader: &mut Reader<'_>,
-    frame: usize,
-    topology: &Topology,
-) -> Result<Positions, LoadError> {
+fn read(reader: &mut Reader<'_>, frame: usize, topology: &Topology) -> Result<Positions, LoadError> {
     let header = Header::read(reader, frame)?;
     topology.check(frame, header.atoms)?;
     let mut positions = Positions::default();

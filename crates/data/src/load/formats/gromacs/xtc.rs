@@ -22,15 +22,10 @@ const FEW: usize = 9;
 /// Whether the first bytes are those of an XTC file: its magic number, and the number of atoms twice.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     let is_magic = |magic: i32| bytes.starts_with(&magic.to_be_bytes());
-    (is_magic(MAGIC) || is_magic(LONG_MAGIC))
-        && bytes.get(4..8).is_some_and(|atoms| bytes.get(52..56) == Some(atoms))
+    (is_magic(MAGIC) || is_magic(LONG_MAGIC)) && bytes.get(4..8).is_some_and(|atoms| bytes.get(52..56) == Some(atoms))
 }
 
-fn find(
-    source: &mut dyn Bytes,
-    last: Option<usize>,
-    topology: Option<Topology>,
-) -> Result<FrameIndex, LoadError> {
+fn find(source: &mut dyn Bytes, last: Option<usize>, topology: Option<Topology>) -> Result<FrameIndex, LoadError> {
     let topology = Topology::required(topology, "xtc")?;
     let next = |reader: &mut Reader<'_>, index| {
         let header = Header::read(reader, index)?;
@@ -63,21 +58,16 @@ impl Header {
             });
         }
         let offset = reader.offset;
-        let wrong =
-            |offset, message: String| LoadError::byte(offset, format!("frame {index}: {message}"));
+        let wrong = |offset, message: String| LoadError::byte(offset, format!("frame {index}: {message}"));
         let atoms: i32 = reader.number(&what)?;
         let _step: i32 = reader.number(&what)?;
         let _time: f32 = reader.number(&what)?;
         let mut cell = [0.0; 9];
-        for (value, number) in
-            cell.iter_mut().zip(numbers::<f32>(&reader.bytes(36, what.as_str())?, Order::Big))
-        {
+        for (value, number) in cell.iter_mut().zip(numbers::<f32>(&reader.bytes(36, what.as_str())?, Order::Big)) {
             *value = number.into();
         }
         let again: i32 = reader.number(&what)?;
-        let Some(atoms) = usize::try_from(atoms)
-            .ok()
-            .filter(|atoms| *atoms > 0 && again == atoms.cast_signed() as i32)
+        let Some(atoms) = usize::try_from(atoms).ok().filter(|atoms| *atoms > 0 && again == atoms.cast_signed() as i32)
         else {
             return Err(wrong(offset, format!("it declares {atoms} and then {again} atoms")));
         };
@@ -100,11 +90,7 @@ impl Header {
     }
 }
 
-fn read(
-    reader: &mut Reader<'_>,
-    frame: usize,
-    topology: &Topology,
-) -> Result<Positions, LoadError> {
+fn read(reader: &mut Reader<'_>, frame: usize, topology: &Topology) -> Result<Positions, LoadError> {
     let start = reader.offset;
     let header = Header::read(reader, frame)?;
     topology.check(frame, header.atoms)?;
@@ -174,9 +160,7 @@ impl Packing {
             return Err(format!("positions go from {lowest:?} to {highest:?}"));
         }
         if !(FIRST_SIZE..SIZES.len()).contains(&(size as usize)) {
-            return Err(format!(
-                "the size of differences has the index {size}, which does not exist"
-            ));
+            return Err(format!("the size of differences has the index {size}, which does not exist"));
         }
         Ok(())
     }
@@ -194,8 +178,7 @@ struct UnpackError {
 fn positions(bytes: &[u8], packed: &Packing, atoms: usize) -> Result<Vec<[f64; 3]>, UnpackError> {
     let Packing { lowest, highest, .. } = *packed;
     let mut bits = Bits { bytes, position: 0 };
-    let ranges =
-        [0, 1, 2].map(|axis| (i64::from(highest[axis]) - i64::from(lowest[axis])) as u64 + 1);
+    let ranges = [0, 1, 2].map(|axis| (i64::from(highest[axis]) - i64::from(lowest[axis])) as u64 + 1);
     let is_mixed = ranges.iter().all(|range| *range <= LARGEST_MIXED);
     let mixed_bits = bit_length(ranges.iter().map(|range| u128::from(*range)).product());
     let mut size = packed.size as usize;
@@ -203,9 +186,7 @@ fn positions(bytes: &[u8], packed: &Packing, atoms: usize) -> Result<Vec<[f64; 3
     let mut run = 0;
     let mut found: Vec<[f64; 3]> = Vec::new();
     // GROMACS divides in f32.
-    let in_nm = |numbers: [i64; 3]| {
-        numbers.map(|number| f64::from(number as f32 * (1.0 / packed.precision)))
-    };
+    let in_nm = |numbers: [i64; 3]| numbers.map(|number| f64::from(number as f32 * (1.0 / packed.precision)));
     while found.len() < atoms {
         let mut numbers = if is_mixed {
             bits.mixed(mixed_bits, ranges)?
@@ -245,9 +226,7 @@ fn positions(bytes: &[u8], packed: &Packing, atoms: usize) -> Result<Vec<[f64; 3
         }
         size = size.wrapping_add(change);
         if !(FIRST_SIZE..SIZES.len()).contains(&size) {
-            return Err(bits.wrong(format!(
-                "the size of differences has the index {size}, which does not exist"
-            )));
+            return Err(bits.wrong(format!("the size of differences has the index {size}, which does not exist")));
         }
     }
     Ok(found)
@@ -309,18 +288,14 @@ mod tests {
     #[test]
     fn three_numbers_as_one() {
         let ranges = [16_000_000_u64, 15_999_999, 7];
-        for numbers in
-            [[0, 0, 0], [15_999_999, 15_999_998, 6], [1, 0, 5], [12_345_678, 7_654_321, 3]]
-        {
+        for numbers in [[0, 0, 0], [15_999_999, 15_999_998, 6], [1, 0, 5], [12_345_678, 7_654_321, 3]] {
             for (scale, count) in [(1, 51), (2_000_000, 72)] {
                 let ranges = [ranges[0], ranges[1], ranges[2] * scale];
-                let number = numbers.iter().zip(ranges).fold(0, |all: u128, (number, range)| {
-                    all * u128::from(range) + *number as u128
-                });
-                assert_eq!(
-                    bit_length(ranges.iter().map(|range| u128::from(*range)).product()),
-                    count
-                );
+                let number = numbers
+                    .iter()
+                    .zip(ranges)
+                    .fold(0, |all: u128, (number, range)| all * u128::from(range) + *number as u128);
+                assert_eq!(bit_length(ranges.iter().map(|range| u128::from(*range)).product()), count);
                 // After three other bits: the lowest byte first, and the rest in as many bits as it has.
                 let mut bits = vec![1, 0, 1];
                 for byte in 0..count.div_ceil(8) {
@@ -328,8 +303,7 @@ mod tests {
                     bits.extend((0..width).rev().map(|bit| (number >> (8 * byte + bit) & 1) as u8));
                 }
                 bits.resize(bits.len().next_multiple_of(8), 0);
-                let bytes =
-                    bits.chunks(8).map(|bits| bits.iter().fold(0, |all, bit| all << 1 | bit));
+                let bytes = bits.chunks(8).map(|bits| bits.iter().fold(0, |all, bit| all << 1 | bit));
                 let bytes: Vec<u8> = bytes.collect();
                 let mut reader = Bits { bytes: &bytes, position: 0 };
                 assert_eq!(reader.take(3).unwrap(), 5);

@@ -63,11 +63,7 @@ impl Chunk {
     }
 
     /// Reads all numbers, row by row.
-    pub(super) fn numbers(
-        self,
-        reader: &mut Reader<'_>,
-        name: &str,
-    ) -> Result<Vec<f64>, LoadError> {
+    pub(super) fn numbers(self, reader: &mut Reader<'_>, name: &str) -> Result<Vec<f64>, LoadError> {
         let bytes = self.raw(reader, name)?;
         let Some(scalar) = self.scalar() else { return Ok(Vec::new()) };
         let numbers = bytes.chunks_exact(scalar.size());
@@ -75,11 +71,7 @@ impl Chunk {
     }
 
     /// Reads all rows as text. Each ends with a NUL unless the text fills the row.
-    pub(super) fn texts(
-        self,
-        reader: &mut Reader<'_>,
-        name: &str,
-    ) -> Result<Vec<String>, LoadError> {
+    pub(super) fn texts(self, reader: &mut Reader<'_>, name: &str) -> Result<Vec<String>, LoadError> {
         let bytes = self.raw(reader, name)?;
         Ok(bytes.chunks_exact((self.columns as usize).max(1)).map(shown).collect())
     }
@@ -107,19 +99,14 @@ impl Index {
         let version: u32 = reader.number("the header")?;
         // Version 0.3 was the last before 1.0, and has the same layout.
         if !matches!(version >> 16, 1 | 2) && version != 3 {
-            let message = format!(
-                "the file has the version {}.{}; 1 and 2 can be read",
-                version >> 16,
-                version & 0xffff
-            );
+            let message =
+                format!("the file has the version {}.{}; 1 and 2 can be read", version >> 16, version & 0xffff);
             return Err(LoadError::byte(44, message));
         }
         reader.seek(reader.offset + 64)?;
         let schema = shown(&reader.bytes(64, "the header")?);
         if schema != "hoomd" {
-            let message = format!(
-                "the file has the schema `{schema}`; only that of HOOMD-blue, `hoomd`, can be read"
-            );
+            let message = format!("the file has the schema `{schema}`; only that of HOOMD-blue, `hoomd`, can be read");
             return Err(LoadError::byte(112, message));
         }
         reader.seek(names_location)?;
@@ -154,10 +141,7 @@ impl Index {
 
     /// Reads the next entry; `None` at the end. The inner error has the frame that a bad entry belongs to.
     #[allow(clippy::type_complexity, reason = "used once")]
-    fn next(
-        &self,
-        reader: &mut Reader<'_>,
-    ) -> Result<Result<Option<Chunk>, (u64, String)>, LoadError> {
+    fn next(&self, reader: &mut Reader<'_>) -> Result<Result<Option<Chunk>, (u64, String)>, LoadError> {
         let size = reader.size;
         let frame: u64 = reader.number("the index")?;
         let rows = reader.number("the index")?;
@@ -174,10 +158,7 @@ impl Index {
         let Some(name) = self.names.get(usize::from(id)) else {
             return Ok(Err((
                 frame,
-                format!(
-                    "this entry of the index has the name {id}, but there are {}",
-                    self.names.len()
-                ),
+                format!("this entry of the index has the name {id}, but there are {}", self.names.len()),
             )));
         };
         let name = shown(name.as_bytes());
@@ -185,15 +166,10 @@ impl Index {
         if frame < previous || frame > size {
             return Ok(Err((
                 frame.min(previous),
-                format!(
-                    "this entry of the index belongs to frame {frame}, but follows one of frame {previous}"
-                ),
+                format!("this entry of the index belongs to frame {frame}, but follows one of frame {previous}"),
             )));
         }
-        let fits = chunk
-            .bytes()
-            .and_then(|bytes| location.checked_add(bytes))
-            .is_some_and(|end| end <= size);
+        let fits = chunk.bytes().and_then(|bytes| location.checked_add(bytes)).is_some_and(|end| end <= size);
         Ok(if chunk.scalar().is_none() {
             Err((frame, format!("frame {frame}: the chunk {name} has the unknown type {kind}")))
         } else if fits {

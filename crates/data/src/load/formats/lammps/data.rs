@@ -19,9 +19,7 @@ use pinhole::internals::text::{shortened, without_byte_order_mark};
 /// Whether one of the first lines declares a number of atoms.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     let lines = Lines::new(without_byte_order_mark(bytes)).skip(1).take(20);
-    lines
-        .map(without_comment)
-        .any(|line| count_of(line, b"atoms").is_some_and(|count| count.is_ok()))
+    lines.map(without_comment).any(|line| count_of(line, b"atoms").is_some_and(|count| count.is_ok()))
 }
 
 pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
@@ -41,18 +39,15 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         if !is_section(content) {
             if atoms.is_some() {
                 let (line_of_count, declared) = count.unwrap_or_default();
-                let what = format!(
-                    "stands where a section must begin; {declared} atoms are declared on line {line_of_count}"
-                );
+                let what =
+                    format!("stands where a section must begin; {declared} atoms are declared on line {line_of_count}");
                 return Err(wrong_text(line, content, &what));
             }
             if let Some(atoms) = count_of(content, b"atoms") {
-                let invalid =
-                    |text: &[u8]| wrong_text(line, text, "is not a valid number of atoms");
+                let invalid = |text: &[u8]| wrong_text(line, text, "is not a valid number of atoms");
                 count = Some((line, atoms.map_err(invalid)?));
-            } else if let Some(axis) = ["xlo xhi", "ylo yhi", "zlo zhi"]
-                .iter()
-                .position(|n| content.ends_with(n.as_bytes()))
+            } else if let Some(axis) =
+                ["xlo xhi", "ylo yhi", "zlo zhi"].iter().position(|n| content.ends_with(n.as_bytes()))
             {
                 let [low, high] = numbers_of(content).ok_or_else(invalid)?;
                 ends[axis] = Some((low, high));
@@ -62,8 +57,7 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
             continue;
         }
         // These sections have a line for each atom, so a second section contradicts the first.
-        if let Some(section) =
-            ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
+        if let Some(section) = ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
             && let Some(first_line) = lines_of_sections.insert(section, line)
         {
             let message = format!(
@@ -73,9 +67,8 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         }
         file.skip_blank();
         let mut rows = || {
-            let (line_of_count, declared) = count.ok_or_else(|| {
-                LoadError::line(line, "a line such as `100 atoms` must come before the atoms")
-            })?;
+            let (line_of_count, declared) =
+                count.ok_or_else(|| LoadError::line(line, "a line such as `100 atoms` must come before the atoms"))?;
             let too_few = |found| too_few_atoms(line_of_count, declared, found);
             file.take_rows(declared).map_err(too_few)
         };
@@ -139,9 +132,7 @@ fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, L
         }
     };
     if ids(table) != ids(&velocities) {
-        return Ok(Some(
-            "the velocities are not used, because their ids are not those of the atoms".to_owned(),
-        ));
+        return Ok(Some("the velocities are not used, because their ids are not those of the atoms".to_owned()));
     }
     table.columns.extend(velocities.columns.drain(1..));
     Ok(None)
@@ -237,10 +228,7 @@ fn is_section(line: &[u8]) -> bool {
 
 /// Returns the number before a word that ends the line; `None` if the line does not end with this word.
 fn count_of<'a>(line: &'a [u8], word: &[u8]) -> Option<Result<usize, &'a [u8]>> {
-    let text = line
-        .strip_suffix(word)?
-        .strip_suffix(b" ")
-        .or_else(|| line.strip_suffix(word)?.strip_suffix(b"\t"))?;
+    let text = line.strip_suffix(word)?.strip_suffix(b" ").or_else(|| line.strip_suffix(word)?.strip_suffix(b"\t"))?;
     let text = text.trim_ascii();
     Some(String::from_utf8_lossy(text).parse().map_err(|_| text))
 }
@@ -292,32 +280,25 @@ fn listed(style: &str) -> String {
 
 /// Returns the columns of the rows: the given ones, or those of the style, or those of the only style that fits. Three
 /// further whole numbers count how often the atom has crossed the box.
-fn fields_of(
-    rows: Rows<'_>,
-    style: Option<&str>,
-    given: &[String],
-) -> Result<Vec<Field>, LoadError> {
+fn fields_of(rows: Rows<'_>, style: Option<&str>, given: &[String]) -> Result<Vec<Field>, LoadError> {
     let line = rows.lines_before + 1;
     let first: Vec<&[u8]> = Values { rest: Lines::new(rows.text).next().unwrap_or_default() }
         .take_while(|value| !value.starts_with(b"#"))
         .collect();
     let found = first.len();
-    let is_whole =
-        |value: &&[u8]| std::str::from_utf8(value).is_ok_and(|text| text.parse::<i64>().is_ok());
+    let is_whole = |value: &&[u8]| std::str::from_utf8(value).is_ok_and(|text| text.parse::<i64>().is_ok());
     let has_images = |count: usize| found == count + 3 && first[count..].iter().all(is_whole);
     // The order of a hybrid style's columns follows from the names of its parts; the first part decides.
     let style = style.and_then(|style| style.split_whitespace().next()).map(str::to_owned);
     let names: Vec<String> = if given.is_empty() {
         let columns = match &style {
-            Some(style) => {
-                columns_of(style).ok_or_else(|| {
-                    let style = shortened(style);
-                    let message = format!(
-                        "the columns of the style {style} are not known; name them, such as with --columns id,type,x,y,z"
-                    );
-                    LoadError::line(line, message)
-                })?
-            }
+            Some(style) => columns_of(style).ok_or_else(|| {
+                let style = shortened(style);
+                let message = format!(
+                    "the columns of the style {style} are not known; name them, such as with --columns id,type,x,y,z"
+                );
+                LoadError::line(line, message)
+            })?,
             None if found == 5 || has_images(5) => columns_of("atomic").unwrap_or_default(),
             None if rows.text.is_empty() => columns_of("atomic").unwrap_or_default(),
             None => {
@@ -389,8 +370,7 @@ impl Types {
             let place = [name, label].into_iter().filter_map(|name| places.get(name)).min();
             let (_, mass) = self.masses[*place.filter(|_| has_masses)?];
             let distance = |element: &Element| (f64::from(element.atomic_weight()) - mass).abs();
-            let nearest =
-                Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            let nearest = Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             // Programs round masses to one digit after the point.
             (distance(nearest) < 0.06).then(|| nearest.symbol().to_owned())
         };
@@ -415,9 +395,8 @@ fn name_types(table: &mut Table, types: &Types) -> Option<String> {
     if more > 0 {
         shown.push(format!("{more} more"));
     }
-    let species: Vec<&str> = named()
-        .map(|(name, symbol)| symbol.as_deref().unwrap_or_else(|| types.label_of(name)))
-        .collect();
+    let species: Vec<&str> =
+        named().map(|(name, symbol)| symbol.as_deref().unwrap_or_else(|| types.label_of(name))).collect();
     let is_any = symbols.iter().any(Option::is_some);
     let species = is_any.then(|| relabelled(column, "species", &species)).flatten();
     let labels: Vec<&str> = labels.names.iter().map(|name| types.label_of(name)).collect();
@@ -429,8 +408,7 @@ fn name_types(table: &mut Table, types: &Types) -> Option<String> {
         return None;
     }
     table.columns.extend(species);
-    let note =
-        format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
+    let note = format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
     (!shown.is_empty()).then_some(note)
 }
 

@@ -17,19 +17,13 @@ use pinhole::internals::text::without_byte_order_mark;
 pub(crate) const FRAMES: Frames = Frames::Lines { find, read };
 
 /// Names of positions, in the order in which they are preferred, and whether they are fractions of the box.
-const POSITIONS: [([&str; 3], bool); 4] = [
-    (["x", "y", "z"], false),
-    (["xu", "yu", "zu"], false),
-    (["xs", "ys", "zs"], true),
-    (["xsu", "ysu", "zsu"], true),
-];
+const POSITIONS: [([&str; 3], bool); 4] =
+    [(["x", "y", "z"], false), (["xu", "yu", "zu"], false), (["xs", "ys", "zs"], true), (["xsu", "ysu", "zsu"], true)];
 
 /// Whether the first item is one with which a dump begins.
 pub(crate) fn starts(bytes: &[u8]) -> bool {
     let bytes = without_byte_order_mark(bytes).trim_ascii_start();
-    [&b"ITEM: TIMESTEP"[..], b"ITEM: UNITS", b"ITEM: TIME"]
-        .iter()
-        .any(|item| bytes.starts_with(item))
+    [&b"ITEM: TIMESTEP"[..], b"ITEM: UNITS", b"ITEM: TIME"].iter().any(|item| bytes.starts_with(item))
 }
 
 /// Finds frames by their items. The lines of atoms are only counted.
@@ -43,9 +37,10 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
             found.is_whole = true;
             break match first {
                 Some((_, before)) => Some(cut_off(before + 1)),
-                None => found.frames.is_empty().then(|| {
-                    LoadError::new("the file is empty; a dump of LAMMPS starts with ITEM: TIMESTEP")
-                }),
+                None => found
+                    .frames
+                    .is_empty()
+                    .then(|| LoadError::new("the file is empty; a dump of LAMMPS starts with ITEM: TIMESTEP")),
             };
         };
         let text = String::from_utf8_lossy(without_byte_order_mark(text).trim_ascii()).into_owned();
@@ -69,11 +64,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
                 let line = line + 1;
                 let text = String::from_utf8_lossy(lines.next()?.unwrap_or_default()).into_owned();
                 let Ok(count) = text.trim().parse::<usize>() else {
-                    break Some(wrong_text(
-                        line,
-                        text.as_bytes(),
-                        "is not a valid number of atoms",
-                    ));
+                    break Some(wrong_text(line, text.as_bytes(), "is not a valid number of atoms"));
                 };
                 atoms = Some((line, count));
             }
@@ -155,9 +146,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
     })?;
     (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     if is_noted {
-        loaded.notes.push(
-            "the types are the symbols of chemical elements, and are taken as such".to_owned(),
-        );
+        loaded.notes.push("the types are the symbols of chemical elements, and are taken as such".to_owned());
     }
     Ok(loaded)
 }
@@ -177,11 +166,9 @@ fn fields(names: Vec<String>, text: &[u8]) -> Vec<Field> {
     let mut values = Values { rest: first };
     let kind = |name: &str| {
         let is_number = values.next().is_none_or(|value| number(value).is_some());
-        let must_be_number = name == "id"
-            || table::must_be_numbers(name)
-            || POSITIONS.iter().any(|(names, _)| names.contains(&name));
-        let is_text =
-            matches!(name, "type" | "typelabel" | "element") || !(is_number || must_be_number);
+        let must_be_number =
+            name == "id" || table::must_be_numbers(name) || POSITIONS.iter().any(|(names, _)| names.contains(&name));
+        let is_text = matches!(name, "type" | "typelabel" | "element") || !(is_number || must_be_number);
         if is_text { Kind::Text } else { Kind::Number }
     };
     let kinds: Vec<Kind> = names.iter().map(String::as_str).map(kind).collect();

@@ -150,10 +150,7 @@ fn reserved(word: &[u8]) -> Token<'_> {
         Token::Loop
     } else if starts(b"data_") {
         Token::Data
-    } else if starts(b"save_")
-        || word.eq_ignore_ascii_case(b"global_")
-        || word.eq_ignore_ascii_case(b"stop_")
-    {
+    } else if starts(b"save_") || word.eq_ignore_ascii_case(b"global_") || word.eq_ignore_ascii_case(b"stop_") {
         Token::Other
     } else {
         Token::Value(word)
@@ -213,14 +210,10 @@ pub(super) struct Columns {
 impl Columns {
     /// Returns the columns if these are names of a loop that has positions of atoms.
     pub(super) fn of_names(names: &[&[u8]]) -> Option<Self> {
-        let names: Vec<String> =
-            names.iter().map(|name| item_of(name, "atom_site")).collect::<Option<_>>()?;
+        let names: Vec<String> = names.iter().map(|name| item_of(name, "atom_site")).collect::<Option<_>>()?;
         let position = |name: &str| names.iter().position(|found| found == name);
         let all = |names: [&str; 3]| names.iter().all(|name| position(name).is_some());
-        let is_fractional = match (
-            all(["cartn_x", "cartn_y", "cartn_z"]),
-            all(["fract_x", "fract_y", "fract_z"]),
-        ) {
+        let is_fractional = match (all(["cartn_x", "cartn_y", "cartn_z"]), all(["fract_x", "fract_y", "fract_z"])) {
             (true, _) => false,
             (false, true) => true,
             (false, false) => return None,
@@ -266,8 +259,7 @@ impl Header {
         let columns = self.columns.take();
         let mut after = Self::default();
         after.read(text, lines_before, true)?;
-        for (mine, other) in [(&mut self.lengths, after.lengths), (&mut self.angles, after.angles)]
-        {
+        for (mine, other) in [(&mut self.lengths, after.lengths), (&mut self.angles, after.angles)] {
             mine.iter_mut().zip(other).for_each(|(mine, other)| *mine = mine.or(other));
         }
         self.columns = columns;
@@ -327,9 +319,7 @@ impl Header {
 
     /// The edges of the cell; `None` if the file has none.
     pub(super) fn cell(&self) -> Result<Option<[[f64; 3]; 3]>, LoadError> {
-        let ([Some(a), Some(b), Some(c)], [Some(alpha), Some(beta), Some(gamma)]) =
-            (self.lengths, self.angles)
-        else {
+        let ([Some(a), Some(b), Some(c)], [Some(alpha), Some(beta), Some(gamma)]) = (self.lengths, self.angles) else {
             return Ok(None);
         };
         let (lengths, angles) = ([a, b, c], [alpha, beta, gamma]);

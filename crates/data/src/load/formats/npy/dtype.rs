@@ -86,8 +86,7 @@ impl Dtype {
         if self.is_text() {
             return TableColumn::labels(name, self.labels(values));
         }
-        let mut column =
-            TableColumn::numbers(name, values.map(|value| self.number(value)).collect());
+        let mut column = TableColumn::numbers(name, values.map(|value| self.number(value)).collect());
         column.full = self.scalar().and_then(Scalar::full);
         column
     }
@@ -116,13 +115,9 @@ impl Dtype {
         let text = match self.kind {
             'U' => {
                 let codes = bytes.chunks_exact(4).map(|code| u32::decode(code, self.order));
-                codes
-                    .take_while(|code| *code != 0)
-                    .map(|code| char::from_u32(code).unwrap_or('?'))
-                    .collect()
+                codes.take_while(|code| *code != 0).map(|code| char::from_u32(code).unwrap_or('?')).collect()
             }
-            _ => String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or_default())
-                .into_owned(),
+            _ => String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or_default()).into_owned(),
         };
         shortened(&one_line(&text))
     }

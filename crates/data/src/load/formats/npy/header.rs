@@ -86,11 +86,9 @@ fn add_fields(
         };
         let count = match shape {
             None => Some(1),
-            Some(Value::Tuple(dimensions)) => {
-                dimensions.iter().try_fold(1, |all: usize, dimension| {
-                    all.checked_mul(usize::try_from(dimension.as_integer()?).ok()?)
-                })
-            }
+            Some(Value::Tuple(dimensions)) => dimensions
+                .iter()
+                .try_fold(1, |all: usize, dimension| all.checked_mul(usize::try_from(dimension.as_integer()?).ok()?)),
             Some(dimension) => dimension.as_integer().and_then(|count| usize::try_from(count).ok()),
         };
         let too_many = || format!("has more than {MAX_COLUMNS} columns");
@@ -128,14 +126,10 @@ fn add_fields(
 
 /// Splits a file into its header and the data after it.
 pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), LoadError> {
-    let bad = |message: &str| {
-        LoadError::new(format!("the .npy header {message}; write the file with numpy.save"))
-    };
+    let bad = |message: &str| LoadError::new(format!("the .npy header {message}; write the file with numpy.save"));
     let cut_off = || bad("is cut off").of_kind(LoadErrorKind::CutOff);
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| {
-        LoadError::new(
-            "this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save",
-        )
+        LoadError::new("this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save")
     })?;
     let (version, rest) = rest.split_first_chunk().ok_or_else(cut_off)?;
     let (length, rest) = match *version {
@@ -152,9 +146,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), LoadError> {
         }
     };
     if length > MAX_TEXT {
-        return Err(bad(&format!(
-            "is {length} bytes long, more than the limit of {MAX_TEXT} bytes"
-        )));
+        return Err(bad(&format!("is {length} bytes long, more than the limit of {MAX_TEXT} bytes")));
     }
     let (text, data) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     let text = str::from_utf8(text).map_err(|_| bad("is not valid text"))?;
@@ -166,12 +158,10 @@ fn parse(text: &str) -> Result<Header, String> {
     if depth(text) > MAX_DEPTH {
         return Err(format!("has brackets nested more than {MAX_DEPTH} levels deep"));
     }
-    let not_a_dictionary =
-        || format!("is not a valid Python dictionary: `{}`", shortened(&one_line(text)));
+    let not_a_dictionary = || format!("is not a valid Python dictionary: `{}`", shortened(&one_line(text)));
     let Ok(Value::Dict(entries)) = text.trim_end().parse() else { return Err(not_a_dictionary()) };
     let value = |name: &str| {
-        let mut named =
-            entries.iter().filter(|(key, _)| key.as_string().is_some_and(|k| k == name));
+        let mut named = entries.iter().filter(|(key, _)| key.as_string().is_some_and(|k| k == name));
         named.next().map(|(_, value)| value).ok_or_else(|| format!("has no key `{name}`"))
     };
     let elements = match value("descr")? {
@@ -191,8 +181,7 @@ fn parse(text: &str) -> Result<Header, String> {
     };
     let count = |dimension: &Value| u64::try_from(dimension.as_integer()?).ok();
     let shape: Option<Vec<u64>> = dimensions.iter().map(count).collect();
-    let shape =
-        shape.ok_or("has a `shape` with a dimension that is not a valid number of elements")?;
+    let shape = shape.ok_or("has a `shape` with a dimension that is not a valid number of elements")?;
     Ok(Header { elements, fortran_order, shape })
 }
 

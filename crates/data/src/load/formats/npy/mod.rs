@@ -40,9 +40,7 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
     let array = Array::open(bytes)?;
     let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
     Ok(match array.spheres(radius)? {
-        Spheres::Ready { spheres, have_radii } => {
-            Table::default().dress(spheres, have_radii, &options)?
-        }
+        Spheres::Ready { spheres, have_radii } => Table::default().dress(spheres, have_radii, &options)?,
         Spheres::Columns { columns, notes } => {
             let mut loaded = Table { columns }.into_loaded(&options)?;
             loaded.notes.extend(notes);
@@ -134,10 +132,8 @@ impl<'a> Array<'a> {
                 )));
             };
             let (columns, unused) = self.fields("");
-            let note = format!(
-                "these fields are not used, because they are neither numbers nor text: {}",
-                unused.join(", ")
-            );
+            let note =
+                format!("these fields are not used, because they are neither numbers nor text: {}", unused.join(", "));
             let notes = if unused.is_empty() { vec![] } else { vec![note] };
             return Ok(Spheres::Columns { columns, notes });
         };
@@ -167,8 +163,7 @@ impl<'a> Array<'a> {
             && let Some(spheres) = self.plain(dtype, names.len())
         {
             let have_radii = names.len() == 4;
-            let memory =
-                |_| LoadError::new(format!("there is not enough memory for {count} spheres"));
+            let memory = |_| LoadError::new(format!("there is not enough memory for {count} spheres"));
             return spheres.map(|spheres| Spheres::Ready { spheres, have_radii }).map_err(memory);
         }
         let mut columns = self.matrix(dtype, names.iter().map(ToString::to_string));
@@ -211,11 +206,7 @@ impl<'a> Array<'a> {
         }
     }
 
-    fn matrix(
-        &self,
-        dtype: &Dtype,
-        names: impl ExactSizeIterator<Item = String>,
-    ) -> Vec<TableColumn> {
+    fn matrix(&self, dtype: &Dtype, names: impl ExactSizeIterator<Item = String>) -> Vec<TableColumn> {
         let (rows, columns, size) = (self.rows(), names.len(), dtype.size);
         let place = |column| match self.header.fortran_order {
             true => Place { first: column * rows * size, stride: size, rows },
@@ -230,8 +221,7 @@ impl<'a> Array<'a> {
         let Elements::Structures { fields, size } = &self.header.elements else {
             return Default::default();
         };
-        let (used, unused): (Vec<_>, Vec<_>) =
-            fields.iter().partition(|field| field.dtype.is_column());
+        let (used, unused): (Vec<_>, Vec<_>) = fields.iter().partition(|field| field.dtype.is_column());
         let column = |field: &header::Field| {
             let place = Place { first: field.offset, stride: *size, rows: self.rows() };
             field.dtype.column(format!("{prefix}{}", field.name), self.data, place)

@@ -30,8 +30,7 @@ impl Array<'_> {
             [height, width, count] if components > 1 && count == components => (height, width),
             _ => return None,
         };
-        let side =
-            |side: u64| u32::try_from(side).ok().filter(|s| (1..=Film::MAX_SIDE).contains(s));
+        let side = |side: u64| u32::try_from(side).ok().filter(|s| (1..=Film::MAX_SIDE).contains(s));
         Some([side(width)?, side(height)?])
     }
 
@@ -57,13 +56,7 @@ impl Array<'_> {
     }
 
     /// Decodes values in C order from either order of the file.
-    fn values<T>(
-        &self,
-        size: [u32; 2],
-        components: usize,
-        dtype: &Dtype,
-        decode: impl Fn(&[u8]) -> T,
-    ) -> Vec<T> {
+    fn values<T>(&self, size: [u32; 2], components: usize, dtype: &Dtype, decode: impl Fn(&[u8]) -> T) -> Vec<T> {
         let width = dtype.size;
         let at = |place: usize| decode(&self.data[place * width..(place + 1) * width]);
         let count = self.data.len() / width.max(1);

@@ -23,9 +23,7 @@ impl Kind {
     ///
     /// A serial number of six digits may begin in column 6.
     pub(super) fn of(line: &[u8]) -> Self {
-        let is = |name: &[u8]| {
-            line.strip_prefix(name).is_some_and(|rest| matches!(rest.first(), None | Some(b' ')))
-        };
+        let is = |name: &[u8]| line.strip_prefix(name).is_some_and(|rest| matches!(rest.first(), None | Some(b' ')));
         // Most lines of most files are atoms, and the first letter rules out most other lines.
         match line.first() {
             Some(b'A') if is(b"ATOM") => Self::Atom,
@@ -84,17 +82,12 @@ impl<'a> Record<'a> {
         }
         let offset = text.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
         let byte = text.get(offset).copied().unwrap_or_default();
-        let message = format!(
-            "the byte 0x{byte:02x} is not ASCII; ATOM, HETATM and CRYST1 records must be ASCII text"
-        );
+        let message = format!("the byte 0x{byte:02x} is not ASCII; ATOM, HETATM and CRYST1 records must be ASCII text");
         Err(LoadError::at(Place::Column { line, column: offset + 1 }, message))
     }
 
     /// Refuses a line that ends before one of the fields. Each field has a name, a first and a last column.
-    pub(super) fn must_have(
-        &self,
-        fields: &[(&'static str, usize, usize)],
-    ) -> Result<(), LoadError> {
+    pub(super) fn must_have(&self, fields: &[(&'static str, usize, usize)]) -> Result<(), LoadError> {
         let columns = self.text.len();
         match fields.iter().find(|(_, _, last)| *last > columns) {
             None => Ok(()),
@@ -126,12 +119,7 @@ impl<'a> Record<'a> {
         })
     }
 
-    pub(super) fn number(
-        &self,
-        what: &'static str,
-        first: usize,
-        last: usize,
-    ) -> Result<f64, LoadError> {
+    pub(super) fn number(&self, what: &'static str, first: usize, last: usize) -> Result<f64, LoadError> {
         let text = self.text(first, last);
         number(text).filter(|number| number.is_finite()).ok_or_else(|| {
             let found = not_valid(text, "a finite number");
@@ -150,9 +138,11 @@ impl<'a> Record<'a> {
         last: usize,
     ) -> Result<f64, LoadError> {
         // Few fields are blank, so that is tested only if there is no number.
-        self.number(what, first, last).or_else(|error| {
-            if self.text(first, last).is_empty() { Ok(absent) } else { Err(error) }
-        })
+        self.number(what, first, last).or_else(
+            |error| {
+                if self.text(first, last).is_empty() { Ok(absent) } else { Err(error) }
+            },
+        )
     }
 }
 
@@ -173,12 +163,8 @@ const BLOCK: i32 = 36 * 36 * 36;
 /// Decodes a field that has no blanks around it; `None` if it is not a valid number.
 pub(super) fn hybrid36(text: &[u8]) -> Option<i32> {
     match *text {
-        [first @ b'A'..=b'Z', b, c, d] => {
-            base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000)
-        }
-        [first @ b'a'..=b'z', b, c, d] => {
-            base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000)
-        }
+        [first @ b'A'..=b'Z', b, c, d] => base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000),
+        [first @ b'a'..=b'z', b, c, d] => base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000),
         _ => std::str::from_utf8(text).ok()?.parse().ok(),
     }
 }

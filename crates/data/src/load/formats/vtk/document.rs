@@ -227,8 +227,7 @@ impl<'a> Parser<'a> {
         encoding.is_wide = one_of("header_type", ["UInt32", "UInt64"])?;
         let kind = attribute(element, "type")?.unwrap_or_default();
         if !["PolyData", "UnstructuredGrid"].contains(&kind.as_str()) {
-            let is_list =
-                kind.starts_with('P') || kind.contains("MultiBlock") || kind == "Collection";
+            let is_list = kind.starts_with('P') || kind.contains("MultiBlock") || kind == "Collection";
             let advice = if is_list { "; name one of the files that it lists" } else { "" };
             return Err(Problem::Error(LoadError::new(format!(
                 "the file is of the type {}, but only PolyData (.vtp) and UnstructuredGrid (.vtu) can be read{advice}",
@@ -290,8 +289,7 @@ fn element_name(element: &BytesStart<'_>) -> String {
 fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>, Problem> {
     let message = |error: &dyn std::fmt::Display| Problem::Message(one_line(&error.to_string()));
     let found = element.try_get_attribute(name).map_err(|error| message(&error))?;
-    let value =
-        found.map(|found| found.normalized_value(XmlVersion::Implicit1_0).map(Cow::into_owned));
+    let value = found.map(|found| found.normalized_value(XmlVersion::Implicit1_0).map(Cow::into_owned));
     value.transpose().map_err(|error| message(&error))
 }
 
@@ -323,8 +321,7 @@ fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Prob
         )));
     };
     let components = number(element, "NumberOfComponents")?.unwrap_or(1).max(1);
-    let Some(components) = usize::try_from(components).ok().filter(|n| *n <= MOST_COMPONENTS)
-    else {
+    let Some(components) = usize::try_from(components).ok().filter(|n| *n <= MOST_COMPONENTS) else {
         return Ok(Err(format!("the array {shown}, which has {components} components")));
     };
     let data = match attribute(element, "format")?.as_deref() {
