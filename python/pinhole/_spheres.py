@@ -251,9 +251,9 @@ class Spheres:
             Whether a line on standard error shows the progress, or a function that is called with numbers from 0 to 1.
         settings
             The tables and keys of a scene file: ``studio``, ``path``, ``sampling``, ``lights``, ``sky``, ``sun``,
-            ``ground``, ``background``, ``legend``, ``scale_bar``, ``labels``, ``output``; and the short forms ``light``
-            (primary, studio or path), ``denoise``, ``seed``, ``transparent``, ``exposure``, ``tone``, ``bits``
-            and ``dpi``.
+            ``ground``, ``background``, ``legend``, ``scale_bar``, ``labels``, ``output``. Short forms are ``light``
+            (primary, studio or path), and the flags of the program for keys of such a table, such as ``denoise``,
+            ``seed``, ``filter``, ``transparent``, ``exposure``, ``tone``, ``bits``, ``dpi`` and ``text_scale``.
 
         >>> image = pinhole.Spheres([[0, 0, 0]], radius=1).render(size=(64, 48), backend="cpu", layers=["id"])
         >>> image.id[24, 32]
