@@ -13,6 +13,7 @@
 
 use std::path::Path;
 
+use pinhole_data::load::{FORMATS, Format};
 use similar::TextDiff;
 
 use crate::cases::{Case, answered};
@@ -63,7 +64,7 @@ fn compare(folder: &str, is_about: impl Fn(&str) -> bool, find: impl Fn(&str, &s
 fn help() {
     let folder = Folder::new();
     let of_render = folder.run("render --help").succeeded().stdout;
-    let of_render = String::from_utf8(of_render).unwrap();
+    let of_render = without_formats(String::from_utf8(of_render).unwrap());
     compare(
         SNAPSHOTS,
         |name| name.starts_with("help") || name == BRIEF,
@@ -73,6 +74,7 @@ fn help() {
             let run = folder.run(&format!("{command} {flag}")).succeeded();
             assert_eq!(run.stderr, "", "{command}");
             let text = String::from_utf8(run.stdout).unwrap();
+            let text = without_formats(text);
             if ["help", "help-render", BRIEF].contains(&name) {
                 return text;
             }
@@ -120,7 +122,26 @@ fn refused(Case { files, arguments }: &Case<'_>) -> String {
     assert!(run.stdout.is_empty(), "{arguments}: something on standard output");
     assert_eq!(folder.files(), before, "{arguments}");
     let stderr = run.stderr.replace(&*folder.path("").to_string_lossy(), "");
-    format!("exit code {}\n{stderr}", run.code)
+    without_formats(format!("exit code {}\n{stderr}", run.code))
+}
+
+/// Writes words for the lists that follow from the table of formats, so that a new format is not a change of texts.
+fn without_formats(mut text: String) -> String {
+    let extensions = |is_wanted: fn(&Format) -> bool| Format::extensions_of(is_wanted);
+    for (list, words) in [
+        (extensions(|_| true), "EXTENSIONS"),
+        (extensions(Format::has_frames), "EXTENSIONS OF TRAJECTORIES"),
+        (extensions(|format| format.may_lack_radii), "EXTENSIONS OF DATA THAT MAY LACK RADII"),
+        (FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", "), "NAMES OF FORMATS"),
+    ] {
+        text = text.replace(&list, words);
+    }
+    // The help has a line for each.
+    let is_format = |line: &&str| {
+        let name = line.trim_start().strip_prefix("- ").and_then(|line| line.split_once(':'));
+        name.is_some_and(|(name, _)| FORMATS.iter().any(|format| format.name == name))
+    };
+    text.split_inclusive('\n').filter(|line| !is_format(line)).collect()
 }
 
 /// No adapter is needed.

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-use super::error::ColorByError;
+use super::ColorByError;
 use super::key::{Category, ColorKey, ColorScale, KeyKind};
 use super::maps::MapName;
 use super::number::short;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::error::ColorByError;
+use super::ColorByError;
 use super::number::short;
 use super::{ColorBy, Coloring};
 use pinhole::scene::material::{Material, SurfaceProperties};

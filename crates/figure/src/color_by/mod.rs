@@ -16,8 +16,6 @@
 //! ```
 
 mod coloring;
-
-mod error;
 mod joined;
 mod key;
 mod mapping;
@@ -25,7 +23,6 @@ mod maps;
 pub mod number;
 mod scale;
 
-pub use error::ColorByError;
 pub use joined::JoinedKeys;
 pub use key::{Category, ColorKey, ColorScale, KeyKind};
 pub use mapping::{EmissionBy, Mapping, RadiusBy};
@@ -39,6 +36,21 @@ use pinhole::image::color::LinearRgb;
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole_data::column;
 use pinhole_data::load::{Column, ColumnValues};
+
+/// The reason why a column does not give colours, radii, opacities or strengths of light.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColorByError {
+    /// There is no such column, or its values are text where numbers are needed.
+    #[error(transparent)]
+    Column(#[from] ColumnError),
+    /// The range is wrong.
+    #[error("the range of the colors: {0}")]
+    Scale(#[from] ScaleError),
+    /// The values, the range or the factor do not suit the request.
+    #[error("{0}")]
+    Values(String),
+}
 
 /// The choices that turn a column into colours.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]

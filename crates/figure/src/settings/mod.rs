@@ -4,10 +4,8 @@ pub mod flags;
 mod keys;
 pub(crate) mod layers;
 pub(crate) mod places;
-mod quoted;
 mod words;
 
 pub use keys::keys_of;
 pub use layers::{Layer, Sources};
-pub use quoted::quoted;
-pub use words::{list_of, size_of};
+pub use words::{list_of, quoted, size_of};

@@ -1,9 +1,27 @@
 //! Turns the values of flags into TOML.
 
+use std::fmt::Write;
+
 use pinhole::camera::Viewpoint;
 
-use super::quoted;
 use crate::annotate::Position;
+
+/// A text in quotes, as TOML writes it.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
 
 pub(super) fn text(text: &str) -> String {
     quoted(text)
