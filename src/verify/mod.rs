@@ -43,10 +43,10 @@ mod checker;
 mod choices;
 pub mod conformance;
 pub mod denoised;
+pub mod finished;
 mod hit;
 pub(crate) mod lit;
 mod lit_check;
-pub mod means;
 mod number;
 mod paths;
 #[cfg(feature = "run-file")]

@@ -8,17 +8,16 @@
 //! | `pinhole-certificate` | version of this format, [`VERSION`] |
 //! | `version` | version of this crate |
 //! | `adapter` | the adapter that rendered, or `cpu` |
-//! | `argument` | an argument of `pinhole render` apart from the scene; one line for each |
+//! | `setting` | a setting that the command line gave, as its flag; one line for each |
 //! | `scene-sha256` | digest of the scene's data, [`scene_digest`] |
 //! | `samples-sha256` | digest of the picture's size and samples, [`samples_digest`] |
-//! | `samples-per-pixel` | number of samples of each pixel |
-//! | `judged-by` | `intervals` or `means` |
 //! | `outcome` | `proved` or `undecided` |
-//! | `proved`, `undecided` | numbers of pixels; of means, if these were judged |
+//! | `exact`, `legal`, `open` | numbers of pixels with these verdicts |
 //! | `sha256` | digest of all lines before |
 //!
 //! A digest reveals changes by mistake. It is not a signature: a person who changes a picture on purpose can also
-//! compute digests, but cannot make the check of its samples succeed.
+//! compute digests. So `verify` takes nothing else from the certificate than what the picture should be, and judges every
+//! pixel itself. The adapter and the version are hearsay.
 
 use sha2::{Digest, Sha256};
 
@@ -28,36 +27,19 @@ use crate::text::{one_line, shortened};
 use crate::verify::certificate::Outcome;
 
 /// The version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: &str = "1";
+pub const VERSION: &str = "2";
 
 /// The first key.
 const FIRST: &str = "pinhole-certificate";
+
+/// The keys of the numbers of pixels.
+const COUNTS: [&str; 3] = ["exact", "legal", "open"];
 
 /// The last key.
 const DIGEST: &str = "sha256";
 
 /// The number of bytes that are given to a digest at a time.
 const CHUNK: usize = 1 << 16;
-
-/// The method by which a picture was judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JudgedBy {
-    /// Sample by sample, by the intervals of legal values: [`written`](super::written).
-    Intervals,
-    /// Region by region, by means of independent estimates: [`means`](super::means).
-    Means,
-}
-
-impl JudgedBy {
-    /// The name in certificates.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Intervals => "intervals",
-            Self::Means => "means",
-        }
-    }
-}
 
 /// The certificate that a picture carries in its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,20 +48,16 @@ pub struct PictureCertificate {
     pub version: String,
     /// The adapter that rendered, or `cpu`.
     pub adapter: String,
-    /// The arguments of `pinhole render`, without the scene and without arguments that do not change the picture.
-    pub arguments: Vec<String>,
+    /// The settings that the command line gave, each as the name of its flag without dashes, and its value.
+    pub settings: Vec<[String; 2]>,
     /// The digest of the scene's data.
     pub scene: String,
     /// The digest of the samples.
     pub samples: String,
-    /// The number of samples of each pixel.
-    pub samples_per_pixel: u32,
-    /// The method by which the picture was judged.
-    pub judged_by: JudgedBy,
     /// The outcome of the check.
     pub outcome: Outcome,
-    /// The numbers of pixels, or of means, that are proved and undecided.
-    pub counts: [u64; 2],
+    /// The numbers of pixels that are exact, legal and open.
+    pub counts: [u64; 3],
 }
 
 /// Why a text is not a certificate.
@@ -95,42 +73,34 @@ fn missing(key: &str) -> CertificateError {
 
 impl PictureCertificate {
     /// The text of the certificate, in ASCII.
-    ///
-    /// # Errors
-    /// Returns an error if an argument has a line break.
-    pub fn to_text(&self) -> Result<String, CertificateError> {
+    #[must_use]
+    pub fn to_text(&self) -> String {
         let mut text = format!("{FIRST} {VERSION}\n");
         let mut line = |key: &str, value: &str| {
             // Characters beyond ASCII are written as in Rust's strings, because PNG and OpenEXR have only Latin-1.
             text.extend([key, " "]);
             for c in value.chars() {
-                match c == '\\' || !c.is_ascii() {
-                    true => text.extend(c.escape_default()),
-                    false => text.push(c),
+                match c {
+                    '\\' => text.push_str("\\\\"),
+                    ' '..='~' => text.push(c),
+                    c => text.extend(c.escape_unicode()),
                 }
             }
             text.push('\n');
         };
         line("version", &one_line(&self.version));
         line("adapter", &one_line(&self.adapter));
-        for argument in &self.arguments {
-            if argument.contains(['\n', '\r']) {
-                return Err(CertificateError(format!(
-                    "{argument:?}: an argument with a line break cannot be part of a certificate; rename the file, or use \
-                     a scene file"
-                )));
-            }
-            line("argument", argument);
+        for [name, value] in &self.settings {
+            line("setting", &format!("{name} {value}"));
         }
         line("scene-sha256", &self.scene);
         line("samples-sha256", &self.samples);
-        line("samples-per-pixel", &self.samples_per_pixel.to_string());
-        line("judged-by", self.judged_by.name());
         line("outcome", self.outcome.name());
-        line("proved", &self.counts[0].to_string());
-        line("undecided", &self.counts[1].to_string());
+        for (key, count) in COUNTS.into_iter().zip(self.counts) {
+            line(key, &count.to_string());
+        }
         let digest = hex(Sha256::new_with_prefix(&text));
-        Ok(text + &format!("{DIGEST} {digest}\n"))
+        text + &format!("{DIGEST} {digest}\n")
     }
 
     /// Reads the text of a certificate.
@@ -162,24 +132,21 @@ impl PictureCertificate {
             |key: &'static str| lines.iter().filter(move |(found, _)| *found == key).map(|(_, value)| value.clone());
         let one = |key| all(key).next().ok_or(missing(key));
         let number = |key| one(key)?.parse::<u64>().map_err(|_| missing(key));
-        let judged_by = one("judged-by")?;
         let outcome = one("outcome")?;
         Ok(Self {
             version: one("version")?,
             adapter: one("adapter")?,
-            arguments: all("argument").collect(),
+            settings: all("setting")
+                .map(|setting| setting.split_once(' ').map(|(name, value)| [name, value].map(str::to_owned)))
+                .collect::<Option<_>>()
+                .ok_or(missing("setting"))?,
             scene: one("scene-sha256")?,
             samples: one("samples-sha256")?,
-            samples_per_pixel: u32::try_from(number("samples-per-pixel")?).map_err(|_| missing("samples-per-pixel"))?,
-            judged_by: [JudgedBy::Intervals, JudgedBy::Means]
-                .into_iter()
-                .find(|by| by.name() == judged_by)
-                .ok_or(missing("judged-by"))?,
             outcome: [Outcome::Proved, Outcome::Undecided]
                 .into_iter()
                 .find(|known| known.name() == outcome)
                 .ok_or(missing("outcome"))?,
-            counts: [number("proved")?, number("undecided")?],
+            counts: [number(COUNTS[0])?, number(COUNTS[1])?, number(COUNTS[2])?],
         })
     }
 }
@@ -251,26 +218,26 @@ mod tests {
         PictureCertificate {
             version: "0.1.0".into(),
             adapter: "a device".into(),
-            arguments: vec!["--eye".into(), "1,2,3".into(), "grün \\u{41} \\.npy".into(), String::new()],
+            settings: [("eye", "1,2,3"), ("label", "grün\n\\u{41} \\.@top"), ("label", "")]
+                .map(|(name, value)| [name, value].map(str::to_owned))
+                .to_vec(),
             scene: "aa".into(),
             samples: "bb".into(),
-            samples_per_pixel: 64,
-            judged_by: JudgedBy::Means,
             outcome: Outcome::Undecided,
-            counts: [190, 2],
+            counts: [190, 2, 0],
         }
     }
 
     #[test]
     fn a_certificate_is_read_as_it_was_written() {
-        let text = certificate().to_text().unwrap();
+        let text = certificate().to_text();
         assert!(text.is_ascii(), "{text}");
         assert_eq!(PictureCertificate::from_text(&text), Ok(certificate()));
     }
 
     #[test]
     fn every_edit_is_noticed() {
-        let text = certificate().to_text().unwrap();
+        let text = certificate().to_text();
         for index in 0..text.len() {
             let mut edited = text.clone().into_bytes();
             edited[index] ^= 1;
@@ -279,15 +246,8 @@ mod tests {
             assert!(PictureCertificate::from_text(&text[..index]).is_err(), "{index}");
         }
         let refused = |text: &str| PictureCertificate::from_text(text).unwrap_err().to_string();
-        let other = refused(&text.replace("certificate 1", "certificate 2"));
-        assert!(other.starts_with("the picture's certificate has the version 2, and this"), "{other}");
+        let other = refused(&text.replace("certificate 2", "certificate 1"));
+        assert!(other.starts_with("the picture's certificate has the version 1, and this"), "{other}");
         assert_eq!(refused(""), missing(FIRST).to_string());
-    }
-
-    #[test]
-    fn arguments_with_line_breaks_are_refused() {
-        let broken = PictureCertificate { arguments: vec!["a\nb".into()], ..certificate() };
-        let error = broken.to_text().unwrap_err().to_string();
-        assert!(error.starts_with("\"a\\nb\": an argument with a line break"), "{error}");
     }
 }

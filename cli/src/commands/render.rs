@@ -9,7 +9,7 @@ use crate::frames;
 use crate::input::Input;
 use crate::output::picture::Outputs;
 use crate::output::scene;
-use crate::proof::render_certified;
+use crate::proof::{certified, render_certified};
 use crate::render::views::{Shot, views_of};
 use crate::render::{Job, render_joined, render_views};
 use crate::terminal::failure::Failure;
@@ -44,6 +44,9 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     let started = Instant::now();
     let quiet = args.report.quiet;
     let mut job = Job::new(args, args.output.as_deref().unwrap_or(Path::new("-")))?;
+    if args.certify {
+        certified::check(&job.source.given)?;
+    }
     if quiet {
         progress::close();
     }
@@ -81,7 +84,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     let adapter = opened.adapter();
     let (stop_rule, opened) = (job.stop_rule, &opened);
     if args.certify {
-        let verdict = render_certified::run(&mut input, stop_rule, outputs, &encoding, opened)?;
+        let verdict = render_certified::run(&mut input, &job.source.given, stop_rule, outputs, &encoding, opened)?;
         said(quiet, &input, started);
         return verdict;
     }

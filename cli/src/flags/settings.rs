@@ -35,6 +35,11 @@ impl Given {
         self
     }
 
+    /// The names of all flags, without dashes, and their values.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.0.iter().map(|(flag, value)| (flag.name(), &**value))
+    }
+
     /// The flags of both, of which `other` takes precedence.
     pub(crate) fn and(mut self, other: &Self) -> Self {
         self.0.extend(other.0.iter().cloned());

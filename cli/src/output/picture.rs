@@ -32,7 +32,7 @@ pub(crate) struct Outputs {
     pub(crate) layers: Vec<(Layer, PathBuf)>,
     /// Annotations to draw over a PNG.
     pub(crate) annotations: Annotations,
-    /// The certificate of the picture. A PNG then has no annotations.
+    /// The certificate of the picture.
     pub(crate) certificate: Option<String>,
 }
 
@@ -73,12 +73,12 @@ impl Outputs {
         }
     }
 
-    /// Encodes the picture as PNG, with its annotations or its certificate.
+    /// Encodes the picture as PNG, with its annotations and its certificate.
     fn png(&self, image: &Image, encoding: &Encoding) -> Result<Vec<u8>, png::PngError> {
         let _phase = profile::phase("encode");
         if let Some(certificate) = &self.certificate {
             let size = [image.width(), image.height()];
-            let samples = png::samples(image, encoding)?;
+            let samples = png::samples_annotated(image, encoding, &self.annotations)?;
             return png::encode_certified(size, encoding, &samples, certificate);
         }
         png::encode_annotated(image, encoding, &self.annotations)

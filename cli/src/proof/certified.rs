@@ -1,80 +1,54 @@
 //! The certificate in a picture: `render --certify` makes it, and `verify PICTURE` checks it.
 
 use anyhow::{Context, Result, anyhow};
-use clap::parser::ValueSource;
-use clap::{ArgMatches, CommandFactory};
 
-use crate::flags::render::RenderLine;
+use crate::flags::settings::Given;
 use crate::input::Input;
-use crate::render;
+use crate::output::picture::{Outputs, PictureFormat};
 use crate::render::device::OpenDevice;
+use crate::render::render_joined;
+use crate::render::stop_rule::StopRule;
+use crate::render::views::{Shot, views_of};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
-use pinhole::image::denoise;
+use pinhole::image::Image;
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, LayerSet};
-use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::means::{Estimates, Means};
-use pinhole::verify::picture_certificate::{JudgedBy, PictureCertificate, samples_digest, scene_digest};
-use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
-use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome, Verdict};
+use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, PixelVerdict};
+use pinhole::verify::picture_certificate::{PictureCertificate, samples_digest, scene_digest};
+use pinhole::verify::written::{Samples, WrittenPicture};
+use pinhole::verify::{Checker, Outcome};
 use pinhole_figure::read::picture::FileSamples;
+use pinhole_figure::settings::Layer;
 use pinhole_figure::write::png;
 
-/// Arguments of `render` that do not change the samples of the picture, or that name files and devices.
-const NOT_OF_THE_PICTURE: [&str; 16] = [
-    "path",
-    "output",
-    "certify",
-    "layers",
-    "backend",
-    "adapter",
-    "limits",
-    "accel",
-    "time",
-    "noise",
-    "keep_partial",
-    "print_scene",
-    "save_scene",
-    "quiet",
-    "profile",
-    "dpi",
-];
+/// A flag that changes no sample of the picture.
+const NOT_OF_THE_PICTURE: &str = "dpi";
 
-/// A number that is added to the seed for the reference's picture, so that its noise differs.
-const OTHER_SEED: u32 = 0x9e37_79b9;
+/// Keys of scene files that name files.
+const NAMES_OF_FILES: [&str; 4] = ["data", "file", "topology", "image"];
 
 /// A picture as its file stores it, or will store it.
 pub(crate) struct FilePicture {
     pub(crate) size: [u32; 2],
     pub(crate) samples: FileSamples,
-    pub(crate) per_pixel: u32,
-}
-
-/// The result of judging a picture.
-pub(crate) enum Judgement {
-    /// A judgement of each sample.
-    Intervals(WrittenCertificate),
-    /// A judgement of the means of samples. For a denoised picture, it judges light before denoising, and the denoiser.
-    Means(Means, Option<DenoiseCertificate>),
 }
 
 impl FilePicture {
     /// Returns the samples of an image as a writer would store them.
-    pub(crate) fn of(image: &Image, encoding: &Encoding, is_png: bool, per_pixel: u32) -> Result<Self> {
+    pub(crate) fn of(image: &Image, encoding: &Encoding, outputs: &Outputs) -> Result<Self> {
         let size = [image.width(), image.height()];
-        let samples = if is_png {
+        let samples = if outputs.format == PictureFormat::Png {
             FileSamples::Encoded {
                 bits: encoding.bits,
                 has_alpha: encoding.transparent,
-                bytes: png::samples(image, encoding)?,
+                bytes: png::samples_annotated(image, encoding, &outputs.annotations)?,
             }
         } else {
             let alpha = image.alpha().filter(|_| encoding.transparent);
             let with_alpha = |(i, [r, g, b]): (usize, &[f32; 3])| [*r, *g, *b, alpha.map_or(1.0, |alpha| alpha[i])];
             FileSamples::Linear(image.color().iter().enumerate().map(with_alpha).collect())
         };
-        Ok(Self { size, samples, per_pixel })
+        Ok(Self { size, samples })
     }
 
     fn digest(&self) -> String {
@@ -94,195 +68,81 @@ impl FilePicture {
         };
         WrittenPicture { size: self.size, samples, encoding }
     }
-
-    /// Red, green and blue of each pixel, with white at 1.
-    fn colors(&self, encoding: &Encoding) -> Result<Vec<[f64; 3]>> {
-        Ok(self.picture(encoding).colors()?)
-    }
 }
 
-/// Refuses pictures that cannot be certified.
-pub(crate) fn check(input: &Input, has_annotations: bool) -> Result<(), Failure> {
-    let refusal = if has_annotations {
-        "annotations are drawn over the picture; certify the picture without legends, scale bars and labels"
-    } else if input.eyes.is_some() {
-        "a stereo picture cannot be certified; certify one eye"
-    } else {
-        return Ok(());
-    };
-    Err(Failure::usage(format!("--certify: {refusal}")))
-}
-
+/// Judges every pixel of a picture. The reference makes the picture again, with the same random numbers.
 pub(crate) fn judge(
-    input: &mut Input,
-    encoding: &Encoding,
-    layers: LayerSet,
-    written: &FilePicture,
-) -> Result<Judgement, Failure> {
-    progress::stage("checking");
-    let checked = |scene| Checker::new(scene).context("the checker cannot be prepared");
-    if let Some(primary) = input.settings.primary() {
-        let certificate = checked(&input.scene)?
-            .certify_written(&input.view(), &primary, &written.picture(encoding))
-            .map_err(anyhow::Error::from)?;
-        return Ok(Judgement::Intervals(certificate));
-    }
-    let is_png = matches!(written.samples, FileSamples::Encoded { .. });
-    let per_pixel = written.per_pixel;
-    let reference = other_estimate(input, per_pixel, |input| {
-        let image = render::render(input, layers, &OpenDevice::Cpu)?;
-        Ok(FilePicture::of(&image, encoding, is_png, per_pixel)?.colors(encoding)?)
-    })?;
-    let reach = if input.settings.sampling.denoise { denoise::REACH } else { 0 };
-    let found = written.colors(encoding)?;
-    Ok(Judgement::Means(means(input, (per_pixel, reach), &found, &reference)?, None))
-}
-
-/// Judges the light of a picture before denoising and other finishing.
-pub(crate) fn means_of_light(input: &mut Input, image: &Image, layers: LayerSet) -> Result<Means, Failure> {
-    progress::stage("checking");
-    let colors = |image: &Image| -> Vec<[f64; 3]> { image.color().iter().map(|rgb| rgb.map(f64::from)).collect() };
-    let per_pixel = image.samples().and_then(|samples| samples.first().copied()).unwrap_or(1);
-    let reference = other_estimate(input, per_pixel, |input| {
-        let film = input.film;
-        Ok(colors(&render::render_part(input, film, layers, &OpenDevice::Cpu)?[0]))
-    })?;
-    means(input, (per_pixel, 0), &colors(image), &reference)
-}
-
-/// Renders the reference's picture with other random numbers.
-fn other_estimate(
-    input: &mut Input,
-    per_pixel: u32,
-    render: impl FnOnce(&mut Input) -> Result<Vec<[f64; 3]>, Failure>,
-) -> Result<Vec<[f64; 3]>, Failure> {
-    let sampling = input.settings.sampling;
-    input.settings.sampling.seed = sampling.seed.wrapping_add(OTHER_SEED);
-    input.settings.sampling.samples = per_pixel;
-    let reference = render(input);
-    input.settings.sampling = sampling;
-    reference
-}
-
-fn means(
     input: &Input,
-    (samples, reach): (u32, u32),
-    found: &[[f64; 3]],
-    expected: &[[f64; 3]],
-) -> Result<Means, Failure> {
+    encoding: &Encoding,
+    outputs: &Outputs,
+    written: &FilePicture,
+) -> Result<FinishedCertificate, Failure> {
+    let (layers, stop_rule) = (Outputs::unwritten(outputs.format).layers(encoding), StopRule::default());
+    let views = &views_of(input, input.film);
+    let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &OpenDevice::Cpu })?;
+    let exact = FilePicture::of(&image, encoding, outputs)?;
+    progress::stage("checking");
     let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
-    let ties = checker.ties(&input.view());
-    let size = [input.film.width(), input.film.height()];
-    Ok(Estimates { size, samples, reach, found, expected, ties: &ties }.compare())
+    let is_annotated = !outputs.annotations.is_empty();
+    let pictures = [written, &exact].map(|picture| picture.picture(encoding));
+    let judged = checker.certify_finished(&input.view(), &input.settings, pictures.each_ref(), is_annotated);
+    Ok(judged.map_err(anyhow::Error::from)?)
 }
 
-impl Judgement {
-    pub(crate) fn by(&self) -> JudgedBy {
-        match self {
-            Self::Intervals(_) => JudgedBy::Intervals,
-            Self::Means(..) => JudgedBy::Means,
-        }
-    }
+/// The verdicts as a table.
+pub(crate) fn table(judged: &FinishedCertificate) -> String {
+    let all = judged.verdicts.len().max(1) as f64;
+    let row = |verdict: &PixelVerdict| {
+        let count = judged.count(*verdict);
+        format!("{:<12}{count:>12}  {:8.4} %  of pixels\n", verdict.name(), 100.0 * count as f64 / all)
+    };
+    PixelVerdict::ALL.iter().map(row).collect()
+}
 
-    pub(crate) fn outcome(&self) -> Outcome {
-        match self {
-            Self::Intervals(certificate) => certificate.outcome(),
-            Self::Means(means, denoiser) => {
-                let of_denoiser = denoiser.as_ref().map(DenoiseCertificate::outcome);
-                means.outcome().max(of_denoiser.unwrap_or(Outcome::Proved))
-            }
+/// Returns a failure unless the picture is proved.
+pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
+    let [open, violated] = [PixelVerdict::Open, PixelVerdict::Violated].map(|verdict| judged.count(verdict));
+    let all = judged.verdicts.len();
+    match judged.outcome() {
+        Outcome::Proved => Ok(()),
+        Outcome::Violated => {
+            let first = judged.violations.first().map(ToString::to_string).unwrap_or_default();
+            Err(Failure::CheckFailed(anyhow!("the picture is not legal: {violated} of {all} pixels; {first}")))
         }
-    }
-
-    /// The numbers of proved, undecided and violated pixels, or means.
-    pub(crate) fn counts(&self) -> [u64; 3] {
-        match self {
-            Self::Intervals(certificate) => [
-                certificate.count(Verdict::Decided) as u64,
-                certificate.undecided() as u64,
-                certificate.count(Verdict::Violation) as u64,
-            ],
-            Self::Means(means, _) => {
-                [Outcome::Proved, Outcome::Undecided, Outcome::Violated].map(|outcome| means.count(outcome) as u64)
-            }
-        }
-    }
-
-    /// The first violation, or the worst.
-    pub(crate) fn violation(&self) -> Option<String> {
-        match self {
-            Self::Intervals(certificate) => certificate.violations.first().map(ToString::to_string),
-            Self::Means(means, denoiser) => {
-                let worst = means.worst().filter(|worst| worst.outcome == Outcome::Violated);
-                let denoiser = denoiser.as_ref().and_then(|denoiser| denoiser.violations.first());
-                worst.map(ToString::to_string).or(denoiser.map(ToString::to_string))
-            }
-        }
-    }
-
-    fn unit(&self) -> &'static str {
-        match self {
-            Self::Intervals(_) => "pixels",
-            Self::Means(..) => "means of regions",
-        }
-    }
-
-    pub(crate) fn table(&self) -> String {
-        let counts = self.counts();
-        let all = counts.iter().sum::<u64>().max(1) as f64;
-        let mut table = format!("{:<12}{:>12}\n", "judged by", self.by().name());
-        for (name, count) in ["proved", "undecided", "violated"].into_iter().zip(counts) {
-            let percent = 100.0 * count as f64 / all;
-            table += &format!("{name:<12}{count:>12}  {percent:8.4} %  of {}\n", self.unit());
-        }
-        if let Self::Means(means, None) = self {
-            let worst = means.worst().map_or(0.0, pinhole::verify::means::RegionMean::fraction);
-            table += &format!("{:<12}{worst:>12.4}  of its bound\n", "worst mean");
-            table += &format!("{:<12}{:>12.4}  of white\n", "widest bound", means.widest());
-        }
-        table
-    }
-
-    /// Returns a failure unless the picture is proved.
-    pub(crate) fn verdict(&self) -> Result<(), Failure> {
-        let [_, undecided, violated] = self.counts();
-        let unit = self.unit();
-        match self.outcome() {
-            Outcome::Proved => Ok(()),
-            Outcome::Undecided => Err(Failure::Undecided(anyhow!(
-                "no violation was found, but {undecided} {unit} are undecided; at most {}",
-                match self {
-                    Self::Intervals(_) => format!("{} % may be", 100.0 * MOST_UNDECIDED),
-                    Self::Means(..) =>
-                        "half of them may be; more samples, a larger picture or --denoise=false decide more".to_owned(),
-                }
-            ))),
-            Outcome::Violated => Err(Failure::CheckFailed(anyhow!(
-                "the picture is not legal: {violated} {unit}; {}",
-                self.violation().unwrap_or_default()
-            ))),
-        }
+        Outcome::Undecided => Err(Failure::Undecided(match judged.open.first() {
+            Some(first) => anyhow!(
+                "{open} of {all} pixels differ from what exact arithmetic gives, and nothing says whether rounding may \
+                 lead there; the first is {first}"
+            ),
+            None => anyhow!(
+                "no violation was found, but fewer than {} % of the pixels are what exact arithmetic gives",
+                100.0 * LEAST_EXACT
+            ),
+        })),
     }
 }
 
+/// The numbers of pixels that are exact, legal and open.
+fn counts(judged: &FinishedCertificate) -> [u64; 3] {
+    [PixelVerdict::Exact, PixelVerdict::Legal, PixelVerdict::Open].map(|verdict| judged.count(verdict) as u64)
+}
+
+/// Makes the certificate of a picture.
 pub(crate) fn certificate(
     input: &Input,
+    given: &Given,
     written: &FilePicture,
-    judged: &Judgement,
+    judged: &FinishedCertificate,
     adapter: Option<&str>,
-    arguments: Vec<String>,
 ) -> PictureCertificate {
-    let [proved, undecided, _] = judged.counts();
     PictureCertificate {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         adapter: adapter.unwrap_or("cpu").to_owned(),
-        arguments,
+        settings: settings(input, given),
         scene: scene_digest(&input.scene),
         samples: written.digest(),
-        samples_per_pixel: written.per_pixel,
-        judged_by: judged.by(),
         outcome: judged.outcome(),
-        counts: [proved, undecided],
+        counts: counts(judged),
     }
 }
 
@@ -305,44 +165,47 @@ pub(crate) fn check_scene(certificate: &PictureCertificate, input: &Input) -> Re
     ))
 }
 
-/// The arguments of this process that determine the picture, apart from the scene.
-pub(crate) fn arguments() -> Result<Vec<String>> {
-    let command = RenderLine::command();
-    let matches = command.clone().try_get_matches_from(std::env::args_os())?;
-    let of_render = matches.subcommand_matches("render");
-    of_render.map_or_else(|| Ok(Vec::new()), |matches| picture_arguments(&command, matches))
+/// Refuses flags that a certificate cannot have.
+pub(crate) fn check(given: &Given) -> Result<(), Failure> {
+    names_files(given)?.map_or(Ok(()), |flag| {
+        Err(Failure::usage(format!(
+            "--certify: {flag} names a file, which a certificate cannot; write it into a scene file, and render that"
+        )))
+    })
 }
 
-fn picture_arguments(command: &clap::Command, matches: &ArgMatches) -> Result<Vec<String>> {
-    let mut words = Vec::new();
-    let render = command.find_subcommand("render").map(clap::Command::get_arguments);
-    for argument in render.into_iter().flatten() {
-        let id = argument.get_id().as_str();
-        let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);
-        let Some(name) = argument.get_long().filter(|_| is_given) else { continue };
-        if NOT_OF_THE_PICTURE.contains(&id) {
-            continue;
-        }
-        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
-            let values: Option<Vec<&str>> = values.map(std::ffi::OsStr::to_str).collect();
-            let values = values.ok_or_else(|| {
-                anyhow!("--{name}: a value that is not UTF-8 cannot be part of a certificate; rename the file")
-            })?;
-            let takes_values = argument.get_action().takes_values();
-            match (takes_values, argument.get_value_delimiter()) {
-                (false, _) => words.push(format!("--{name}")),
-                (true, Some(delimiter)) => {
-                    words.push(format!("--{name}={}", values.join(&delimiter.to_string())));
-                }
-                (true, None) if values.len() == 1 => words.push(format!("--{name}={}", values[0])),
-                (true, None) => {
-                    words.push(format!("--{name}"));
-                    words.extend(values.into_iter().map(str::to_owned));
-                }
+/// The settings of a picture that the command line gave, and the number of samples that were taken.
+fn settings(input: &Input, given: &Given) -> Vec<[String; 2]> {
+    let samples = (!input.settings.integrator.is_primary()).then(|| input.settings.sampling.samples.to_string());
+    let given = given.clone().with("samples", samples.filter(|samples| given.get("samples") != Some(samples)));
+    let of_picture = given.all().filter(|(name, _)| *name != NOT_OF_THE_PICTURE);
+    of_picture.map(|(name, value)| [name, value].map(str::to_owned)).collect()
+}
+
+/// Reads the settings of a certificate; `None` if this program does not know one, or one names a file.
+pub(crate) fn given(certificate: &PictureCertificate) -> Option<Given> {
+    let mut given = Given::default();
+    for [name, value] in &certificate.settings {
+        let count = given.all().count();
+        given = given.with(name, Some(value.clone()));
+        (given.all().count() > count).then_some(())?;
+    }
+    names_files(&given).ok()?.is_none().then_some(given)
+}
+
+/// The first flag that names a file.
+fn names_files(given: &Given) -> Result<Option<&'static str>, Failure> {
+    fn has_name(value: &toml::Value) -> bool {
+        match value {
+            toml::Value::Table(table) => {
+                table.iter().any(|(key, value)| NAMES_OF_FILES.contains(&&**key) || has_name(value))
             }
+            toml::Value::Array(values) => values.iter().any(has_name),
+            _ => false,
         }
     }
-    Ok(words)
+    let is_of_file = |layer: &Layer| layer.text.parse::<toml::Table>().is_ok_and(|table| has_name(&table.into()));
+    Ok(given.layers()?.iter().find(|layer| is_of_file(layer)).map(|layer| layer.flag))
 }
 
 #[cfg(test)]
@@ -350,30 +213,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_out_exists() {
-        let command = RenderLine::command();
-        let render = command.find_subcommand("render").unwrap();
-        let is_built = |id: &&str| cfg!(feature = "gpu") || *id != "profile";
-        for id in NOT_OF_THE_PICTURE.into_iter().filter(is_built) {
-            assert!(render.get_arguments().any(|argument| argument.get_id() == id), "{id}");
+    fn flags_that_name_files_are_known() {
+        for (name, value, is_file) in [
+            ("topology", "a.pdb", true),
+            ("set", "data=\"a.pdb\"", true),
+            ("set", "sky={image=\"a.hdr\"}", true),
+            ("set", "data.topology=\"a.pdb\"", true),
+            ("set", "film.width=30", false),
+            ("label", "data = file@top", false),
+            ("select", "element C", false),
+        ] {
+            let given = Given::default().with(name, Some(value.to_owned()));
+            assert_eq!(names_files(&given).unwrap().is_some(), is_file, "{name} {value}");
         }
-    }
-
-    #[test]
-    fn arguments_mean_the_same_when_they_are_given_again() {
-        let command = RenderLine::command();
-        let given = "pinhole render a.csv -o b.png --eye 1,2,3 --size=30x20 --columns x,y,z --transparent \
-                     --exposure -1.5 --certify --quiet --adapter gpu";
-        let matches = command.clone().try_get_matches_from(given.split_whitespace()).unwrap();
-        let matches = matches.subcommand_matches("render").unwrap();
-        let words = picture_arguments(&command, matches).unwrap();
-        assert!(words.iter().any(|word| word == "--eye=1,2,3"), "{words:?}");
-        for absent in ["--quiet", "--adapter", "--certify", "a.csv"] {
-            assert!(!words.iter().any(|word| word.contains(absent)), "{words:?}");
-        }
-        let again = ["pinhole", "render", "a.csv", "-o", "-"].into_iter().map(str::to_owned);
-        let matches = command.clone().try_get_matches_from(again.chain(words.iter().cloned())).unwrap();
-        let matches = matches.subcommand_matches("render").unwrap();
-        assert_eq!(picture_arguments(&command, matches).unwrap(), words);
     }
 }

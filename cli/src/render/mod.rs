@@ -9,6 +9,7 @@ use anyhow::Context;
 use crate::bricks;
 use crate::flags::common::{InputArgs, Stereo};
 use crate::flags::render::RenderArgs;
+use crate::flags::settings::Given;
 use crate::input::{Input, Source};
 use crate::output::annotations;
 use crate::output::picture::Outputs;
@@ -56,18 +57,18 @@ impl Job {
     }
 
     pub(crate) fn with_outputs(args: &RenderArgs, outputs: Outputs) -> Result<Self, Failure> {
-        let stop_rule = StopRule::new(&args.stop_rule)?;
         let InputArgs { path, view } = &args.input;
         let given = view.given.clone().and(&args.look.given);
-        annotations::check(&given, outputs.format)?;
-        let source = Source::lit(path, &given, stop_rule.open_end())?;
-        Ok(Self {
-            source: Source { output: outputs.format, ..source },
-            stop_rule,
-            outputs,
-            device: Device::new(&args.device, args.accel.accel)?,
-            stereo: args.stereo,
-        })
+        let job = Self::on_cpu(path, &given, StopRule::new(&args.stop_rule)?, outputs)?;
+        Ok(Self { device: Device::new(&args.device, args.accel.accel)?, stereo: args.stereo, ..job })
+    }
+
+    /// A job of settings alone, for the CPU reference.
+    pub(crate) fn on_cpu(path: &Path, given: &Given, stop_rule: StopRule, outputs: Outputs) -> Result<Self, Failure> {
+        annotations::check(given, outputs.format)?;
+        let source = Source::lit(path, given, stop_rule.open_end())?;
+        let source = Source { output: outputs.format, ..source };
+        Ok(Self { source, outputs, stop_rule, device: Device::Cpu, stereo: None })
     }
 
     /// Applies the flags for the picture's file to an input. Returns the encoding and the annotations of the picture.

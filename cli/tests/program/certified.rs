@@ -50,7 +50,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
         let flags = format!("{flags} --backend cpu --quiet");
         folder.run(&format!("render {scene} -o {picture} --certify {flags}")).succeeded();
         let run = folder.run(&format!("verify {picture} --scene {scene} --json a.json")).succeeded();
-        assert!(line(&run, "judged by").ends_with("intervals"), "{picture}");
+        assert!(line(&run, "exact").contains("100.0000 %"), "{picture}");
         assert!(line(&run, "violated").contains(" 0 "), "{picture}");
         let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
         assert_eq!((&json["outcome"], &json["violated"]), (&"proved".into(), &0.into()));
@@ -63,37 +63,142 @@ fn a_picture_is_checked_with_the_scene_alone() {
     }
 }
 
-#[test]
-fn a_lit_picture_is_checked_by_means() {
-    let folder = folder();
-    let flags = "--style default --samples 24 --size 64x48 --backend cpu --quiet";
-    // Before writing, light and denoiser are judged one after the other. In the file, the mean of all pixels is judged.
-    folder.run(&format!("render data.csv -o a.png --certify {flags}")).succeeded();
-    let run = folder.run("verify a.png --scene data.csv").succeeded();
-    assert!(line(&run, "proved").contains(" 6 "), "{run:?}");
-    let run = folder.run(&format!("render data.csv -o b.png --certify {flags} --noise 0.1"));
-    run.refused(2, "--certify: --noise and the denoiser exclude");
-    let flags = format!("{flags} --denoise=false");
-    folder.run(&format!("render data.csv -o a.png --certify {flags}")).succeeded();
-    let run = folder.run("verify a.png --scene data.csv").succeeded();
-    assert!(line(&run, "judged by").ends_with("means"));
-    assert!(line(&run, "rendered by").contains("--samples=24"));
-    // Changed samples with a certificate to match are found by their means.
-    folder.run(&format!("render data.csv -o b.png --certify {flags} --exposure 0.4")).succeeded();
-    let forged = with_text(&folder.read("b.png"), |text| forged(text, "--exposure=0.4"));
-    std::fs::write(folder.path("b.png"), forged).unwrap();
-    folder.refuses("verify b.png --scene data.csv", 3, "the picture is not legal: ");
+/// The flags of pictures whose samples, noise filter, lines, legend and encoding all count.
+const LIT: [(&str, &str); 5] = [
+    ("data.csv", "--style default --samples 8 --legend=right --color-by radius --label Abc"),
+    ("data.csv", "--style studio --samples 6 --denoise=false --filter gaussian"),
+    ("data.csv", "--style illustration --bits 16 --transparent"),
+    ("scene.toml", "--style path --samples 4 --exposure 0.5 --tone agx"),
+    ("data.csv", "--style path --samples 4 --separation 0.2"),
+];
+
+/// Forges the samples of a picture: each function changes the RGB of a picture with a width.
+type Forgery = fn(&mut [u8], usize);
+
+const FORGERIES: [(&str, Forgery); 10] = [
+    ("one sample + 1", |rgb, width| rgb[3 * (20 * width + 24) + 1] ^= 1),
+    ("a black square", |rgb, width| square(width).for_each(|at| rgb[at] = 0)),
+    ("garbage", |rgb, width| square(width).for_each(|at| rgb[at] = (at * 7919 % 256) as u8)),
+    ("shuffled", |rgb, width| rgb[3 * 10 * width..3 * 30 * width].reverse()),
+    ("mirrored", |rgb, width| rgb.chunks_exact_mut(3 * width).for_each(<[u8]>::reverse)),
+    ("shifted by a pixel", |rgb, _| rgb.rotate_right(3)),
+    ("rows doubled", |rgb, width| rgb.copy_within(3 * 16 * width..3 * 17 * width, 3 * 17 * width)),
+    ("all + 1", |rgb, _| rgb.iter_mut().for_each(|sample| *sample = sample.saturating_add(1))),
+    ("all black", |rgb, _| rgb.fill(0)),
+    ("a hole filled", |rgb, width| {
+        let color: [u8; 3] = rgb[..3].try_into().unwrap();
+        square(width).step_by(3).for_each(|at| rgb[at..at + 3].copy_from_slice(&color));
+    }),
+];
+
+/// The samples of a square of 6 × 6 pixels in the middle.
+fn square(width: usize) -> impl Iterator<Item = usize> {
+    (0..6).flat_map(move |y| (0..18).map(move |x| 3 * ((15 + y) * width + 21) + x))
 }
 
-/// A certificate that lacks an argument, with a digest that matches again.
-fn forged(text: &str, argument: &str) -> String {
+#[test]
+fn a_lit_picture_is_compared_pixel_by_pixel() {
+    let folder = folder();
+    for (scene, flags) in LIT {
+        let flags = format!("{flags} --size 48x36 --backend cpu --quiet");
+        folder.run(&format!("render {scene} -o a.png --certify {flags}")).succeeded();
+        folder.run(&format!("render {scene} -o plain.png {flags}")).succeeded();
+        let open = |name: &str| image::open(folder.path(name)).unwrap().to_rgba16();
+        assert!(open("a.png") == open("plain.png"), "{flags}");
+        let run = folder.run(&format!("verify a.png --scene {scene}")).succeeded();
+        assert!(line(&run, "exact").contains("100.0000 %"), "{flags}");
+    }
+    // A seed is a setting as others are.
+    folder.run("render data.csv -o a.exr --certify --style studio --seed 7 --size 48x36 --backend cpu").succeeded();
+    folder.run("verify a.exr --scene data.csv").succeeded();
+}
+
+#[test]
+fn forged_pictures_with_light_are_not_proved() {
+    let folder = folder();
+    for (scene, flags) in &LIT[..2] {
+        folder
+            .run(&format!("render {scene} -o a.png --certify {flags} --size 48x36 --backend cpu --quiet"))
+            .succeeded();
+        let png = folder.read("a.png");
+        let decoder = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+        let width = decoder.info().width as usize;
+        for (name, forge) in FORGERIES {
+            let bytes = forged(&png, |rgb| forge(rgb, width), |text| text.to_owned());
+            std::fs::write(folder.path("b.png"), bytes).unwrap();
+            let run = folder.run(&format!("verify b.png --scene {scene}"));
+            assert!([3, 4].contains(&run.code), "{name}, {flags}: {run:?}");
+        }
+        // Another certificate for the same samples.
+        for [from, to] in [
+            ["setting samples 8", "setting samples 7"],
+            ["setting samples 6", "setting samples 5"],
+            ["setting size 48x36", "setting size 48x36\nsetting seed 5"],
+            ["setting size 48x36", "setting size 48x36\nsetting filter box\nsetting outline 3"],
+            ["setting label Abc", "setting label Abd"],
+            ["setting size 48x36", "setting size 48x36\nsetting ao 3"],
+        ] {
+            let change = |text: &str| text.replace(from, to);
+            let bytes = forged(&png, |_| {}, change);
+            std::fs::write(folder.path("b.png"), bytes).unwrap();
+            if png.windows(from.len()).any(|part| part == from.as_bytes()) {
+                let run = folder.run(&format!("verify b.png --scene {scene}"));
+                assert!([3, 4].contains(&run.code), "{to}, {flags}: {run:?}");
+            }
+        }
+    }
+}
+
+/// Settings of a stranger's certificate that would open files, or compute for days, are refused.
+#[test]
+fn settings_of_strangers_do_no_harm() {
+    let folder = folder();
+    folder.run("render data.csv -o a.png --certify --style studio --size 48x36 --backend cpu --quiet").succeeded();
+    let png = folder.read("a.png");
+    let unknown = "does not understand the settings in the certificate";
+    for (setting, code, error) in [
+        ("samples 16777216", 1, "takes up to "),
+        ("ao 1024\nsetting samples 100000", 1, "takes up to "),
+        ("size 30000x30000", 1, "the picture is 48x36, but the certificate's settings ask for 30000x30000"),
+        ("topology /etc/passwd", 1, unknown),
+        ("set sky={image=\"/dev/zero\"}", 1, unknown),
+        ("set data.topology=\"/dev/zero\"", 1, unknown),
+        ("frames all", 1, unknown),
+        ("camera-path /dev/zero", 1, unknown),
+        ("adapter x", 1, unknown),
+        ("output /tmp/x.png", 1, unknown),
+        ("label", 1, "has no valid line `setting`"),
+        ("bits 16", 1, "the samples have 8 bits without alpha"),
+    ] {
+        let bytes = forged(&png, |_| {}, |text| text.replace("scene-sha", &format!("setting {setting}\nscene-sha")));
+        std::fs::write(folder.path("b.png"), bytes).unwrap();
+        let run = folder.run("verify b.png --scene data.csv");
+        assert_eq!((run.code, run.stderr.contains(error)), (code, true), "{setting}: {run:?}");
+    }
+}
+
+/// A picture with changed samples and a certificate that fits them.
+fn forged(png: &[u8], samples: impl Fn(&mut [u8]), text: impl Fn(&str) -> String) -> Vec<u8> {
+    let decoder = png::Decoder::new(std::io::Cursor::new(png));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    samples(&mut bytes);
+    let info = reader.info();
+    let size = [info.width, info.height];
+    let certificate = text(&info.uncompressed_latin1_text[0].text);
+    let digest = pinhole::verify::picture_certificate::samples_digest(size, &bytes);
+    let start = certificate.find("samples-sha256 ").unwrap() + 15;
+    let sealed = resealed(&format!("{}{digest}{}", &certificate[..start], &certificate[start + 64..]));
+    pinhole_figure::write::png::encode_certified(size, &pinhole::image::encoding::Encoding::default(), &bytes, &sealed)
+        .unwrap()
+}
+
+/// A certificate with a digest that fits it.
+fn resealed(text: &str) -> String {
     use sha2::{Digest, Sha256};
-    let line = format!("argument {argument}\n");
-    assert!(text.contains(&line), "{text}");
-    let text = text.replace(&line, "");
     let before = &text[..text.rfind("sha256 ").unwrap()];
-    let digest = Sha256::digest(before.as_bytes());
-    let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    let digits: String = Sha256::digest(before.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
     format!("{before}sha256 {digits}\n")
 }
 
@@ -111,8 +216,8 @@ fn what_was_changed_is_refused() {
     };
     let other = with_text(&a, |_| certificate(&b));
     let edited = with_text(&a, |text| text.replace("outcome proved", "outcome Proved"));
-    let newer = with_text(&a, |text| text.replace("pinhole-certificate 1", "pinhole-certificate 9"));
-    let unknown = with_text(&b, |text| forged(text, "--exposure=0.4"));
+    let newer = with_text(&a, |text| text.replace("pinhole-certificate 2", "pinhole-certificate 9"));
+    let unknown = with_text(&b, |text| resealed(&text.replace("setting exposure 0.4\n", "")));
     for (name, bytes) in
         [("other.png", other), ("edited.png", edited), ("newer.png", newer), ("cut.png", a[..a.len() / 2].to_vec())]
     {

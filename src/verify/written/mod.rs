@@ -6,8 +6,8 @@
 //! exposure, tone curve and the transfer function of sRGB in the same way everywhere. In pictures with 8 bits, this
 //! interval contains one or two samples for most pixels.
 //!
-//! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). Pictures with light are estimates,
-//! which [`means`](super::means) judges.
+//! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). All pictures are compared with the exact
+//! one by [`finished`](super::finished).
 
 mod samples;
 
@@ -125,23 +125,5 @@ impl Checker<'_> {
             certificate.violations.extend(part.violations.into_iter().take(room));
         }
         Ok(certificate)
-    }
-
-    /// Whether surfaces of several spheres coincide at the point where the middle ray of a pixel meets them, so that
-    /// rounding decides which one is seen.
-    #[must_use]
-    pub fn ties(&self, view: &View<'_>) -> Vec<bool> {
-        let primary = PrimarySettings::default();
-        let check = PictureCheck::new(self, view, &primary);
-        let count = view.film.pixel_count() as usize;
-        let parts = map_parts(ranges(count, CHUNK), |range| {
-            let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
-            let is_tie = |index: usize| {
-                let pixel = pixel_at(index, view.film.width());
-                check.legal(pixel, &mut hits, &mut colors) == Verdict::Tie
-            };
-            range.map(is_tie).collect::<Vec<bool>>()
-        });
-        parts.concat()
     }
 }

@@ -114,7 +114,7 @@ impl WrittenPicture<'_> {
         }
     }
 
-    pub(super) fn check(&self, view: [u32; 2]) -> Result<(), WrittenError> {
+    pub(in crate::verify) fn check(&self, view: [u32; 2]) -> Result<(), WrittenError> {
         let size = self.size;
         if size != view {
             let [[width, height], [across, down]] = [size, view];
@@ -133,21 +133,17 @@ impl WrittenPicture<'_> {
         Err(WrittenError(format!("the picture has {found} samples; {expected} are expected")))
     }
 
-    /// Red, green and blue of each pixel as they are in the file, scaled so that white is 1.
-    ///
-    /// # Errors
-    /// Returns an error if there are too few or too many samples.
-    pub fn colors(&self) -> Result<Vec<[f64; 3]>, WrittenError> {
-        self.check(self.size)?;
-        let white = match self.samples {
-            Samples::Linear(_) => 1.0,
-            Samples::Encoded(_) => f64::from(self.encoding.bits.white()),
+    /// The first channel of a pixel in which this picture differs from the exact one, with both samples. Samples of 16
+    /// bits may be one step off, and linear light as much in such samples, because a f32 has about as many digits.
+    pub(in crate::verify) fn difference(&self, exact: &Self, index: usize) -> Option<(usize, [f64; 2])> {
+        let [found, exact] = [self.at(index), exact.at(index)];
+        let is_same = |channel: usize| match (self.samples, self.encoding.bits) {
+            (Samples::Encoded(_), Bits::Eight) => found[channel] == exact[channel],
+            (Samples::Encoded(_), Bits::Sixteen) => (found[channel] - exact[channel]).abs() <= 1.0,
+            (Samples::Linear(_), _) => is_near(found[channel], exact[channel]),
         };
-        let color = |index| {
-            let [r, g, b, _] = self.at(index);
-            [r, g, b].map(|sample| sample / white)
-        };
-        Ok((0..self.size[0] as usize * self.size[1] as usize).map(color).collect())
+        let channel = (0..4).find(|channel| !is_same(*channel))?;
+        Some((channel, [found[channel], exact[channel]]))
     }
 
     pub(super) fn at(&self, index: usize) -> [f64; 4] {
@@ -221,6 +217,15 @@ impl WrittenPicture<'_> {
         }
         encoding.display_range(ends)
     }
+}
+
+/// Whether linear light is as near to the exact light as a step of 16 bits in sRGB, or above white 2⁻¹⁵ of it.
+fn is_near(found: f64, exact: f64) -> bool {
+    if !(0.0..=1.0).contains(&found) {
+        return (found - exact).abs() <= exact.abs() / f64::from(1 << 15);
+    }
+    let [[found, ..], [exact, ..]] = [found, exact].map(|light| to_srgb16([light as f32; 3]));
+    found.abs_diff(exact) <= 1
 }
 
 /// Encodes display light as the writers do. Brighter light never gives a smaller sample.

@@ -14,9 +14,12 @@ pub(crate) struct VerifyArgs {
     #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]
     pub(crate) path: Option<PathBuf>,
     /// The scene file or data file of a picture that `render --certify` wrote: check the picture's samples and its
-    /// certificate, which says the other arguments of `render`. This needs no adapter
+    /// certificate, which says the settings. This needs no adapter
     #[arg(long, value_name = "SCENE_OR_DATA", conflicts_with_all = not_of_pictures())]
     pub(crate) scene: Option<PathBuf>,
+    /// With --scene, the most rays that the reference may follow
+    #[arg(long, value_name = "RAYS", default_value_t = 1e10, conflicts_with = "replay")]
+    pub(crate) work: f64,
     #[command(flatten)]
     pub(crate) view: SettingArgs<VIEW>,
     #[command(flatten)]

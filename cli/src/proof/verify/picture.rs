@@ -3,22 +3,24 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
-use clap::Parser;
 use serde::Serialize;
 
-use crate::flags::render::{RenderCommand, RenderLine};
-use crate::input::read;
+use crate::input::{Input, read};
 use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed};
 use crate::output::picture::{Outputs, PictureFormat};
 use crate::proof::certified::{self, FilePicture};
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::report::command_line;
 use crate::render::Job;
+use crate::render::stop_rule::StopRule;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
+use pinhole::internals::text::one_line;
+use pinhole::render::Integrator;
 use pinhole::verify::Outcome;
+use pinhole::verify::finished::PixelVerdict;
 use pinhole::verify::picture_certificate::PictureCertificate;
 use pinhole_figure::read::picture::{self, FileSamples};
 
@@ -30,11 +32,11 @@ struct Report<'a> {
     width: u32,
     height: u32,
     adapter: &'a str,
-    samples_per_pixel: u32,
-    judged_by: &'static str,
-    proved: u64,
-    undecided: u64,
-    violated: u64,
+    settings: &'a [[String; 2]],
+    exact: usize,
+    legal: usize,
+    open: usize,
+    violated: usize,
     violation: Option<String>,
     outcome: Outcome,
     command: String,
@@ -50,90 +52,108 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
         .as_deref()
         .ok_or_else(|| anyhow!("{}: the picture has no certificate; render it with --certify", path.display()))?;
     let certificate = PictureCertificate::from_text(text).with_context(of_picture)?;
-    let written = FilePicture { size: file.size, samples: file.samples, per_pixel: certificate.samples_per_pixel };
+    let written = FilePicture { size: file.size, samples: file.samples };
     certified::check_samples(&certificate, &written).with_context(of_picture)?;
-    let (job, flags) = job(path, scene, &certificate, &written.samples)?;
+    let job = job(path, scene, &certificate, &written.samples)?;
     let mut input = job.source.load()?;
     let files: Vec<_> = input.files.iter().cloned().chain([path.to_path_buf()]).collect();
     check_not_inputs(args.json.iter(), &files)?;
     let note = progress::notes(false);
     input.notes.iter().for_each(|text| note(text));
     certified::check_scene(&certificate, &input).with_context(of_picture)?;
-    let (encoding, _) = job.finish(&mut input, note)?;
-    check_kind(path, &written.samples, &encoding)?;
-    let layers = job.outputs.layers(&encoding);
-    let judged = certified::judge(&mut input, &encoding, layers, &written)?;
+    let (encoding, annotations) = job.finish(&mut input, note)?;
+    let outputs = Outputs { annotations, ..job.outputs };
+    check_kind(path, &written, &input, &encoding)?;
+    check_work(path, &input, args.work)?;
+    let judged = certified::judge(&input, &encoding, &outputs, &written)?;
     progress::clear();
-    let table = format!("{:<12}{flags}\n{}", "rendered by", judged.table());
+    let settings: String = certificate.settings.iter().map(|[name, value]| format!(" --{name}={value}")).collect();
+    let settings = one_line(&settings);
+    let table = format!("{:<12}{settings}\n{}", "settings", certified::table(&judged));
     answer(table.as_bytes())?;
     if let Some(json) = &args.json {
-        let ([width, height], [proved, undecided, violated]) = (written.size, judged.counts());
+        let [width, height] = written.size;
+        let [exact, legal, open, violated] = [0, 1, 2, 3].map(|index| judged.count(PixelVerdict::ALL[index]));
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
             picture: path.display().to_string(),
             width,
             height,
             adapter: &certificate.adapter,
-            samples_per_pixel: written.per_pixel,
-            judged_by: judged.by().name(),
-            proved,
-            undecided,
+            settings: &certificate.settings,
+            exact,
+            legal,
+            open,
             violated,
-            violation: judged.violation(),
+            violation: judged.violations.first().map(ToString::to_string),
             outcome: judged.outcome(),
             command: command_line(),
         };
         let text = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
         name_all(vec![(json, unnamed(json, text.as_bytes())?)])?;
     }
-    judged.verdict()
+    certified::verdict(&judged)
 }
 
-/// Makes the job from the certificate's arguments for this scene, with its command line.
-fn job(
-    path: &Path,
-    scene: &Path,
-    certificate: &PictureCertificate,
-    samples: &FileSamples,
-) -> Result<(Job, String), Failure> {
-    let words = ["pinhole", "render"].map(std::ffi::OsString::from);
-    let flags = certificate.arguments.iter().map(Into::into);
-    let ends = ["-o".into(), "-".into(), "--".into(), scene.as_os_str().to_owned()];
+/// Makes the job of the certificate's settings for this scene.
+fn job(path: &Path, scene: &Path, certificate: &PictureCertificate, samples: &FileSamples) -> Result<Job, Failure> {
     let refused = || {
-        anyhow!(
-            "{}: this program does not understand the arguments in the certificate; use version {}",
-            path.display(),
-            certificate.version
-        )
+        let [path, version] = [path.display().to_string(), one_line(&certificate.version)];
+        anyhow!("{path}: this program does not understand the settings in the certificate; use version {version}")
     };
-    let parsed = RenderLine::try_parse_from(words.into_iter().chain(flags).chain(ends));
-    let Ok(RenderLine { command: RenderCommand::Render(args) }) = parsed else {
-        return Err(refused().into());
-    };
-    if !args.layers.is_empty() {
-        return Err(refused().into());
-    }
+    let given = certified::given(certificate).ok_or_else(refused)?;
     let format = match samples {
         FileSamples::Encoded { .. } => PictureFormat::Png,
         FileSamples::Linear(_) => PictureFormat::Exr,
     };
-    let job = Job::with_outputs(&args, Outputs::unwritten(format))?;
-    let flags = certificate.arguments.join(" ");
-    Ok((job, format!("pinhole render {} {flags}", scene.display()).trim_end().to_owned()))
+    let job = Job::on_cpu(scene, &given, StopRule::default(), Outputs::unwritten(format))?;
+    Ok(Job { source: job.source.without_bricks("`verify`")?, ..job })
 }
 
-/// Refuses a picture whose samples have another kind than the arguments imply.
-fn check_kind(path: &Path, samples: &FileSamples, encoding: &Encoding) -> Result<()> {
-    let FileSamples::Encoded { bits, has_alpha, .. } = samples else { return Ok(()) };
+/// Refuses a picture whose samples have another size or kind than the settings imply.
+fn check_kind(path: &Path, written: &FilePicture, input: &Input, encoding: &Encoding) -> Result<()> {
+    let eyes = if input.eyes.is_some() { 2 } else { 1 };
+    let [width, height] = [input.film.width() * eyes, input.film.height()];
+    let [across, down] = written.size;
+    let path = path.display();
+    if [width, height] != written.size {
+        return Err(anyhow!(
+            "{path}: the picture is {across}x{down}, but the certificate's settings ask for {width}x{height}"
+        ));
+    }
+    let FileSamples::Encoded { bits, has_alpha, .. } = &written.samples else { return Ok(()) };
     if (*bits, *has_alpha) == (encoding.bits, encoding.transparent) {
         return Ok(());
     }
     Err(anyhow!(
-        "{}: the samples have {} bits {} alpha, but the certificate's arguments ask for {} {}",
-        path.display(),
+        "{path}: the samples have {} bits {} alpha, but the certificate's settings ask for {} {}",
         bits.count(),
         if *has_alpha { "with" } else { "without" },
         encoding.bits.count(),
         if encoding.transparent { "with it" } else { "without it" }
+    ))
+}
+
+/// Refuses a picture for which the reference would compute longer than the user allows.
+fn check_work(path: &Path, input: &Input, most: f64) -> Result<()> {
+    let settings = &input.settings;
+    let rays_of_sample = match &settings.integrator {
+        Integrator::Primary(_) => 1,
+        Integrator::Studio(studio) => {
+            let are_opaque = input.scene.appearance().surfaces().iter().all(|surface| surface.opacity >= 1.0);
+            let surfaces = if are_opaque { 1 } else { studio.max_surfaces as usize };
+            surfaces * (1 + settings.lights.len() + studio.occlusion.map_or(0, |occlusion| occlusion.samples as usize))
+        }
+        Integrator::Path(path) => 2 * path.max_depth as usize,
+    };
+    let samples = if settings.integrator.is_primary() { 1 } else { settings.sampling.samples };
+    let rays = input.film.pixel_count() as f64 * f64::from(samples) * rays_of_sample as f64;
+    if rays <= most {
+        return Ok(());
+    }
+    Err(anyhow!(
+        "{}: checking this picture takes up to {rays:.1e} rays, and --work allows {most:.1e}; if the certificate's \
+         settings are what you want, add --work {rays:.1e}",
+        path.display()
     ))
 }
